@@ -1,11 +1,13 @@
 // Surfaces that answer signed distance and outward normal: positive outside the body, where the cloth may be.
 //   plane    phi = n . (x - p)
 //   sphere   phi = |x - c| - r
-//   bowl     a hemispherical shell with a rounded rim, opening along +axis; `radius` is the inner one, the shell reaches out from
-//            it by `thickness`. phi = distance to the arc of the middle radius - thickness / 2
+//   bowl     phi = distance to the arc of the middle radius - thickness / 2
 //   box      exact distance to a box, turned by `rotation`
 //   capsule  phi = distance to the segment a b - r
 //   mesh     a triangle surface (mesh/surface_distance.h)
+// The bowl is a hemispherical shell with a rounded rim, opening along +axis; `radius` is the inner one, the
+// shell reaches out from it by `thickness`.
+//
 // Lengths in m. On the set where the normal is not defined (a sphere's centre) a fixed one is returned.
 #pragma once
 
@@ -54,17 +56,19 @@ std::string_view name(const Shape& shape);  // "plane", "sphere", ...
 
 SurfacePoint closest(const Shape& shape, const Vec3& x);
 
-// Where the straight path from x0 to x1 first comes as near as `margin` to the surface: the fraction of the path in [0, 1] and the
-// surface there. Nothing when it stays clear. Found by conservative advancement along the distance, so that a thin body is not
-// stepped over. A path that starts nearer than the margin meets the surface at once only if it comes nearer still; one that moves
-// away is clear until it turns back towards the surface.
+// Where the straight path from x0 to x1 first comes as near as `margin` to the surface: the fraction of the
+// path in [0, 1] and the surface there. Nothing when it stays clear. Found by conservative advancement along
+// the distance, so that a thin body is not stepped over (its limits: shape.cpp). A path that starts nearer
+// than the margin meets the surface at once only if it comes nearer still; one that moves away is clear until
+// it turns back towards the surface.
 struct Hit {
   double fraction;
   SurfacePoint surface;
 };
 std::optional<Hit> first_hit(const Shape& shape, const Vec3& x0, const Vec3& x1, double margin);
 
-// Throws InputError naming the field when a size is not positive or not finite, a normal zero, a rotation not orthonormal.
+// Throws InputError naming the field when a size is not positive or not finite, a normal zero, a rotation not
+// orthonormal.
 void check(const Shape& shape);
 
 }  // namespace drape

@@ -5,8 +5,8 @@
 
 namespace drape {
 
-// nx x nz vertices over width x depth [m] in the plane y = 0, centred on the origin, x fastest, normals up (+y); the diagonals of
-// the cells alternate (union jack), so that the sheet has no preferred diagonal.
+// nx x nz vertices over width x depth [m] in the plane y = 0, centred on the origin, x fastest, normals up
+// (+y); the diagonals of the cells alternate (union jack), so that the sheet has no preferred diagonal.
 TriangleMesh grid(int nx, int nz, double width, double depth);
 
 // Rows of equilateral triangles: as grid, every second row shifted by half a cell; edge length `edge` [m].

@@ -1,9 +1,13 @@
 // Signed distance from a point to a triangle surface.
-//   closed, consistently wound:  negative inside; sign by the angle-weighted pseudo-normal of the closest feature
-//                                [Baerentzen & Aanaes 2005, Signed distance computation using the angle weighted pseudonormal]
-//   otherwise:                   a thick surface; the distance is never negative, the normal points from the surface to the point
-// The tree is embree's; distances are computed in double precision by us, and ties go to the lowest triangle number, so the
-// answer does not depend on the tree or on the processor.
+//   closed     negative inside; sign by the angle-weighted pseudo-normal of the closest feature
+//              [Baerentzen & Aanaes 2005, Signed distance computation using the angle weighted pseudonormal]
+//   otherwise  a thick surface: never negative, the normal points from the surface to the point
+//
+// Closed: every edge has two triangles and the surface two sides. Each connected piece is wound outwards on
+// its own, so that the inner wall of a hollow body counts as a second body.
+//
+// The tree is embree's; distances are computed in double precision by us, and ties go to the lowest triangle
+// number, so the answer does not depend on the tree or on the processor.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,7 @@
-// Edges, hinges, diagonals, boundaries, areas and pieces of a triangle mesh: free functions, each O(n log n).
+// Edges, hinges, diagonals, boundaries, areas and pieces of a triangle mesh: free functions, O(n).
 // Deterministic: every list comes out sorted by vertex number, whatever the order of the triangles.
-// Triangles that name a vertex twice are passed over; zero-area triangles take part in the topology.
+// Which triangles count: one that names a vertex twice is passed over; several of the same three vertices
+// (either way round) count once; zero-area triangles take part.
 #pragma once
 
 #include <vector>
@@ -12,6 +13,7 @@ namespace drape {
 struct Edge {
   int a, b;       // a < b
   int triangles;  // how many triangles share it: 1 on a boundary, 2 inside, more where non-manifold
+  int forward;    // how many of them run from a to b; consistently wound: forward = 1 where triangles = 2
 };
 
 // Two triangles that share the edge (a, b); c and d are the vertices opposite it.
@@ -25,17 +27,24 @@ struct Diagonal {
   int c, d;
 };
 
-std::vector<Edge> edges(const TriangleMesh& mesh);          // sorted by (a, b), each once
-std::vector<Hinge> hinges(const TriangleMesh& mesh);        // sorted by (c, d, a, b); every pair of triangles of an edge
+// Numbers of the triangles that count, ascending; of equal ones the first.
+std::vector<int> counted_triangles(const TriangleMesh& mesh);
+
+std::vector<Edge> edges(const TriangleMesh& mesh);  // sorted by (a, b), each once
+std::vector<Hinge> hinges(
+    const TriangleMesh& mesh);  // sorted by (c, d, a, b); every pair of triangles of an edge
 std::vector<Diagonal> diagonals(const TriangleMesh& mesh);  // sorted by (c, d), each pair once, c != d
 
-// Closed walks along edges that have one triangle. Each loop starts at its lowest vertex; loops sorted by it.
+// Closed walks along edges that have one triangle; a walk that meets itself is split there, so that no loop
+// names a vertex twice. Each loop starts at its lowest vertex and runs the way most of its triangles do;
+// loops are sorted.
 std::vector<std::vector<int>> boundary_loops(const TriangleMesh& mesh);
 
-double triangle_area(const TriangleMesh& mesh, const Triangle& t);   // m^2
-std::vector<double> vertex_areas(const TriangleMesh& mesh);          // m^2, a third of every triangle around a vertex
+double triangle_area(const TriangleMesh& mesh, const Triangle& t);  // m^2
+std::vector<double> vertex_areas(const TriangleMesh& mesh);  // m^2, a third of every triangle around a vertex
 
 // Piece number of every vertex (connected through triangles); a vertex without triangles is its own piece.
+// Pieces are numbered by their lowest vertex.
 std::vector<int> connected_pieces(const TriangleMesh& mesh);
 
 }  // namespace drape

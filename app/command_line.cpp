@@ -1,0 +1,174 @@
+#include "app/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <new>
+
+#include "app/commands.h"
+#include "app/words.h"
+#include "mesh/obj.h"
+
+namespace drape {
+namespace {
+
+// What `simulate` and `drop` share, as the command line gives it.
+struct RunWords {
+  std::string out, frames = "pc2";
+  bool quiet = false;
+  std::vector<std::string> settings, more_settings;
+  std::map<std::string, std::string> overrides;  // path of the scene -> value
+
+  CommonOptions common(const CLI::App& command) const {
+    CommonOptions options;
+    options.out = out;
+    options.quiet = quiet;
+    options.frames = frames == "obj" ? Frames::obj : frames == "none" ? Frames::none : Frames::pc2;
+    for (const std::string& text : settings) options.settings.push_back(parse_setting(text));
+    for (const std::string& text : more_settings) options.settings.push_back(parse_setting(text));
+    for (const auto& [path, value] : overrides) {
+      std::string option = "--" + path.substr(path.find('.') + 1);
+      for (char& c : option) c = c == '_' ? '-' : c;
+      if (command.count(option) > 0) options.settings.push_back({path, value, option});
+    }
+    return options;
+  }
+};
+
+void add_run_options(CLI::App& command, RunWords& words) {
+  command.add_option("--out", words.out, "output folder (out/NAME)")->type_name("DIR");
+  const auto override_of = [&](const std::string& option, const std::string& path, const char* help,
+                               const char* type) {
+    command.add_option(option, words.overrides[path], help)->type_name(type);
+  };
+  override_of("--threads", "simulation.threads", "how many threads (as many as processors)", "N");
+  override_of("--duration", "simulation.duration", "time to simulate, such as 2 or \"500 ms\"", "TIME");
+  override_of("--time-step", "simulation.time_step", "length of a step, such as 0.01 or \"5 ms\"", "TIME");
+  override_of("--integrator", "simulation.integrator", "see 'drape list'", "NAME");
+  override_of("--linear-solver", "simulation.linear_solver", "see 'drape list'", "NAME");
+  override_of("--tolerance", "simulation.tolerance", "relative residual of the linear solve", "X");
+  command.add_option("--frames", words.frames, "how frames are written: pc2, obj or none")
+      ->check(CLI::IsMember({"pc2", "obj", "none"}))
+      ->type_name("KIND");
+  command
+      .add_option("--set", words.settings,
+                  "changes a value of the scene, such as cloth.0.bend=\"5 uN.m\"; as often as needed")
+      ->type_name("PATH=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+  command.add_option("more", words.more_settings, "further PATH=VALUE, after --set")->group("");
+  command.add_flag("--quiet", words.quiet, "nothing but errors");
+}
+
+void add_simulate(CLI::App& app, int& exit_code) {
+  CLI::App* const command = app.add_subcommand("simulate", "runs a scene");
+  auto scene = std::make_shared<std::string>();
+  auto words = std::make_shared<RunWords>();
+  command->add_option("SCENE", *scene, "scene file (TOML)")->required();
+  add_run_options(*command, *words);
+  command->callback([=, &exit_code] { exit_code = simulate(*scene, words->common(*command)); });
+}
+
+void add_drop(CLI::App& app, const std::string& label, int& exit_code) {
+  CLI::App* const command =
+      app.add_subcommand("drop", "lets a cloth fall, onto a body or a floor, without a scene file");
+  struct Words {
+    std::string cloth, scale, friction, margin;
+    DropOptions options;
+    RunWords run;
+  };
+  auto words = std::make_shared<Words>();
+  command->add_option("CLOTH", words->cloth, "OBJ file, starting where it stands")->required();
+  command
+      ->add_option("--onto", words->options.onto,
+                   "an OBJ file, where it stands, or a shape just under the cloth: sphere:0.3, box:1x0.5x1, "
+                   "capsule:0.1x0.6, "
+                   "bowl:0.3, plane")
+      ->type_name("BODY");
+  command->add_flag("--floor", words->options.floor, "a plane under the body, or 0.5 m under the cloth");
+  command->add_option("--fabric", words->options.fabric, "see 'drape list' (cotton-poplin)")
+      ->type_name("NAME");
+  command->add_option("--scale", words->scale, "of both meshes, such as 0.01 for files in cm")
+      ->type_name("X");
+  command->add_option("--friction", words->friction, "coefficient of friction of body and floor")
+      ->type_name("MU");
+  command->add_option("--margin", words->margin, "distance kept from body and floor, such as \"2 mm\"")
+      ->type_name("LENGTH");
+  command
+      ->add_option("--pin", words->options.pinned_groups,
+                   "group of the OBJ file that is held; as often as needed")
+      ->type_name("GROUP")
+      ->take_all()
+      ->allow_extra_args(false);
+  add_run_options(*command, words->run);
+  command->callback([=, &exit_code] {
+    DropOptions& options = words->options;
+    options.cloth = words->cloth;
+    if (command->count("--scale") > 0) options.scale = words->scale;
+    if (command->count("--friction") > 0) options.friction = words->friction;
+    if (command->count("--margin") > 0) options.margin = words->margin;
+    exit_code = drop(options, words->run.common(*command), label);
+  });
+}
+
+void add_check_and_list(CLI::App& app, int& exit_code) {
+  CLI::App* const check =
+      app.add_subcommand("check", "validates a scene or examines a mesh; changes nothing");
+  auto file = std::make_shared<std::string>();
+  check->add_option("FILE", *file, "scene (.toml) or mesh (.obj)")->required();
+  check->callback([=, &exit_code] { exit_code = check_file(*file); });
+  app.add_subcommand("list", "fabrics, shapes, forces, integrators and linear solvers of this build")
+      ->callback([&exit_code] { exit_code = list_parts(); });
+}
+
+void check_command(const CLI::App& app, const std::string& word) {
+  Names known;
+  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+  if (std::find(known.begin(), known.end(), word) == known.end())
+    throw InputError("there is no command '" + word + "'; " + suggestion(word, known));
+}
+
+int parse_and_run(int argc, char** argv) {
+  int exit_code = 0;
+  std::string label = "drape";
+  for (int i = 1; i < argc; ++i) label += " " + std::string(argv[i]);
+  CLI::App app("drape: an implicit cloth solver", "drape");
+  app.set_version_flag("--version", "drape " DRAPE_VERSION);
+  app.require_subcommand(1);
+  add_simulate(app, exit_code);
+  add_drop(app, label, exit_code);
+  add_check_and_list(app, exit_code);
+  if (argc > 1 && argv[1][0] != '-') check_command(app, argv[1]);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    throw InputError(std::string(error.what()) + "; see drape --help, drape COMMAND --help");
+  }
+  return exit_code;
+}
+
+int fail(int exit_code, const std::string& what) {
+  std::fprintf(stderr, "error: %s\n", one_line(what).c_str());
+  return exit_code;
+}
+
+}  // namespace
+
+int command_line(int argc, char** argv) {
+  try {
+    return parse_and_run(argc, argv);
+  } catch (const InputError& error) {
+    return fail(2, error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(2, error.path1().string() + ": " + error.code().message());
+  } catch (const std::bad_alloc&) {
+    return fail(1, "there is not enough memory for this; use a coarser mesh");
+  } catch (const std::exception& error) {
+    return fail(1, std::string("the program failed: ") + error.what());
+  }
+}
+
+}  // namespace drape

@@ -1,0 +1,26 @@
+// The commands. Each gives the exit code: 0 done, 1 the computation failed, 130 interrupted; bad input is
+// thrown as InputError.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/drop.h"
+#include "app/output.h"
+
+namespace drape {
+
+struct CommonOptions {
+  std::filesystem::path out;  // empty: out/NAME
+  Frames frames = Frames::pc2;
+  bool quiet = false;
+  std::vector<Setting> settings;
+};
+
+int simulate(const std::filesystem::path& scene, const CommonOptions& options);
+int drop(const DropOptions& what, const CommonOptions& options, const std::string& label);
+int check_file(const std::filesystem::path& file);
+int list_parts();
+
+}  // namespace drape

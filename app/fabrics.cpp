@@ -1,0 +1,79 @@
+#include "app/fabrics.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "mesh/obj.h"
+
+namespace drape {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The first of the candidate data folders that has fabrics.
+fs::path fabric_folder() {
+  if (const char* chosen = std::getenv("DRAPE_DATA"); chosen && *chosen) return fs::path(chosen) / "fabrics";
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (!error) {
+    const fs::path installed = program.parent_path().parent_path() / "share" / "drape" / "fabrics";
+    if (fs::is_directory(installed, error)) return installed;
+  }
+  return fs::path(DRAPE_DATA_DIR) / "fabrics";
+}
+
+}  // namespace
+
+Names fabric_names() {
+  Names names;
+  std::error_code error;
+  for (fs::directory_iterator file(fabric_folder(), error), end; !error && file != end; file.increment(error))
+    if (file->path().extension() == ".toml") names.push_back(file->path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+void read_fabric(Table& table, Fabric& fabric) {
+  table.read("area_density", fabric.area_density, dimension::area_density, Range::positive);
+  for (const auto& [width, spring] :
+       {std::pair{"stretch", "stretch_spring"}, std::pair{"bend", "bend_spring"}})
+    if (table.has(width) && table.has(spring))
+      table.fail(spring, "give either " + std::string(width) + " or " + spring + ", not both");
+  if (table.has("stretch")) fabric.stretch_spring.reset();
+  if (table.has("bend")) fabric.bend_spring.reset();
+  table.read("stretch", fabric.stretch, dimension::stretch, Range::not_negative);
+  table.read("stretch_spring", fabric.stretch_spring, dimension::spring, Range::not_negative);
+  table.read("bend", fabric.bend, dimension::bend, Range::not_negative);
+  table.read("bend_spring", fabric.bend_spring, dimension::bend_spring, Range::not_negative);
+  table.read("buckling_clamp", fabric.buckling_clamp, dimension::spring, Range::not_negative);
+  table.read("damping", fabric.damping, dimension::damping, Range::not_negative);
+  std::string kind = fabric.damping_kind == DampingKind::axial ? "axial" : "relative";
+  table.read("damping_kind", kind, {"relative", "axial"});
+  fabric.damping_kind = kind == "axial" ? DampingKind::axial : DampingKind::relative;
+  table.read("neighbour_weighting", fabric.neighbour_weighting);
+  try {
+    check(fabric);
+  } catch (const InputError& error) {
+    throw InputError(table.where() + ": " + error.what());
+  }
+}
+
+NamedFabric load_fabric(const std::string& name) {
+  const Names known = fabric_names();
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    throw InputError("there is no fabric '" + name + "'; " + suggestion(name, known));
+  const Node root = read_toml(fabric_folder() / (name + ".toml"));
+  Table table(root, "the fabric");
+  NamedFabric named;
+  named.name = name;
+  table.read("description", named.description);
+  table.read("source", named.source);
+  table.read("assumed", named.assumed);
+  table.require("area_density");
+  read_fabric(table, named.fabric);
+  table.finish();
+  return named;
+}
+
+}  // namespace drape

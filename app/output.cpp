@@ -1,0 +1,102 @@
+#include "app/output.h"
+
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+#include "mesh/obj.h"
+
+namespace drape {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<Vec3> positions_of(const Cloth& cloth, const State& state) {
+  return unstacked(state.x.segment(3 * cloth.first_particle, 3 * cloth.mesh.vertex_count()));
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder))
+    throw InputError(folder.string() + ": cannot be made an output folder: " +
+                     (error ? error.message() : "it is a file") + "; choose another with --out");
+  try {
+    AtomicFile(folder / "try").write("try");  // not kept
+  } catch (const InputError&) {
+    throw InputError(folder.string() + ": the output folder cannot be written; choose another with --out");
+  }
+}
+
+// Results are named after the cloth and must not replace what they are made from.
+void spare_inputs(const fs::path& folder, const Scene& scene) {
+  const auto spare = [&](const fs::path& input) {
+    for (const ClothEntry& cloth : scene.cloths) {
+      std::error_code error;
+      const fs::path result = folder / (cloth.name + ".obj");
+      if (!input.empty() && fs::equivalent(result, input, error) && !error)
+        throw InputError(result.string() +
+                         ": is a mesh of the scene and would be overwritten; choose another --out");
+    }
+  };
+  for (const ClothEntry& cloth : scene.cloths) spare(cloth.mesh);
+  for (const ObstacleEntry& obstacle : scene.obstacles) spare(obstacle.mesh);
+}
+
+}  // namespace
+
+Output::Output(fs::path folder, const Scene& scene, const Simulation& simulation, Frames frames)
+    : folder_(std::move(folder)), simulation_(simulation), frames_(frames) {
+  spare_inputs(folder_, scene);
+  make_folder(folder_);
+  if (frames_ == Frames::obj) make_folder(folder_ / "frames");
+  if (frames_ == Frames::pc2)
+    for (const Cloth& cloth : simulation.cloths)
+      caches_.emplace_back(folder_ / (cloth.name + ".pc2"), cloth.mesh.vertex_count());
+  steps_.emplace(folder_ / "steps.csv");
+}
+
+fs::path Output::frame_path(const Cloth& cloth) const {
+  char number[16];
+  std::snprintf(number, sizeof number, "_%04d.obj", frame_count_);
+  return folder_ / "frames" / (cloth.name + number);
+}
+
+void Output::frame(const State& state) {
+  if (frames_ == Frames::none) return;
+  ++frame_count_;
+  for (std::size_t k = 0; k < simulation_.cloths.size(); ++k) {
+    const Cloth& cloth = simulation_.cloths[k];
+    if (frames_ == Frames::pc2) {
+      caches_[k].add(state.x, cloth.first_particle);
+      continue;
+    }
+    AtomicFile file(frame_path(cloth));
+    file.write(format_obj(cloth.mesh, positions_of(cloth, state)));
+    file.keep();
+  }
+}
+
+void Output::finish(const State& state, const RunRecord& record) {
+  for (Pc2Writer& cache : caches_) cache.close();
+  steps_->close();
+  std::vector<AtomicFile> texts;
+  for (const Cloth& cloth : simulation_.cloths) {
+    texts.emplace_back(folder_ / (cloth.name + ".obj"))
+        .write(format_obj(cloth.mesh, positions_of(cloth, state)));
+    texts.back().close();
+  }
+  texts.emplace_back(folder_ / "run.json").write(run_json(record));
+  texts.back().close();
+
+  for (Pc2Writer& cache : caches_) cache.keep();
+  steps_->keep();
+  for (AtomicFile& text : texts) text.keep();
+  for (const Cloth& cloth : simulation_.cloths) written_.push_back(folder_ / (cloth.name + ".obj"));
+  for (const Pc2Writer& cache : caches_) written_.push_back(cache.path());
+  written_.push_back(folder_ / "steps.csv");
+  written_.push_back(folder_ / "run.json");
+  if (frames_ == Frames::obj) written_.push_back(folder_ / "frames");
+}
+
+}  // namespace drape

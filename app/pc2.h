@@ -1,0 +1,30 @@
+// Point cache for Blender's Mesh Cache modifier, all little endian:
+//   char[12] "POINTCACHE2\0", int32 version 1, int32 points, float32 start frame 0, float32 sample rate 1,
+//   int32 samples, then for each sample the float32 x y z of every point [m].
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "app/atomic_file.h"
+#include "mesh/triangle_mesh.h"
+
+namespace drape {
+
+class Pc2Writer {
+ public:
+  Pc2Writer(std::filesystem::path path, int points);
+
+  void add(const VecX& x, int first_particle);  // a sample: the points from this particle on
+  void close();                                 // writes the number of samples into the header
+  void keep() { file_.keep(); }
+  const std::filesystem::path& path() const { return file_.path(); }
+
+ private:
+  AtomicFile file_;
+  int points_, samples_ = 0;
+  std::vector<unsigned char> bytes_;
+};
+
+}  // namespace drape

@@ -1,0 +1,69 @@
+#include "app/run_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "app/measure.h"
+
+namespace drape {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json cloths_json(const std::vector<ClothCounts>& cloths) {
+  Json list = Json::array();
+  for (const ClothCounts& c : cloths)
+    list.push_back({{"name", c.name},
+                    {"particles", c.particles},
+                    {"triangles", c.triangles},
+                    {"edges", c.edges},
+                    {"diagonals", c.diagonals}});
+  return list;
+}
+
+Json failure_json(const Failure& f) {
+  return {{"step", f.step}, {"time", f.time},   {"what", f.what},
+          {"term", f.term}, {"cloth", f.cloth}, {"vertex", f.vertex < 0 ? Json() : Json(f.vertex)}};
+}
+
+}  // namespace
+
+std::string run_json(const RunRecord& record) {
+  const Distribution step_ms = distribution(record.step_ms),
+                     iterations = distribution(record.linear_iterations);
+  Json json = {
+      {"drape_version", DRAPE_VERSION},
+      {"scene", record.scene},
+      {"cloths", cloths_json(record.cloths)},
+      {"integrator", record.integrator},
+      {"linear_solver", record.linear_solver},
+      {"threads", record.threads},
+      {"duration", record.duration},
+      {"time_step", record.time_step},
+      {"steps", record.steps},
+      {"simulated_seconds", record.simulated_seconds},
+      {"wall_seconds", record.wall_seconds},
+      {"ms_per_step", {{"median", step_ms.median}, {"p95", step_ms.p95}, {"max", step_ms.max}}},
+      {"phases_ms",
+       {{"assemble", record.assemble_ms},
+        {"solve", record.solve_ms},
+        {"collide", record.collide_ms},
+        {"write", record.write_ms}}},
+      {"linear_iterations", {{"mean", iterations.mean}, {"max", static_cast<long>(iterations.max)}}},
+      {"state", record.state()},
+      {"interrupted", record.interrupted},
+      {"max_speed", record.max_speed},
+      {"max_edge_strain", record.max_edge_strain},
+      {"max_penetration", record.max_penetration},
+      {"largest_speed", record.largest_speed},
+      {"largest_edge_strain", record.largest_edge_strain},
+      {"substeps_max", record.substeps_max},
+      {"steps_cut", record.steps_cut},
+      {"steps_not_converged", record.steps_not_converged},
+      {"state_hash", record.state_hash},
+      {"warnings", record.warnings},
+  };
+  if (record.failure) json["failure"] = failure_json(*record.failure);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace drape

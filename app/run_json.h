@@ -1,0 +1,46 @@
+// run.json: what was run and how it went.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/words.h"
+
+namespace drape {
+
+struct ClothCounts {
+  std::string name;
+  int particles = 0, triangles = 0, edges = 0, diagonals = 0;
+};
+
+struct Failure {
+  long step = 0;
+  double time = 0;  // s, of the state that is left
+  std::string what, term, cloth;
+  int vertex = -1;  // of the cloth's file, from 0
+};
+
+struct RunRecord {
+  std::string scene, integrator, linear_solver;
+  std::vector<ClothCounts> cloths;
+  Names warnings;
+  int threads = 1;
+  double duration = 0, time_step = 0, simulated_seconds = 0, wall_seconds = 0;  // s
+  long steps = 0, steps_cut = 0, steps_not_converged = 0;
+  int substeps_max = 1;
+  std::vector<double> step_ms, linear_iterations;                      // of each step
+  double assemble_ms = 0, solve_ms = 0, collide_ms = 0, write_ms = 0;  // of the whole run
+  double max_speed = 0, max_edge_strain = 0;                           // at the end [m/s], [-]
+  double largest_speed = 0, largest_edge_strain = 0;                   // of the whole run
+  double max_penetration = 0;                                          // m, of the whole run
+  bool settled = false, interrupted = false;
+  std::string state_hash;
+  std::optional<Failure> failure;
+
+  std::string state() const { return failure ? "failed" : settled ? "settled" : "moving"; }
+};
+
+std::string run_json(const RunRecord& record);
+
+}  // namespace drape

@@ -1,0 +1,82 @@
+// A scene as it was asked for: what to drape, over what, for how long. Plain data in SI units; app/README.md
+// lists the keys. Nothing is loaded yet: app/simulation.h makes it run.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/settings.h"
+#include "app/words.h"
+#include "constraints/constraints.h"
+#include "solver/fabric.h"
+#include "solver/integrator.h"
+
+namespace drape {
+
+// x -> rotation (scale x) + translate
+struct Placement {
+  double scale = 1;
+  Mat3 rotation = Mat3::Identity();
+  Vec3 translate = Vec3::Zero();  // m
+};
+
+struct PinEntry {
+  PinRule rule;
+  std::string where;  // "scene.toml:21"
+};
+
+struct ClothEntry {
+  std::string name;            // of the output files
+  std::filesystem::path mesh;  // OBJ
+  Placement placement;         // of the rest shape and of the start
+  std::string model = "noh-jung";
+  std::string fabric_name;  // empty: none was named
+  Fabric fabric;
+  std::vector<PinEntry> pins;
+  std::string where;
+};
+
+struct ObstacleEntry {
+  std::string name;
+  Obstacle obstacle;           // a mesh's shape is null until it is loaded
+  std::filesystem::path mesh;  // OBJ, of the shape "mesh"
+  Placement placement;         // of the mesh
+  std::string where;
+};
+
+struct SimulationOptions {
+  double duration = 2;           // s
+  double time_step = 0.01;       // s
+  double frame_rate = 25;        // 1/s; 0: only the last
+  Vec3 gravity = {0, -9.81, 0};  // m/s^2
+  std::string integrator = "implicit-euler";
+  std::string linear_solver = "mpcg";
+  StepOptions step;
+  ContactOptions contact;
+  int threads = 0;                 // 0: as many as there are processors
+  bool stop_when_settled = false;  // end as soon as nothing has moved for settle_time
+  double settle_speed = 1e-3;      // m/s, below which a cloth counts as settled
+};
+
+inline constexpr double settle_time = 0.2;  // s
+
+struct Scene {
+  std::string label;  // the scene's file as it was given, or the command line of a drop
+  SimulationOptions simulation;
+  std::vector<ClothEntry> cloths;
+  std::vector<ObstacleEntry> obstacles;
+};
+
+// Reads and checks the whole scene, with the settings applied first. Throws InputError "scene.toml:12: ...".
+Scene read_scene(const std::filesystem::path& path, const std::vector<Setting>& settings);
+
+// The same from data; paths in it are relative to `folder`.
+Scene read_scene(Node root, const std::vector<Setting>& settings, const std::filesystem::path& folder,
+                 std::string label);
+
+Names shape_names();
+Names model_names();
+
+}  // namespace drape

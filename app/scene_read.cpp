@@ -1,0 +1,264 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "app/fabrics.h"
+#include "app/scene.h"
+#include "app/table.h"
+#include "mesh/obj.h"
+
+namespace drape {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class Infos>
+Names names_of(const Infos& infos) {
+  Names names;
+  for (const auto& info : infos) names.emplace_back(info.name);
+  return names;
+}
+
+void read_step(Table& table, StepOptions& step) {
+  table.read("newton_iterations", step.newton_iterations, 1);
+  table.read("newton_tolerance", step.newton_tolerance, dimension::number, Range::positive);
+  table.read("tolerance", step.tolerance, dimension::number, Range::positive);
+  table.read("max_linear_iterations", step.max_linear_iterations, 0);
+  table.read("max_contact_solves", step.max_contact_solves, 1);
+  table.read("max_halvings", step.max_halvings, 0);
+}
+
+SimulationOptions read_simulation(const Table* given) {
+  SimulationOptions options;
+  if (!given) return options;
+  Table table = *given;
+  table.read("duration", options.duration, dimension::time, Range::positive);
+  table.read("time_step", options.time_step, dimension::time, Range::positive);
+  table.read("frame_rate", options.frame_rate, dimension::rate, Range::not_negative);
+  table.read("gravity", options.gravity, dimension::acceleration);
+  table.read("integrator", options.integrator, names_of(integrators()));
+  table.read("linear_solver", options.linear_solver, names_of(linear_solvers()));
+  read_step(table, options.step);
+  table.read("recovery_speed", options.contact.recovery_speed, dimension::speed, Range::positive);
+  table.read("threads", options.threads, 1);
+  table.read("stop_when_settled", options.stop_when_settled);
+  table.read("settle_speed", options.settle_speed, dimension::speed, Range::positive);
+  table.finish();
+  if (options.duration / options.time_step > 1e9)
+    table.fail(
+        table.has("time_step") ? "time_step" : "duration",
+        "the run would take " + rounded(options.duration / options.time_step, 3) + " steps; check the units");
+  return options;
+}
+
+Mat3 read_rotation(Table& table) {
+  Mat3 rotation = Mat3::Identity();
+  for (Table& turn : table.tables("rotate")) {
+    Vec3 axis = Vec3::UnitY();
+    double angle = 0;
+    turn.require("axis");
+    turn.require("angle");
+    turn.read("axis", axis, dimension::number);
+    turn.read("angle", angle, dimension::angle);
+    if (!(axis.norm() > 0)) turn.fail("axis", "expected an axis that has a length");
+    turn.finish();
+    rotation = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix() * rotation;
+  }
+  return rotation;
+}
+
+Placement read_placement(Table& table) {
+  Placement placement;
+  table.read("scale", placement.scale, dimension::number, Range::positive);
+  placement.rotation = read_rotation(table);
+  table.read("translate", placement.translate, dimension::length);
+  return placement;
+}
+
+fs::path read_path(Table& table, const std::string& key, const fs::path& folder) {
+  std::string text;
+  table.require(key);
+  table.read(key, text);
+  if (text.empty()) table.fail(key, "expected the name of an OBJ file");
+  return (folder / text).lexically_normal();
+}
+
+// A name becomes a file name.
+std::string read_name(Table& table, const fs::path& mesh) {
+  std::string name = mesh.stem().string();
+  table.read("name", name);
+  const bool good =
+      !name.empty() && name.front() != '.' &&
+      std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == '/' || c == '\\'; });
+  if (!good)
+    table.fail("name", "a name is used for files: it may not be empty, begin with a dot or hold a slash");
+  return name;
+}
+
+PinRule read_pin(Table& pin) {
+  if (pin.has("vertices") + pin.has("box") + pin.has("group") != 1)
+    pin.fail("", "expected one of vertices = [...], box = [[...], [...]], group = \"...\"");
+  PinVertices by_number;
+  PinGroup by_group;
+  pin.read("vertices", by_number.vertices);
+  pin.read("group", by_group.name);
+  const Node* box = pin.take("box");
+  pin.finish();
+  if (pin.has("vertices")) return by_number;
+  if (pin.has("group")) return by_group;
+  if (box->kind != Node::Kind::array || box->items.size() != 2)
+    pin.fail("box", "expected two corners, [[x, y, z], [x, y, z]]");
+  PinBox by_box;
+  try {
+    by_box.lower = vector(box->items[0], dimension::length);
+    by_box.upper = vector(box->items[1], dimension::length);
+  } catch (const InputError& error) {
+    pin.fail("box", error.what());
+  }
+  if ((by_box.lower.array() > by_box.upper.array()).any())
+    pin.fail("box", "the first corner must be the lower one");
+  return by_box;
+}
+
+ClothEntry read_cloth(Table& table, const fs::path& folder) {
+  ClothEntry cloth;
+  cloth.where = table.where();
+  cloth.mesh = read_path(table, "mesh", folder);
+  cloth.name = read_name(table, cloth.mesh);
+  cloth.placement = read_placement(table);
+  if (const Node* model = table.take("model"); model && model->text == "choi-ko")
+    table.fail("model", "is not in this build; it has: " + listed(model_names()));
+  table.read("model", cloth.model, model_names());
+  table.read("fabric", cloth.fabric_name, fabric_names());
+  if (!cloth.fabric_name.empty()) cloth.fabric = load_fabric(cloth.fabric_name).fabric;
+  read_fabric(table, cloth.fabric);
+  for (Table& pin : table.tables("pins")) cloth.pins.push_back({read_pin(pin), pin.where()});
+  table.finish();
+  return cloth;
+}
+
+Shape read_plane(Table& table) {
+  Plane plane;
+  table.read("point", plane.point, dimension::length);
+  table.read("normal", plane.normal, dimension::number);
+  return plane;
+}
+
+Shape read_sphere(Table& table) {
+  Sphere sphere;
+  table.read("centre", sphere.centre, dimension::length);
+  table.require("radius");
+  table.read("radius", sphere.radius, dimension::length, Range::positive);
+  return sphere;
+}
+
+Shape read_bowl(Table& table) {
+  Bowl bowl;
+  table.read("centre", bowl.centre, dimension::length);
+  table.require("radius");
+  table.read("radius", bowl.radius, dimension::length, Range::positive);
+  table.read("thickness", bowl.thickness, dimension::length, Range::positive);
+  table.read("axis", bowl.axis, dimension::number);
+  return bowl;
+}
+
+Shape read_box(Table& table) {
+  Box box;
+  table.read("centre", box.centre, dimension::length);
+  table.require("size");
+  table.read("size", box.size, dimension::length);
+  box.rotation = read_rotation(table);
+  return box;
+}
+
+Shape read_capsule(Table& table) {
+  Capsule capsule;
+  for (const char* key : {"a", "b", "radius"}) table.require(key);
+  table.read("a", capsule.a, dimension::length);
+  table.read("b", capsule.b, dimension::length);
+  table.read("radius", capsule.radius, dimension::length, Range::positive);
+  return capsule;
+}
+
+Friction read_friction(Table& table) {
+  Friction friction;
+  const Node* const node = table.take("friction");
+  if (!node) return friction;
+  if (node->kind != Node::Kind::table) {
+    double mu = friction.statics;
+    table.read("friction", mu, dimension::number, Range::not_negative);
+    return friction = mu;
+  }
+  Table both = table.tables("friction").front();
+  both.require("static");
+  both.require("kinetic");
+  both.read("static", friction.statics, dimension::number, Range::not_negative);
+  both.read("kinetic", friction.kinetic, dimension::number, Range::not_negative);
+  both.finish();
+  return friction;
+}
+
+ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
+  ObstacleEntry entry;
+  entry.where = table.where();
+  std::string shape;
+  table.require("shape");
+  table.read("shape", shape, shape_names());
+  if (shape == "plane") entry.obstacle.shape = read_plane(table);
+  if (shape == "sphere") entry.obstacle.shape = read_sphere(table);
+  if (shape == "bowl") entry.obstacle.shape = read_bowl(table);
+  if (shape == "box") entry.obstacle.shape = read_box(table);
+  if (shape == "capsule") entry.obstacle.shape = read_capsule(table);
+  if (shape == "mesh") {
+    entry.mesh = read_path(table, "mesh", folder);
+    entry.placement = read_placement(table);
+    entry.obstacle.shape = MeshBody();
+  }
+  entry.name = shape == "mesh" ? entry.mesh.filename().string() : shape;
+  table.read("name", entry.name);
+  entry.obstacle.friction = read_friction(table);
+  table.read("margin", entry.obstacle.margin, dimension::length, Range::not_negative);
+  table.finish();
+  try {
+    if (shape != "mesh") check(entry.obstacle);
+  } catch (const InputError& error) {
+    throw InputError(entry.where + ": " + error.what());
+  }
+  return entry;
+}
+
+void check_names(const std::vector<ClothEntry>& cloths) {
+  for (std::size_t i = 0; i < cloths.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (cloths[i].name == cloths[j].name)
+        throw InputError(cloths[i].where + ": two cloths are called '" + cloths[i].name +
+                         "'; give one another name");
+}
+
+}  // namespace
+
+Names shape_names() { return {"plane", "sphere", "bowl", "box", "capsule", "mesh"}; }
+Names model_names() { return {"noh-jung"}; }
+
+Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path& folder, std::string label) {
+  for (const Setting& setting : settings) apply(setting, root);
+  Table table(root, "the scene");
+  Scene scene;
+  scene.label = std::move(label);
+  const std::vector<Table> simulation = table.tables("simulation");
+  if (simulation.size() > 1) table.fail("simulation", "there may be only one");
+  scene.simulation = read_simulation(simulation.empty() ? nullptr : simulation.data());
+  table.require("cloth");
+  for (Table& cloth : table.tables("cloth")) scene.cloths.push_back(read_cloth(cloth, folder));
+  for (Table& obstacle : table.tables("obstacle")) scene.obstacles.push_back(read_obstacle(obstacle, folder));
+  table.finish();
+  if (scene.cloths.empty()) table.fail("cloth", "there is no cloth");
+  check_names(scene.cloths);
+  return scene;
+}
+
+Scene read_scene(const fs::path& path, const std::vector<Setting>& settings) {
+  return read_scene(read_toml(path), settings, path.parent_path(), path.string());
+}
+
+}  // namespace drape

@@ -1,0 +1,172 @@
+#include "app/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/obj.h"
+#include "solver/fabric.h"
+
+namespace drape {
+namespace {
+
+// One mesh at a time: read, placed, looked over.
+TriangleMesh load(const std::filesystem::path& path, const Placement& placement, MeshReport& report,
+                  Names& messages) {
+  TriangleMesh mesh = placed(read_obj(path), placement, path.string());
+  report = examine(mesh);
+  add_messages(mesh, report, path.string(), messages);
+  return mesh;
+}
+
+void add_limp_message(const Cloth& cloth, const Fabric& fabric, Names& messages) {
+  const double curvature = limp_below(cloth.mesh, fabric);
+  if (!(curvature > 2 * limp_curvature)) return;
+  messages.push_back("warning: cloth " + cloth.name +
+                     ": the buckling clamp makes it limp below a curvature of " + rounded(curvature, 2) +
+                     " 1/m (a radius of " + rounded(100 / curvature, 2) +
+                     " cm): gentler folds have no bending stiffness; raise buckling_clamp, or leave it out");
+}
+
+void add_cloths(const Scene& scene, Simulation& simulation) {
+  std::vector<double> all_masses;
+  for (const ClothEntry& entry : scene.cloths) {
+    Cloth cloth;
+    cloth.name = entry.name;
+    cloth.first_particle = static_cast<int>(all_masses.size());
+    cloth.mesh = load(entry.mesh, entry.placement, cloth.report, simulation.messages);
+    const std::vector<double> own = masses(cloth.mesh, entry.fabric);
+    all_masses.insert(all_masses.end(), own.begin(), own.end());
+    add_limp_message(cloth, entry.fabric, simulation.messages);
+    simulation.cloths.push_back(std::move(cloth));
+  }
+  simulation.system = std::make_unique<System>(std::move(all_masses));
+  simulation.system->add(Gravity{scene.simulation.gravity});
+  simulation.state.x.resize(3 * simulation.system->particles());
+  simulation.state.v = VecX::Zero(3 * simulation.system->particles());
+  for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
+    const Cloth& cloth = simulation.cloths[k];
+    simulation.system->add(noh_jung(cloth.mesh, scene.cloths[k].fabric, cloth.first_particle));
+    simulation.state.x.segment(3 * cloth.first_particle, 3 * cloth.mesh.vertex_count()) =
+        stacked(cloth.mesh.positions);
+  }
+}
+
+void add_pins(const Scene& scene, Simulation& simulation) {
+  for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
+    const Cloth& cloth = simulation.cloths[k];
+    for (const PinEntry& pin : scene.cloths[k].pins) {
+      try {
+        for (int v : select(pin.rule, cloth.mesh)) simulation.constraints->pin(cloth.first_particle + v);
+      } catch (const InputError& error) {
+        throw InputError(pin.where + ": " + error.what());
+      }
+    }
+  }
+}
+
+MeshBody load_body(const ObstacleEntry& entry, Body& body, Names& messages) {
+  const std::string name = entry.mesh.string();
+  const TriangleMesh mesh = load(entry.mesh, entry.placement, body.report, messages);
+  const auto surface = std::make_shared<const SurfaceDistance>(mesh);
+  if (!surface->closed())
+    messages.push_back(
+        "warning: " + name +
+        ": the body is not closed: it has no inside and is treated as a thick surface, from which the "
+        "cloth keeps its margin on either side");
+  if (surface->inside_out())
+    messages.push_back("note: " + name + ": the body's triangles are wound inside out; it is turned round");
+  return surface;
+}
+
+void add_obstacles(const Scene& scene, Simulation& simulation) {
+  for (const ObstacleEntry& entry : scene.obstacles) {
+    Obstacle obstacle = entry.obstacle;
+    Body body;
+    body.name = entry.name;
+    if (!entry.mesh.empty()) obstacle.shape = load_body(entry, body, simulation.messages);
+    try {
+      simulation.constraints->add(std::move(obstacle));
+    } catch (const InputError& error) {
+      throw InputError(entry.where + ": " + error.what());
+    }
+    simulation.bodies.push_back(std::move(body));
+  }
+}
+
+std::string body_name(const Obstacle& obstacle, const std::string& name_given) {
+  const std::string kind(name(obstacle.shape));
+  return name_given == kind ? "the " + kind : kind + " " + name_given;
+}
+
+// Which of a cloth's vertices start inside which body, and how deep.
+void add_inside_messages(const Scene& scene, Simulation& simulation) {
+  constexpr double negligible = 1e-9;  // m
+  const std::vector<double> depth = simulation.constraints->penetration(simulation.state.x);
+  const std::vector<Obstacle>& obstacles = simulation.constraints->obstacles();
+  for (const Cloth& cloth : simulation.cloths) {
+    for (std::size_t k = 0; k < obstacles.size(); ++k) {
+      int inside = 0, deepest = -1;
+      double deepest_depth = negligible;
+      for (int i = 0; i < cloth.mesh.vertex_count(); ++i) {
+        if (!(depth[static_cast<std::size_t>(cloth.first_particle + i)] > negligible)) continue;
+        const double d =
+            -closest(obstacles[k].shape, cloth.mesh.positions[static_cast<std::size_t>(i)]).distance;
+        if (!(d > negligible)) continue;
+        ++inside;
+        if (d > deepest_depth) deepest = i, deepest_depth = d;
+      }
+      if (inside == 0) continue;
+      const std::string all = inside == 1 ? "it" : "they";
+      simulation.messages.push_back(
+          "warning: " + counted(inside, "vertex") + " of " + cloth.name +
+          (inside == 1 ? " starts" : " start") + " inside " +
+          body_name(obstacles[k], scene.obstacles[k].name) + ", the deepest (vertex " +
+          std::to_string(deepest) + ") by " + rounded(1000 * deepest_depth, 3) + " mm; " + all +
+          " will be brought out at " + rounded(scene.simulation.contact.recovery_speed, 3) + " m/s");
+    }
+  }
+}
+
+}  // namespace
+
+const Cloth& Simulation::cloth_of(int particle) const {
+  const auto after =
+      std::find_if(cloths.begin(), cloths.end(), [&](const Cloth& c) { return particle < c.end_particle(); });
+  return after == cloths.end() ? cloths.back() : *after;
+}
+
+TriangleMesh placed(TriangleMesh mesh, const Placement& placement, const std::string& name) {
+  for (Vec3& x : mesh.positions) {
+    x = placement.rotation * (placement.scale * x) + placement.translate;
+    if (!x.allFinite())
+      throw InputError(name + ": scale and translate put a vertex out of the range of numbers");
+  }
+  return mesh;
+}
+
+void add_messages(const TriangleMesh& mesh, const MeshReport& report, const std::string& name,
+                  Names& messages) {
+  if (mesh.document)
+    for (const std::string& warning : mesh.document->warnings) messages.push_back("warning: " + warning);
+  for (const Defect& defect : report.defects) {
+    const std::string line = format(defect);
+    const std::size_t colon = line.find(": ") + 2;
+    if (defect.severity == Severity::refusal) throw InputError(name + ": " + line.substr(colon));
+    messages.push_back(line.substr(0, colon) + name + ": " + line.substr(colon));
+  }
+}
+
+Simulation make_simulation(const Scene& scene) {
+  Simulation simulation;
+  simulation.constraints = std::make_unique<Constraints>(scene.simulation.contact);
+  add_cloths(scene, simulation);
+  add_pins(scene, simulation);
+  add_obstacles(scene, simulation);
+  add_inside_messages(scene, simulation);
+  simulation.integrator =
+      make_integrator(scene.simulation.integrator, *simulation.system, *simulation.constraints,
+                      make_linear_solver(scene.simulation.linear_solver), scene.simulation.step);
+  return simulation;
+}
+
+}  // namespace drape

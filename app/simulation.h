@@ -1,0 +1,52 @@
+// A scene made ready to run: meshes loaded and looked over, one system of all cloths, their pins and
+// obstacles.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/scene.h"
+#include "mesh/examine.h"
+#include "solver/integrator.h"
+
+namespace drape {
+
+struct Cloth {
+  std::string name;
+  TriangleMesh mesh;       // at rest, placed
+  int first_particle = 0;  // of the system: its vertex 0
+  MeshReport report;
+
+  int end_particle() const { return first_particle + mesh.vertex_count(); }
+};
+
+// A mesh or an obstacle as it was loaded, for `drape check`.
+struct Body {
+  std::string name;
+  MeshReport report;  // of a mesh
+};
+
+struct Simulation {
+  std::vector<Cloth> cloths;
+  std::vector<Body> bodies;
+  std::unique_ptr<System> system;
+  std::unique_ptr<Constraints> constraints;
+  std::unique_ptr<Integrator> integrator;  // refers to the two above
+  State state;
+  Names messages;  // "warning: ..." and "note: ...", one line each
+
+  const Cloth& cloth_of(int particle) const;
+};
+
+// Throws InputError when a mesh cannot be read or simulated, or a pin selects nothing.
+Simulation make_simulation(const Scene& scene);
+
+TriangleMesh placed(TriangleMesh mesh, const Placement& placement, const std::string& name);
+
+// The defects of a mesh as messages with its name: "warning: sheet.obj: ...". Throws InputError when it is
+// refused.
+void add_messages(const TriangleMesh& mesh, const MeshReport& report, const std::string& name,
+                  Names& messages);
+
+}  // namespace drape

@@ -1,0 +1,41 @@
+// Quantities: "12 uN.m" -> 1.2e-5 in SI units, with a check that it is the kind of quantity that is wanted.
+//   text   a number, then a unit as udunits writes it (N.m, N m, N*m, g/m^2, g/m2, gf.cm^2/cm, um, deg);
+//   without a
+//          unit it is in SI units. Besides udunits' own: deg, gsm (g/m^2), oz (of mass), fps (frames per
+//          second).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace drape {
+
+struct Dimension {
+  std::string_view unit;     // SI
+  std::string_view noun;     // "a bending rigidity"
+  std::string_view example;  // "10 uN.m"
+};
+
+namespace dimension {
+inline constexpr Dimension length{"m", "a length", "30 cm"};
+inline constexpr Dimension time{"s", "a time", "10 ms"};
+inline constexpr Dimension rate{"1/s", "a rate", "25 Hz"};
+inline constexpr Dimension speed{"m/s", "a speed", "1 mm/s"};
+inline constexpr Dimension acceleration{"m/s^2", "an acceleration", "9.81 m/s^2"};
+inline constexpr Dimension angle{"rad", "an angle", "90 deg"};
+inline constexpr Dimension area_density{"kg/m^2", "a mass per area", "150 g/m^2"};
+inline constexpr Dimension stretch{"N/m", "a membrane stiffness", "500 N/m"};
+inline constexpr Dimension spring{"N/m", "a spring constant", "200 N/m"};
+inline constexpr Dimension bend{"N.m", "a bending rigidity", "10 uN.m"};
+inline constexpr Dimension bend_spring{"N.m^2", "a bending stiffness of a connection", "1e-7 N.m^2"};
+inline constexpr Dimension damping{"N.s/m", "a damping", "0.01 N.s/m"};
+inline constexpr Dimension number{"1", "a number", "0.3"};
+}  // namespace dimension
+
+// In SI units. Throws InputError "expected a bending rigidity such as "10 uN.m"", with the reason in front
+// when it is another one than the kind of quantity.
+double parse_quantity(std::string_view text, const Dimension& dimension);
+
+std::string expected(const Dimension& dimension);  // "expected a bending rigidity such as "10 uN.m""
+
+}  // namespace drape

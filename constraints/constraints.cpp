@@ -1,0 +1,330 @@
+#include "constraints/constraints.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/parallel.h"
+
+namespace drape {
+namespace {
+
+// A contact changes its mind this often within a step, then keeps its grip until the next one.
+constexpr int most_changes = 3;
+// A particle whose sliding the friction could stop a thousand times over within the step is taken to have stopped.
+constexpr double stop_fraction = 1e-3;
+
+const ContactPlane* plane_with(const Contact* contact, int obstacle) {
+  if (!contact) return nullptr;
+  for (int k = 0; k < contact->planes; ++k)
+    if (const ContactPlane& p = contact->plane[static_cast<std::size_t>(k)]; p.obstacle == obstacle) return &p;
+  return nullptr;
+}
+
+Vec3 tangential(const Contact& contact, const Vec3& v) {
+  const Mat3 Q = contact.locked_directions();
+  return v - Q * (Q.transpose() * v);
+}
+
+}  // namespace
+
+void Constraints::add(Obstacle obstacle) {
+  check(obstacle);
+  if (auto* plane = std::get_if<Plane>(&obstacle.shape)) plane->normal.normalize();
+  obstacles_.push_back(std::move(obstacle));
+  clearance_.clear();
+}
+
+void Constraints::pin(int particle) { pin(std::vector<int>{particle}); }
+
+void Constraints::pin(const std::vector<int>& particles) {
+  pinned_.insert(pinned_.end(), particles.begin(), particles.end());
+  std::sort(pinned_.begin(), pinned_.end());
+  pinned_.erase(std::unique(pinned_.begin(), pinned_.end()), pinned_.end());
+  held_.clear();
+}
+
+void Constraints::prepare(int particles, const std::vector<double>& masses) {
+  const auto n = static_cast<std::size_t>(particles);
+  if (held_.size() == n && masses_ == masses && clearance_.size() == n * obstacles_.size()) return;
+  masses_ = masses;
+  held_.assign(n, 0);
+  for (int i : pinned_) held_.at(static_cast<std::size_t>(i)) = 1;
+  for (std::size_t i = 0; i < n; ++i)
+    if (masses[i] == 0) held_[i] = 1;
+  clearance_.assign(n * obstacles_.size(), 0.0);  // nothing known yet: look at once
+  committed_of_.assign(n, -1);
+  contact_of_.assign(n, -1);
+  committed_.clear();
+  correction_ = VecX::Zero(3 * particles);
+  const auto chunks = static_cast<std::size_t>(chunk_count(particles));
+  found_.resize(chunks);
+  deepest_.resize(chunks);
+  guarded_.resize(chunks);
+  if (obstacles_.empty()) return;
+  trial_.reserve(n);  // so that no step allocates, however many touch
+  committed_.reserve(n);
+  friction_.reserve(n);
+  for (auto& found : found_) found.reserve(chunk_size);
+}
+
+void Constraints::begin_step(const VecX& x, const VecX& v, const VecX& guess, const std::vector<double>& masses, double h) {
+  const int n = static_cast<int>(x.size() / 3);
+  prepare(n, masses);
+  h_ = h;
+  for (const Contact& c : trial_) {
+    contact_of_[static_cast<std::size_t>(c.particle)] = -1;
+    correction_.segment<3>(3 * c.particle).setZero();
+  }
+  trial_.clear();
+  x_ = x;
+  v_ = v;
+  if (obstacles_.empty()) return;
+  predicted_ = v + guess;
+  parallel_for(chunk_count(n), n < serial_below, [&](int k) {
+    auto& found = found_[static_cast<std::size_t>(k)];
+    double& deepest = deepest_[static_cast<std::size_t>(k)];
+    found.clear();
+    deepest = 0;
+    for (int i = k * chunk_size; i < std::min(n, (k + 1) * chunk_size); ++i)
+      if (!held(i)) look_for_contact(i, found, deepest);
+  });
+  take_found();
+}
+
+void Constraints::take_found() {
+  for (const auto& found : found_) {
+    for (const Contact& c : found) {
+      contact_of_[static_cast<std::size_t>(c.particle)] = static_cast<int>(trial_.size());
+      trial_.push_back(c);
+      std::array<double, 3> out = {};
+      for (int k = 0; k < c.planes; ++k) {
+        const auto p = static_cast<std::size_t>(k);
+        out[p] = std::clamp(-c.plane[p].gap, 0.0, options_.recovery_speed * h_);
+      }
+      correction_.segment<3>(3 * c.particle) = along_planes(c, out);
+    }
+  }
+}
+
+void Constraints::look_for_contact(int particle, std::vector<Contact>& found, double& deepest) {
+  const Vec3 x = x_.segment<3>(3 * particle);
+  const Vec3 path = h_ * predicted_.segment<3>(3 * particle);
+  const double travel = path.norm();
+  const int old = committed_of_[static_cast<std::size_t>(particle)];
+  const Contact* before = old < 0 ? nullptr : &committed_[static_cast<std::size_t>(old)];
+  Contact contact{.particle = particle, .plane = {}};
+  for (int o = 0; o < static_cast<int>(obstacles_.size()); ++o) {
+    const Obstacle& obstacle = obstacles_[static_cast<std::size_t>(o)];
+    if (clearance(o, particle) > obstacle.margin + travel) continue;
+    const SurfacePoint s = closest(obstacle.shape, x);
+    clearance(o, particle) = s.distance;
+    deepest = std::max(deepest, -s.distance);
+    const double gap = s.distance - obstacle.margin;
+    const Vec3 body = obstacle.velocity_at(x);
+    const bool touched = plane_with(before, o) != nullptr;
+    if (touched ? gap < std::max(0.5 * obstacle.margin, 1e-6)
+                : gap < 0 && gap + (path - h_ * body).dot(s.normal) < 0) {
+      add_plane(contact, {o, s.normal, gap, body});
+    } else if (gap < travel) {
+      if (const auto hit = first_hit(obstacle.shape, x, x + path, obstacle.margin)) {
+        const double to_surface = -hit->fraction * path.dot(hit->surface.normal) + hit->surface.distance - obstacle.margin;
+        add_plane(contact, {o, hit->surface.normal, std::max(to_surface, 0.0), body});
+      }
+    }
+  }
+  if (!contact.active()) return;
+  start_grip(contact, before);
+  found.push_back(contact);
+}
+
+void Constraints::start_grip(Contact& contact, const Contact* before) const {
+  const Friction& mu = obstacles_[static_cast<std::size_t>(contact.plane[0].obstacle)].friction;
+  contact.last_slip = tangential(contact, v_.segment<3>(3 * contact.particle) - contact.body_velocity());
+  contact.slip = contact.last_slip;
+  contact.grip = before ? before->grip : mu.statics == 0 ? Grip::slide : Grip::stick;
+  if (!before) return;
+  contact.normal_impulse = before->normal_impulse;
+  if (before->grip != Grip::slide) return;
+  const Vec3 expected = 2 * contact.slip - before->last_slip;
+  if (expected.dot(contact.slip) > stop_fraction * contact.slip.squaredNorm()) contact.slip = expected;
+}
+
+void Constraints::filter(const VecX& v, Filter& filter) const {
+  filter.clear();
+  for (int i = 0; i < static_cast<int>(held_.size()); ++i)
+    if (held(i)) filter.constrain(i, Mat3::Zero(), -v.segment<3>(3 * i));
+  for (const Contact& c : trial_) {
+    if (!c.active()) continue;
+    std::array<double, 3> target = {};
+    for (int k = 0; k < c.planes; ++k) {
+      const ContactPlane& p = c.plane[static_cast<std::size_t>(k)];
+      target[static_cast<std::size_t>(k)] = p.body_velocity.dot(p.normal) - std::max(p.gap, 0.0) / h_;
+    }
+    const Vec3 normal_part = along_planes(c, target);
+    const Mat3 Q = c.locked_directions();
+    const Mat3 S = Mat3::Identity() - Q * Q.transpose();
+    const Vec3 now = v.segment<3>(3 * c.particle);
+    if (c.grip == Grip::stick)
+      filter.constrain(c.particle, Mat3::Zero(), normal_part + S * c.body_velocity() - now);
+    else
+      filter.constrain(c.particle, S, normal_part - (now - S * now));
+  }
+}
+
+const std::vector<ContactFriction>& Constraints::friction() {
+  friction_.clear();
+  for (const Contact& c : trial_) {
+    if (!c.active() || c.grip == Grip::stick) continue;
+    const double mu = obstacles_[static_cast<std::size_t>(c.plane[0].obstacle)].friction.kinetic;
+    if (mu == 0) continue;
+    ContactFriction f{c.particle, Mat3::Zero(), c.body_velocity(), Vec3::Zero()};
+    if (c.grip == Grip::breaking_loose) {
+      f.impulse = c.friction_impulse;
+    } else {
+      const Mat3 Q = c.locked_directions();
+      const double coefficient = mu * c.normal_impulse / (h_ * std::max(c.slip.norm(), 1e-12));
+      f.damping = coefficient * (Mat3::Identity() - Q * Q.transpose());
+    }
+    friction_.push_back(f);
+  }
+  return friction_;
+}
+
+bool Constraints::react(const VecX& v, const VecX& r, double noise) {
+  bool changed = false;
+  for (Contact& c : trial_) {
+    if (!c.active()) continue;
+    if (update_grip(c, v, r.segment<3>(3 * c.particle), noise)) changed = true;
+  }
+  return changed;
+}
+
+bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double noise) const {
+  const std::array<double, 3> lambda = multipliers(c, r);
+  const auto weakest = static_cast<std::size_t>(std::min_element(lambda.begin(), lambda.begin() + c.planes) - lambda.begin());
+  if (lambda[weakest] < -noise) {  // it would pull the particle towards the body: let go
+    for (auto k = static_cast<int>(weakest); k + 1 < c.planes; ++k)
+      c.plane[static_cast<std::size_t>(k)] = c.plane[static_cast<std::size_t>(k) + 1];
+    --c.planes;
+    return true;
+  }
+  const Friction& mu = obstacles_[static_cast<std::size_t>(c.plane[0].obstacle)].friction;
+  double normal = 0;
+  for (int k = 0; k < c.planes; ++k) normal += std::max(lambda[static_cast<std::size_t>(k)], 0.0);
+  c.normal_impulse = normal;
+  if (c.changes >= most_changes) return false;
+
+  const Vec3 rub = tangential(c, r);
+  const Vec3 slip = tangential(c, v.segment<3>(3 * c.particle) - c.body_velocity());
+  Grip next = c.grip;
+  switch (c.grip) {
+    case Grip::stick:
+      if (rub.norm() > mu.statics * normal + noise) {
+        next = Grip::breaking_loose;
+        c.friction_impulse = mu.kinetic * normal * rub.normalized();
+      }
+      break;
+    case Grip::breaking_loose:
+      if (slip.dot(c.friction_impulse) > 0) next = Grip::stick;  // friction would drive the motion
+      break;
+    case Grip::slide:
+      if (masses_[static_cast<std::size_t>(c.particle)] * slip.norm() < stop_fraction * mu.kinetic * normal) next = Grip::stick;
+      break;
+  }
+  if (next == c.grip) return false;
+  c.grip = next;
+  ++c.changes;
+  return true;
+}
+
+bool Constraints::check_paths(const VecX& x_new) {
+  if (obstacles_.empty()) return false;
+  const int n = static_cast<int>(x_new.size() / 3);
+  parallel_for(chunk_count(n), n < serial_below, [&](int k) {
+    auto& found = found_[static_cast<std::size_t>(k)];
+    found.clear();
+    for (int i = k * chunk_size; i < std::min(n, (k + 1) * chunk_size); ++i)
+      if (!held(i) && contact_of_[static_cast<std::size_t>(i)] < 0)
+        look_along_path(i, x_new.segment<3>(3 * i) - x_.segment<3>(3 * i), found);
+  });
+  const std::size_t before = trial_.size();
+  take_found();
+  return trial_.size() != before;
+}
+
+void Constraints::look_along_path(int particle, const Vec3& path, std::vector<Contact>& found) {
+  const Vec3 x = x_.segment<3>(3 * particle);
+  const double travel = path.norm();
+  Contact contact{.particle = particle, .plane = {}};
+  for (int o = 0; o < static_cast<int>(obstacles_.size()); ++o) {
+    const Obstacle& obstacle = obstacles_[static_cast<std::size_t>(o)];
+    if (clearance(o, particle) > obstacle.margin + travel) continue;
+    if (const auto hit = first_hit(obstacle.shape, x, x + path, obstacle.margin)) {
+      const double gap = -hit->fraction * path.dot(hit->surface.normal) + hit->surface.distance - obstacle.margin;
+      add_plane(contact, {o, hit->surface.normal, std::max(gap, 0.0), obstacle.velocity_at(x)});
+    }
+  }
+  if (!contact.active()) return;
+  start_grip(contact, nullptr);
+  found.push_back(contact);
+}
+
+ContactReport Constraints::end_step(VecX& x_new, VecX& v_new) {
+  ContactReport report;
+  if (obstacles_.empty()) return report;
+  const int n = static_cast<int>(x_new.size() / 3);
+  parallel_for(chunk_count(n), n < serial_below, [&](int k) {
+    int& guarded = guarded_[static_cast<std::size_t>(k)];
+    guarded = 0;
+    for (int i = k * chunk_size; i < std::min(n, (k + 1) * chunk_size); ++i)
+      if (!held(i)) guard(i, x_new, v_new, guarded);
+  });
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    report.guarded += guarded_[k];
+    report.deepest = std::max(report.deepest, deepest_[k]);
+  }
+  for (const Contact& c : committed_) committed_of_[static_cast<std::size_t>(c.particle)] = -1;
+  committed_.clear();
+  for (const Contact& c : trial_) {
+    if (!c.active()) continue;
+    committed_of_[static_cast<std::size_t>(c.particle)] = static_cast<int>(committed_.size());
+    committed_.push_back(c);
+    if (c.grip == Grip::breaking_loose) committed_.back().grip = Grip::slide;
+  }
+  report.contacts = static_cast<int>(committed_.size());
+  return report;
+}
+
+// The last line of defence, outside the equations: no particle that was outside a body ends inside it, or behind it.
+void Constraints::guard(int particle, VecX& x_new, VecX& v_new, int& guarded) {
+  const Vec3 x = x_.segment<3>(3 * particle);
+  for (int o = 0; o < static_cast<int>(obstacles_.size()); ++o) {
+    const Obstacle& obstacle = obstacles_[static_cast<std::size_t>(o)];
+    const Vec3 path = x_new.segment<3>(3 * particle) - x;
+    const double travel = path.norm();
+    double& clear = clearance(o, particle);
+    if (clear >= 0 && clear < travel) {
+      if (const auto hit = first_hit(obstacle.shape, x, x + path, 0)) {
+        x_new.segment<3>(3 * particle) = x + hit->fraction * path;
+        const double inward = (v_new.segment<3>(3 * particle) - obstacle.velocity_at(x)).dot(hit->surface.normal);
+        if (inward < 0) v_new.segment<3>(3 * particle) -= inward * hit->surface.normal;
+        ++guarded;
+      }
+    }
+    clear = std::max(0.0, clear - travel);
+  }
+}
+
+std::vector<double> Constraints::penetration(const VecX& x) const {
+  std::vector<double> depth(static_cast<std::size_t>(x.size() / 3), 0.0);
+  const int n = static_cast<int>(depth.size());
+  for_chunks(n, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i)
+      for (const Obstacle& obstacle : obstacles_)
+        depth[static_cast<std::size_t>(i)] =
+            std::max(depth[static_cast<std::size_t>(i)], -closest(obstacle.shape, x.segment<3>(3 * i)).distance);
+  });
+  return depth;
+}
+
+}  // namespace drape

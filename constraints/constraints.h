@@ -1,0 +1,96 @@
+// Pins and obstacles: what particles may do. Makes the filter of a step and changes only through the reaction of its solve.
+//
+// A step calls, in this order:
+//   begin_step   finds the contacts of the predicted motion; the correction y and the targets stand
+//   filter       S and z for a given velocity;  friction  the dampers and impulses of what slides
+//   react        takes the reaction r of a solve: releases, sticks, slides; true when the step must be solved again
+//   check_paths  takes the motion found: catches what would pass through a body; true when it must be solved again
+//   end_step     guards the final motion (nothing crosses a surface), commits the contacts
+// A step that failed is abandoned by not calling end_step: the contacts of the last good step still stand.
+#pragma once
+
+#include <string_view>
+
+#include "constraints/contact.h"
+#include "constraints/filter.h"
+#include "constraints/pins.h"
+
+namespace drape {
+
+struct ContactOptions {
+  double recovery_speed = 0.25;  // m/s, at which a particle that starts inside a body is brought out
+};
+
+// What rubs on a sliding particle in this step: f = -D (v - v_b), and an impulse.
+struct ContactFriction {
+  int particle;
+  Mat3 damping;        // N s/m
+  Vec3 body_velocity;  // m/s
+  Vec3 impulse;        // N s
+};
+
+struct ContactReport {
+  int contacts = 0;
+  int guarded = 0;         // particles stopped at a surface after the solve, outside the equations
+  double deepest = 0;      // m, how far the deepest particle was inside a body when the step began
+};
+
+class Constraints {
+ public:
+  explicit Constraints(ContactOptions options = {}) : options_(options) {}
+
+  void add(Obstacle obstacle);  // throws InputError
+  void pin(int particle);       // stays where it is; twice is once
+  void pin(const std::vector<int>& particles);
+
+  const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+  const std::vector<int>& pinned() const { return pinned_; }
+
+  // x [m], v and guess [m/s] (the change of velocity to expect), masses [kg], h [s].
+  void begin_step(const VecX& x, const VecX& v, const VecX& guess, const std::vector<double>& masses, double h);
+  void filter(const VecX& v, Filter& filter) const;
+  const std::vector<ContactFriction>& friction();
+  const VecX& correction() const { return correction_; }  // y [m]
+  // v [m/s] after the solve, r [N s]; impulses below `noise` [N s] are round-off of the solve.
+  bool react(const VecX& v, const VecX& r, double noise);
+  bool check_paths(const VecX& x_new);
+  ContactReport end_step(VecX& x_new, VecX& v_new);
+
+  const std::vector<Contact>& contacts() const { return committed_; }  // of the last completed step
+
+  // How deep each particle is inside a body: 0 outside [m]. For the start and the end of a run.
+  std::vector<double> penetration(const VecX& x) const;
+
+ private:
+  bool held(int particle) const { return held_[static_cast<std::size_t>(particle)] != 0; }
+  void prepare(int particles, const std::vector<double>& masses);
+  void look_for_contact(int particle, std::vector<Contact>& found, double& deepest);
+  void look_along_path(int particle, const Vec3& path, std::vector<Contact>& found);
+  void start_grip(Contact& contact, const Contact* before) const;
+  bool update_grip(Contact& contact, const VecX& v, const Vec3& r, double noise) const;
+  void guard(int particle, VecX& x_new, VecX& v_new, int& guarded);
+  void take_found();
+  double& clearance(int obstacle, int particle) {
+    return clearance_[static_cast<std::size_t>(obstacle) * held_.size() + static_cast<std::size_t>(particle)];
+  }
+
+  ContactOptions options_;
+  std::vector<Obstacle> obstacles_;
+  std::vector<int> pinned_;
+
+  // Scratch of the step under way.
+  double h_ = 0;
+  std::vector<double> masses_;        // kg
+  VecX x_, v_, predicted_, correction_;
+  std::vector<char> held_;            // pinned, or without mass
+  std::vector<int> contact_of_;       // particle -> place in trial_, -1: none
+  std::vector<double> clearance_;     // obstacle, particle -> a distance within which no surface was when last looked [m]
+  std::vector<Contact> trial_, committed_;
+  std::vector<int> committed_of_;     // particle -> place in committed_, -1: none
+  std::vector<ContactFriction> friction_;
+  std::vector<std::vector<Contact>> found_;  // by chunk of particles
+  std::vector<double> deepest_;              // by chunk of particles [m]
+  std::vector<int> guarded_;                 // by chunk of particles
+};
+
+}  // namespace drape

@@ -1,0 +1,72 @@
+#include "constraints/contact.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "mesh/obj.h"
+
+namespace drape {
+
+void check(const Obstacle& obstacle) {
+  check(obstacle.shape);
+  const std::string where(name(obstacle.shape));
+  const Friction& mu = obstacle.friction;
+  if (!(mu.statics >= 0) || !(mu.kinetic >= 0) || !std::isfinite(mu.statics) || !std::isfinite(mu.kinetic))
+    throw InputError(where + ": a coefficient of friction is a number from 0 up");
+  if (mu.kinetic > mu.statics) throw InputError(where + ": kinetic friction is not greater than static friction");
+  if (!(obstacle.margin >= 0) || !std::isfinite(obstacle.margin))
+    throw InputError(where + ": margin = " + std::to_string(obstacle.margin) + " m: a margin is not negative");
+}
+
+Mat3 Contact::locked_directions() const {
+  Mat3 Q = Mat3::Zero();
+  for (int k = 0; k < planes; ++k) {
+    Vec3 n = plane[static_cast<std::size_t>(k)].normal;
+    for (int j = 0; j < k; ++j) n -= Q.col(j).dot(n) * Q.col(j);
+    Q.col(k) = n.normalized();
+  }
+  return Q;
+}
+
+void add_plane(Contact& contact, const ContactPlane& plane) {
+  // The part of the normal that the planes already held do not span: too small, and it says nothing new.
+  Vec3 rest = plane.normal;
+  const Mat3 Q = contact.locked_directions();
+  for (int k = 0; k < contact.planes; ++k) rest -= Q.col(k).dot(rest) * Q.col(k);
+  if (contact.planes == 3 || rest.norm() < 0.1) {
+    if (contact.planes == 1 && plane.gap < contact.plane[0].gap) contact.plane[0] = plane;
+    return;
+  }
+  contact.plane[static_cast<std::size_t>(contact.planes++)] = plane;
+  for (auto k = static_cast<std::size_t>(contact.planes) - 1; k > 0 && contact.plane[k].gap < contact.plane[k - 1].gap; --k)
+    std::swap(contact.plane[k], contact.plane[k - 1]);
+}
+
+// N^T N of the planes' normals, with ones on the unused part of its diagonal.
+static Mat3 gram(const Contact& contact) {
+  Mat3 G = Mat3::Identity();
+  for (int i = 0; i < contact.planes; ++i)
+    for (int j = 0; j < contact.planes; ++j)
+      G(i, j) = contact.plane[static_cast<std::size_t>(i)].normal.dot(contact.plane[static_cast<std::size_t>(j)].normal);
+  return G;
+}
+
+Vec3 along_planes(const Contact& contact, const std::array<double, 3>& components) {
+  Vec3 t = Vec3::Zero(), sum = Vec3::Zero();
+  for (int k = 0; k < contact.planes; ++k) t[k] = components[static_cast<std::size_t>(k)];
+  if (contact.planes == 1) return t[0] * contact.plane[0].normal;
+  const Vec3 weights = gram(contact).inverse() * t;
+  for (int k = 0; k < contact.planes; ++k) sum += weights[k] * contact.plane[static_cast<std::size_t>(k)].normal;
+  return sum;
+}
+
+std::array<double, 3> multipliers(const Contact& contact, const Vec3& r) {
+  Vec3 t = Vec3::Zero();
+  for (int k = 0; k < contact.planes; ++k) t[k] = contact.plane[static_cast<std::size_t>(k)].normal.dot(r);
+  if (contact.planes > 1) t = gram(contact).inverse() * t;
+  return {t[0], t[1], t[2]};
+}
+
+}  // namespace drape

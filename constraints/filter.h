@@ -1,0 +1,44 @@
+// Which changes of velocity a particle may take, and which are given.               [Baraff & Witkin 1998, section 5.1]
+//   dv_i = S_i (free part) + z_i
+//   S = I: free; I - p p^T: locked along p; I - p p^T - q q^T: along two; 0: locked.  z: given change in the locked directions.
+// Only constrained particles are stored, sorted by number. S [3x3], z [m/s].
+#pragma once
+
+#include <vector>
+
+#include "mesh/triangle_mesh.h"
+
+namespace drape {
+
+struct FilterEntry {
+  int particle;
+  Mat3 S;
+  Vec3 z;
+};
+
+class Filter {
+ public:
+  void clear() { entries_.clear(); }
+  void reserve(std::size_t n) { entries_.reserve(n); }
+  // Each particle once.
+  void constrain(int particle, const Mat3& S, const Vec3& z) { entries_.push_back({particle, S, z}); }
+  // Renames particle p to number[p] and sorts.
+  void renumber(const std::vector<int>& number);
+
+  const std::vector<FilterEntry>& entries() const { return entries_; }
+
+  // v_i <- S_i v_i
+  void apply(VecX& v) const {
+    for (const FilterEntry& e : entries_) v.segment<3>(3 * e.particle) = (e.S * v.segment<3>(3 * e.particle)).eval();
+  }
+  // dv_i <- S_i dv_i + z_i
+  void impose(VecX& dv) const {
+    for (const FilterEntry& e : entries_)
+      dv.segment<3>(3 * e.particle) = (e.S * dv.segment<3>(3 * e.particle) + e.z).eval();
+  }
+
+ private:
+  std::vector<FilterEntry> entries_;
+};
+
+}  // namespace drape

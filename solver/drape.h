@@ -1,0 +1,12 @@
+// The library in one header: #include <drape/drape.h>
+#pragma once
+
+#include "constraints/constraints.h"
+#include "mesh/examine.h"
+#include "mesh/generate.h"
+#include "mesh/obj.h"
+#include "mesh/threads.h"
+#include "mesh/topology.h"
+#include "solver/fabric.h"
+#include "solver/implicit_euler.h"
+#include "solver/system.h"

@@ -1,0 +1,247 @@
+#include "solver/implicit_euler.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "mesh/obj.h"
+#include "mesh/parallel.h"
+
+namespace drape {
+namespace {
+
+// Adds the time it lives to a number of milliseconds.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& ms) : ms_(ms), start_(std::chrono::steady_clock::now()) {}
+  ~Stopwatch() { ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& ms_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+}  // namespace
+
+ImplicitEuler::ImplicitEuler(System& system, Constraints& constraints, std::unique_ptr<LinearSolver> solver,
+                             const StepOptions& options)
+    : system_(system), constraints_(constraints), solver_(std::move(solver)), options_(options) {}
+
+StepReport ImplicitEuler::advance(State& state, double h) {
+  if (!(h > 0) || !std::isfinite(h)) throw InputError("time step = " + std::to_string(h) + " s: a time step is greater than zero");
+  if (state.particles() != system_.particles() || state.v.size() != state.x.size())
+    throw InputError("state: " + std::to_string(state.particles()) + " particles, but the system has " +
+                     std::to_string(system_.particles()));
+  StepReport report;
+  {
+    const Stopwatch watch(report.step_ms);
+    const double start = state.time;
+    int halvings = 0, pieces_left = 1;
+    report.substeps = 0;
+    while (pieces_left > 0) {
+      if (attempt(state, std::ldexp(h, -halvings), report)) {
+        --pieces_left;
+        ++report.substeps;
+      } else if (halvings == options_.max_halvings) {
+        report.done = false;
+        break;
+      } else {
+        ++halvings;
+        pieces_left *= 2;
+      }
+    }
+    if (report.done) {
+      state.time = start + h;
+      report.failure = {};
+    }
+  }
+  return report;
+}
+
+void ImplicitEuler::resize() {
+  const auto& pattern = system_.bind();
+  if (A_ && &A_->pattern() == pattern.get()) return;
+  A_ = std::make_unique<BlockMatrix>(pattern);
+  const Eigen::Index n = 3 * system_.particles();
+  for (VecX* vector : {&x_, &v_, &x_bar_, &y_, &x_new_, &v_new_, &guess_, &b_, &b_friction_, &r_, &dv_rows_, &b_rows_,
+                       &r_rows_, &dv_})
+    vector->setZero(n);
+  filter_.reserve(static_cast<std::size_t>(system_.particles()));
+  rubbed_.reserve(static_cast<std::size_t>(system_.particles()));
+}
+
+bool ImplicitEuler::attempt(State& state, double h, StepReport& report) {
+  resize();
+  weight_impulse_ = 0;
+  for (double m : system_.masses()) weight_impulse_ += m * m;
+  weight_impulse_ = h * system_.gravity_acceleration().norm() * std::sqrt(weight_impulse_);
+
+  guess(h);
+  {
+    const Stopwatch watch(report.collide_ms);
+    constraints_.begin_step(state.x, state.v, guess_, system_.masses(), h);
+  }
+  x_ = state.x;
+  v_ = state.v;
+  LinearReport linear;
+  for (int k = 0; k < options_.newton_iterations; ++k) {
+    // Linearise at (x, v): A = M + c D + c^2 K, b = M (v_bar - v) + c (f - K y).
+    x_bar_ = state.x + constraints_.correction();
+    y_ = x_bar_ + h * v_ - x_;
+    v_new_ = state.v;  // v_bar
+    {
+      const Stopwatch watch(report.assemble_ms);
+      assemble(h);
+    }
+    if (k > 0) {
+      if (nonlinear_residual(h) <= options_.newton_tolerance * weight_impulse_) break;
+      guess_.setZero();
+    }
+    // Solve S (A dv - b) = 0 until the contacts agree with the solution.
+    linear = solve_within_contacts(h, report);
+    ++report.newton_iterations;
+    if (fail(report, linear)) return false;
+    // v += dv, x = x_bar + c v
+    v_ += dv_;
+    x_ = state.x + constraints_.correction() + h * v_;
+  }
+  x_new_ = x_;
+  v_new_ = v_;
+  {
+    const Stopwatch watch(report.collide_ms);
+    const ContactReport contact = constraints_.end_step(x_new_, v_new_);
+    report.contacts = contact.contacts;
+    report.guarded += contact.guarded;
+    report.penetration = std::max(report.penetration, contact.deepest);
+  }
+  report.residual = std::max(report.residual, linear.residual);
+  report.converged = report.converged && linear.reason == StopReason::converged;
+  state.x = x_new_;
+  state.v = v_new_;
+  state.time += h;
+  return true;
+}
+
+// What the velocity will change by, as a start for the iteration: free fall. So rigid motion is right from the first iterate, and
+// a solve that is cut short cannot eat gravity.
+void ImplicitEuler::guess(double h) {
+  for (Eigen::Index i = 0; i < guess_.size() / 3; ++i) guess_.segment<3>(3 * i) = h * system_.gravity_acceleration();
+}
+
+void ImplicitEuler::assemble(double h) {
+  A_->set_to_mass(system_.masses());
+  const std::vector<double>& mass = system_.masses();
+  for_chunks(system_.particles(), [&](int begin, int end) {
+    for (int i = begin; i < end; ++i)
+      b_.segment<3>(3 * i) = mass[static_cast<std::size_t>(i)] *
+                             (v_new_.segment<3>(3 * i) - v_.segment<3>(3 * i) + h * system_.gravity_acceleration());
+  });
+  for (const auto& force : system_.forces()) force->add_linearised(x_, v_, y_, h, *A_, b_);
+}
+
+LinearReport ImplicitEuler::solve_within_contacts(double h, StepReport& report) {
+  // Which contacts hold is found with loose solves; the last one is to the tolerance asked for, from where they came.
+  const bool contact = !constraints_.obstacles().empty();
+  double tolerance = contact ? std::max(options_.tolerance, std::sqrt(options_.tolerance)) : options_.tolerance;
+  for (int round = 0;; ++round) {
+    if (round == options_.max_contact_solves) tolerance = options_.tolerance;
+    LinearReport linear;
+    {
+      const Stopwatch watch(report.solve_ms);
+      linear = solve_once(h, tolerance);
+    }
+    ++report.linear_solves;
+    report.linear_iterations += linear.iterations;
+    if (linear.reason == StopReason::indefinite || linear.reason == StopReason::not_finite) return linear;
+    if (!contact || round == options_.max_contact_solves) return linear;
+
+    const Stopwatch watch(report.collide_ms);
+    reaction();
+    v_new_ = v_ + dv_;
+    // Twice the residual: what the solve left over is not a reaction.
+    bool changed = constraints_.react(v_new_, r_, 2 * linear.residual_impulse);
+    x_new_ = x_bar_ + h * v_new_;
+    if (constraints_.check_paths(x_new_)) changed = true;
+    if (!changed && (tolerance == options_.tolerance || linear.residual <= options_.tolerance)) return linear;
+    if (!changed) tolerance = options_.tolerance;
+    guess_ = dv_;
+  }
+}
+
+LinearReport ImplicitEuler::solve_once(double h, double tolerance) {
+  const BlockPattern& pattern = A_->pattern();
+  b_friction_ = b_;
+  add_contact_friction(h);
+  to_rows(pattern, b_friction_, b_rows_);
+  to_rows(pattern, guess_, dv_rows_);
+  constraints_.filter(v_, filter_);
+  filter_.renumber(pattern.row_of());
+  const LinearOptions options{tolerance, options_.max_linear_iterations, weight_impulse_};
+  const LinearReport linear = solver_->solve(*A_, b_rows_, filter_, options, dv_rows_);
+  to_particles(pattern, dv_rows_, dv_);
+  A_->multiply(dv_rows_, r_rows_);  // for the reaction, while the friction stands in A
+  r_rows_ -= b_rows_;
+  remove_contact_friction();
+  return linear;
+}
+
+// |S b| at (x, v): what is left of the nonlinear equation in the free directions.
+double ImplicitEuler::nonlinear_residual(double h) {
+  b_friction_ = b_;
+  add_contact_friction(h);
+  remove_contact_friction();
+  constraints_.filter(v_, filter_);
+  filter_.apply(b_friction_);
+  return std::sqrt(dot(b_friction_, b_friction_));
+}
+
+// r = A dv - b: the impulse with which the constraints hold the particles.
+void ImplicitEuler::reaction() { to_particles(A_->pattern(), r_rows_, r_); }
+
+void ImplicitEuler::add_contact_friction(double h) {
+  rubbed_.clear();
+  for (const ContactFriction& f : constraints_.friction()) {
+    const int slot = A_->pattern().diagonal(A_->pattern().row_of()[static_cast<std::size_t>(f.particle)]);
+    const Vec3 slip = v_.segment<3>(3 * f.particle) - f.body_velocity;
+    b_friction_.segment<3>(3 * f.particle) += f.impulse - h * (f.damping * slip);
+    rubbed_.emplace_back(slot, A_->at(slot));
+    A_->at(slot) += h * f.damping;
+  }
+}
+
+void ImplicitEuler::remove_contact_friction() {
+  for (const auto& [slot, block] : rubbed_) A_->at(slot) = block;
+}
+
+bool ImplicitEuler::fail(StepReport& report, const LinearReport& linear) const {
+  report.residual = linear.residual;
+  if (linear.reason == StopReason::converged && dv_.allFinite()) return false;
+  if (linear.reason == StopReason::iteration_limit && options_.max_linear_iterations > 0) return false;
+  report.converged = false;
+  report.failure.what = linear.reason == StopReason::converged ? "the new velocities are not finite numbers"
+                                                               : "linear solve: " + std::string(drape::name(linear.reason));
+  report.failure.force = system_.not_finite_force(x_, v_);
+  double worst = -1;
+  for (int i = 0; i < system_.particles(); ++i) {
+    const double size = dv_.segment<3>(3 * i).norm();
+    if (!std::isfinite(size) || size > worst) {
+      worst = size;
+      report.failure.particle = i;
+      if (!std::isfinite(size)) break;
+    }
+  }
+  return true;
+}
+
+std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,
+                                            std::unique_ptr<LinearSolver> solver, const StepOptions& options) {
+  if (name == "implicit-euler") return std::make_unique<ImplicitEuler>(system, constraints, std::move(solver), options);
+  throw InputError("integrator '" + std::string(name) + "' is not in this build; it has: implicit-euler");
+}
+
+std::vector<IntegratorInfo> integrators() {
+  return {{"implicit-euler", "Baraff & Witkin's implicit step, 1 to n Newton iterations (default)"}};
+}
+
+}  // namespace drape

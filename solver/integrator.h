@@ -1,0 +1,60 @@
+// State(t) -> State(t + h), and a report that is data: what it took, how well it went, and where it failed.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "constraints/constraints.h"
+#include "solver/linear_solver.h"
+#include "solver/system.h"
+
+namespace drape {
+
+struct StepOptions {
+  int newton_iterations = 1;       // linear solves per step; 1 is Baraff & Witkin's step
+  double newton_tolerance = 1e-6;  // of the nonlinear residual, relative to h |m g|: fewer iterations when it is met
+  double tolerance = 1e-6;         // of the linear solve, see LinearOptions
+  int max_linear_iterations = 0;   // 0: chosen by size, and reaching it is a failure; given: the solve stops there and says so
+  int max_contact_solves = 5;      // how often a step may be solved again because a contact changed
+  int max_halvings = 6;            // how often a failed step may be halved before it is given up
+};
+
+// Why and where a step failed.
+struct StepFailure {
+  std::string what;   // "the matrix is not positive definite", "not a finite number"
+  int particle = -1;  // where it is worst
+  std::string force;  // which term, when it is known
+};
+
+struct StepReport {
+  bool done = true;             // false: the state is as it was before
+  StepFailure failure;          // when not done
+  int substeps = 1;             // pieces the step was cut into, because it failed whole
+  int newton_iterations = 0;    // these four summed over the substeps
+  int linear_solves = 0;
+  int linear_iterations = 0;
+  int guarded = 0;              // particles stopped at a surface outside the equations
+  double residual = 0;          // relative, the worst of the solves that the step ended with
+  bool converged = true;        // every solve reached its tolerance
+  int contacts = 0;             // particles in contact at the end
+  double penetration = 0;       // m, deepest particle inside a body at the start
+  double assemble_ms = 0, solve_ms = 0, collide_ms = 0, step_ms = 0;
+};
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  virtual std::string_view name() const = 0;
+  virtual StepReport advance(State& state, double h) = 0;  // h [s]
+};
+
+// "implicit-euler". Throws InputError for a name that integrators() does not list.
+std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,
+                                            std::unique_ptr<LinearSolver> solver, const StepOptions& options = {});
+
+struct IntegratorInfo {
+  std::string_view name, summary;
+};
+std::vector<IntegratorInfo> integrators();
+
+}  // namespace drape

@@ -1,0 +1,79 @@
+// SuiteSparse's CHOLMOD over the same filtered system: LL^T, the analysis kept while the pattern's serial stands.
+//   The supernodal part that it links is GPL (README.md says what that means); without SuiteSparse this file is not built.
+//                                                              [Chen, Davis, Hager & Rajamanickam 2008, CHOLMOD]
+#include <cholmod.h>
+
+#include "solver/linear/projected.h"
+#include "solver/linear/residual.h"
+
+namespace drape {
+namespace {
+
+class Cholmod final : public LinearSolver {
+ public:
+  Cholmod() {
+    cholmod_start(&common_);
+    common_.print = 0;
+    common_.supernodal = CHOLMOD_AUTO;
+    common_.final_ll = 1;  // LL^T only: an indefinite matrix is found, not factorised
+  }
+  Cholmod(const Cholmod&) = delete;
+  Cholmod& operator=(const Cholmod&) = delete;
+  ~Cholmod() override {
+    cholmod_free_factor(&factor_, &common_);
+    cholmod_finish(&common_);
+  }
+
+  std::string_view name() const override { return "cholmod"; }
+
+  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
+                     VecX& dv) override {
+    system_.project(A, b, filter, options);
+    cholmod_sparse matrix = view(system_.matrix());
+    if (analysed_ != A.pattern().serial()) {
+      cholmod_free_factor(&factor_, &common_);
+      factor_ = cholmod_analyze(&matrix, &common_);
+      analysed_ = A.pattern().serial();
+    }
+    cholmod_factorize(&matrix, factor_, &common_);
+    if (common_.status != CHOLMOD_OK) return {0, 0, 0, StopReason::indefinite};
+    cholmod_dense right = {};
+    right.nrow = right.d = right.nzmax = static_cast<std::size_t>(b.size());
+    right.ncol = 1;
+    right.x = const_cast<double*>(system_.right_side().data());
+    right.xtype = CHOLMOD_REAL;
+    right.dtype = CHOLMOD_DOUBLE;
+    cholmod_dense* solution = cholmod_solve(CHOLMOD_A, factor_, &right, &common_);
+    dv = Eigen::Map<const VecX>(static_cast<const double*>(solution->x), b.size());
+    cholmod_free_dense(&solution, &common_);
+    return finished(A, b, filter, options, dv, system_.reference(), scratch_);
+  }
+
+ private:
+  static cholmod_sparse view(const ProjectedSystem::Matrix& m) {
+    cholmod_sparse s = {};
+    s.nrow = s.ncol = static_cast<std::size_t>(m.rows());
+    s.nzmax = static_cast<std::size_t>(m.nonZeros());
+    s.p = const_cast<int*>(m.outerIndexPtr());
+    s.i = const_cast<int*>(m.innerIndexPtr());
+    s.x = const_cast<double*>(m.valuePtr());
+    s.stype = -1;  // symmetric, lower triangle
+    s.itype = CHOLMOD_INT;
+    s.xtype = CHOLMOD_REAL;
+    s.dtype = CHOLMOD_DOUBLE;
+    s.sorted = s.packed = 1;
+    return s;
+  }
+
+  ProjectedSystem system_;
+  cholmod_common common_ = {};
+  cholmod_factor* factor_ = nullptr;
+  std::uint64_t analysed_ = 0;
+  VecX scratch_;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_cholmod() { return std::make_unique<Cholmod>(); }
+
+}  // namespace drape

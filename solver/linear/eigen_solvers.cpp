@@ -1,0 +1,69 @@
+// Eigen's own solvers over the same filtered system: a plain baseline to compare with.
+//   eigen-ldlt  SimplicialLDLT, AMD ordering
+//   eigen-cg    ConjugateGradient with IncompleteCholesky
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCholesky>
+
+#include "solver/linear/projected.h"
+#include "solver/linear/residual.h"
+
+namespace drape {
+namespace {
+
+class EigenLdlt final : public LinearSolver {
+ public:
+  std::string_view name() const override { return "eigen-ldlt"; }
+  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
+                     VecX& dv) override {
+    system_.project(A, b, filter, options);
+    if (analysed_ != A.pattern().serial()) {
+      factor_.analyzePattern(system_.matrix());
+      analysed_ = A.pattern().serial();
+    }
+    factor_.factorize(system_.matrix());
+    if (factor_.info() != Eigen::Success) return {0, 0, 0, StopReason::indefinite};
+    dv = factor_.solve(system_.right_side());
+    return finished(A, b, filter, options, dv, system_.reference(), scratch_);
+  }
+
+ private:
+  ProjectedSystem system_;
+  Eigen::SimplicialLDLT<ProjectedSystem::Matrix, Eigen::Lower> factor_;
+  std::uint64_t analysed_ = 0;
+  VecX scratch_;
+};
+
+class EigenCg final : public LinearSolver {
+ public:
+  std::string_view name() const override { return "eigen-cg"; }
+  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
+                     VecX& dv) override {
+    system_.project(A, b, filter, options);
+    cg_.setMaxIterations(iteration_limit(options, A.rows()));
+    const double right = system_.right_side().norm();
+    if (right == 0) {
+      dv.setZero();
+    } else {
+      cg_.setTolerance(options.tolerance * system_.reference() / right);
+      cg_.compute(system_.matrix());
+      if (cg_.info() != Eigen::Success) return {0, 0, 0, StopReason::indefinite};
+      filter.apply(dv);
+      dv = cg_.solveWithGuess(system_.right_side(), dv).eval();
+    }
+    LinearReport report = finished(A, b, filter, options, dv, system_.reference(), scratch_);
+    report.iterations = right == 0 ? 0 : static_cast<int>(cg_.iterations());
+    return report;
+  }
+
+ private:
+  ProjectedSystem system_;
+  Eigen::ConjugateGradient<ProjectedSystem::Matrix, Eigen::Lower, Eigen::IncompleteCholesky<double>> cg_;
+  VecX scratch_;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_eigen_ldlt() { return std::make_unique<EigenLdlt>(); }
+std::unique_ptr<LinearSolver> make_eigen_cg() { return std::make_unique<EigenCg>(); }
+
+}  // namespace drape

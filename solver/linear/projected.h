@@ -1,0 +1,32 @@
+// The filtered system as an ordinary sparse one, for solvers that know no filter:             [Tamstorf, Jones & McCormick 2015]
+//   (S A S + I - S) y = S (b - A z),   dv = S y + z
+// The lower triangle, column by column; its pattern is kept while the block pattern's serial stands, values are refilled.
+#pragma once
+
+#include <Eigen/SparseCore>
+
+#include "solver/linear_solver.h"
+
+namespace drape {
+
+class ProjectedSystem {
+ public:
+  using Matrix = Eigen::SparseMatrix<double>;
+
+  void project(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options);
+
+  const Matrix& matrix() const { return matrix_; }  // lower triangle of S A S + I - S
+  const VecX& right_side() const { return right_; }
+  double reference() const { return reference_; }  // N s, what a residual is relative to
+
+ private:
+  void build_pattern(const BlockPattern& pattern);
+
+  Matrix matrix_;
+  std::uint64_t serial_ = 0;
+  std::vector<int> constrained_;  // row -> entry of the filter, -1: free
+  VecX right_, z_;
+  double reference_ = 0;
+};
+
+}  // namespace drape

@@ -1,0 +1,58 @@
+// What every linear solver shares: the residual outside the iteration, and the size it is compared with.
+#pragma once
+
+#include <cmath>
+
+#include "mesh/parallel.h"
+#include "solver/linear_solver.h"
+#include "mesh/parallel.h"
+
+namespace drape {
+
+// r <- S (b - A dv)
+inline void residual(const BlockMatrix& A, const VecX& b, const Filter& filter, const VecX& dv, VecX& r) {
+  A.multiply(dv, r);
+  for_chunks(A.rows(), [&](int begin, int end) {
+    for (int i = 3 * begin; i < 3 * end; ++i) r[i] = b[i] - r[i];
+  });
+  filter.apply(r);
+}
+
+inline int iteration_limit(const LinearOptions& options, int rows) {
+  if (options.max_iterations > 0) return options.max_iterations;
+  return 1000 + static_cast<int>(20 * std::sqrt(static_cast<double>(rows)));
+}
+
+// |S (b - A z)|: the right-hand side of the projected system. r is scratch.
+inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
+                                VecX& z, VecX& r) {
+  z.setZero();
+  bool moving = false;
+  for (const FilterEntry& e : filter.entries()) {
+    z.segment<3>(3 * e.particle) = e.z;
+    moving = moving || !e.z.isZero(0);
+  }
+  if (moving) {
+    residual(A, b, filter, z, r);
+  } else {
+    r = b;
+    filter.apply(r);
+  }
+  return std::max(std::sqrt(dot(r, r)), options.scale);
+}
+
+// The report of a direct solver, or of any that has no residual of its own; the constraints are met to the last bit.
+inline LinearReport finished(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options, VecX& dv,
+                             double reference, VecX& scratch) {
+  scratch.resize(dv.size());
+  filter.impose(dv);
+  residual(A, b, filter, dv, scratch);
+  LinearReport report;
+  report.residual_impulse = std::sqrt(dot(scratch, scratch));
+  report.residual = reference > 0 ? report.residual_impulse / reference : report.residual_impulse;
+  if (!std::isfinite(report.residual)) report.reason = StopReason::not_finite;
+  else if (report.residual > std::max(options.tolerance, 1e-12)) report.reason = StopReason::iteration_limit;
+  return report;
+}
+
+}  // namespace drape

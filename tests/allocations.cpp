@@ -1,0 +1,44 @@
+#include "tests/allocations.h"
+
+#include <atomic>
+#include <cstddef>
+
+#if defined(__SANITIZE_ADDRESS__) || !defined(__GLIBC__)
+namespace drape::test {
+bool counts_allocations() { return false; }
+long allocations() { return 0; }
+}  // namespace drape::test
+#else
+namespace {
+std::atomic<long> count{0};
+}
+
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+
+void* malloc(std::size_t size) {
+  ++count;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t n, std::size_t size) {
+  ++count;
+  return __libc_calloc(n, size);
+}
+void* realloc(void* p, std::size_t size) {
+  ++count;
+  return __libc_realloc(p, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  ++count;
+  return __libc_memalign(alignment, size);
+}
+}
+
+namespace drape::test {
+bool counts_allocations() { return true; }
+long allocations() { return count; }
+}  // namespace drape::test
+#endif

@@ -1,0 +1,215 @@
+// Timings of the solver on sheets hung by two corners: 1 m x 1 m, 0.2 kg/m^2, stretch 1000 N/m, bend 10 uN.m, h = 10 ms, 1e-6.
+// Every figure is the median of several repeats; ratios are taken within this run. Deterministic meshes, no random numbers.
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <malloc.h>
+#include <string>
+#include <vector>
+
+#include "mesh/parallel.h"
+#include "solver/drape.h"
+
+namespace {
+
+using namespace drape;
+
+double now_ms() {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+// Median milliseconds of `repeats` calls, after one that is not counted.
+double timed(int repeats, const std::function<void()>& f) {
+  f();
+  std::vector<double> ms;
+  for (int k = 0; k < repeats; ++k) {
+    const double start = now_ms();
+    f();
+    ms.push_back(now_ms() - start);
+  }
+  return median(ms);
+}
+
+// Bytes the process holds in its heap.
+double heap_bytes() {
+  const auto info = mallinfo2();
+  return static_cast<double>(info.uordblks + info.hblkhd);
+}
+
+// GB/s of a = b + s c over arrays as large as the matrix it is compared with.
+double triad_bandwidth(std::size_t bytes) {
+  const auto n = static_cast<int>(std::max<std::size_t>(bytes / 24, 1000));
+  VecX a = VecX::Zero(n), b = VecX::Ones(n), c = VecX::Ones(n);
+  const double ms = timed(9, [&] {
+    parallel_for(chunk_count(n), false, [&](int k) {
+      const int begin = k * chunk_size, count = std::min(n, begin + chunk_size) - begin;
+      a.segment(begin, count) = b.segment(begin, count) + 3.0 * c.segment(begin, count);
+    });
+  });
+  return 24.0 * n / ms * 1e-6;
+}
+
+struct Sheet {
+  TriangleMesh mesh;
+  System system;
+  Constraints constraints;
+  State state;
+
+  explicit Sheet(int side)
+      : mesh(grid(side, side, 1, 1)), system(lumped_mass(mesh, 0.2)), state(at_rest(mesh)) {
+    Fabric fabric;
+    fabric.area_density = 0.2;
+    fabric.stretch = 1000;
+    fabric.bend = 1e-5;
+    system.add(noh_jung(mesh, fabric));
+    system.add(Gravity{});
+    constraints.pin({0, side - 1});
+    mesh = {};  // the solver does not need it
+  }
+};
+
+struct Row {
+  int vertices;
+  double assemble, solve, rest, iterations, per_iteration, product, product_share, bytes_per_vertex;
+};
+
+Row measure_sheet(int side, int steps) {
+  const double before = heap_bytes();
+  Sheet sheet(side);
+  ImplicitEuler stepper(sheet.system, sheet.constraints, make_linear_solver("mpcg"));
+  std::vector<double> assemble, solve, rest, iterations, per_iteration;
+  for (int k = 0; k < steps; ++k) {
+    const StepReport r = stepper.advance(sheet.state, 0.01);
+    if (k < steps / 3) continue;  // the fall has begun
+    assemble.push_back(r.assemble_ms);
+    solve.push_back(r.solve_ms);
+    rest.push_back(r.step_ms - r.assemble_ms - r.solve_ms);
+    iterations.push_back(r.linear_iterations);
+    per_iteration.push_back(r.solve_ms / std::max(1, r.linear_iterations));
+  }
+  const double bytes = heap_bytes() - before;
+  const BlockMatrix& A = stepper.matrix();
+  VecX x = VecX::Ones(3 * A.rows()), y = x;
+  const double product = timed(15, [&] { A.multiply(x, y); });
+  const auto matrix_bytes = static_cast<std::size_t>(A.pattern().blocks()) * 76;
+  const double bandwidth = (static_cast<double>(matrix_bytes) + 4.0 * A.rows() + 48.0 * A.rows()) / product * 1e-6;
+  return {side * side,         median(assemble), median(solve), median(rest),
+          median(iterations),  median(per_iteration), product, bandwidth / triad_bandwidth(matrix_bytes),
+          bytes / (side * side)};
+}
+
+void bench_sheets(const std::vector<std::pair<int, int>>& sizes) {
+  std::printf("\nSheet hung by two corners, mpcg to 1e-6\n");
+  std::printf("%9s %8s %12s %10s %8s %11s %13s %11s %13s %9s\n", "vertices", "threads", "assemble ms", "solve ms", "rest ms",
+              "iterations", "ms/iteration", "product ms", "of triad b/w", "B/vertex");
+  const int most = threads();
+  for (const auto& [side, steps] : sizes) {
+    Row one{};
+    for (int t = 1; t <= std::min(most, 2); ++t) {
+      set_threads(t);
+      const Row r = measure_sheet(side, steps);
+      std::printf("%9d %8d %12.3f %10.2f %8.3f %11.0f %13.4f %11.4f %12.0f%% %9.0f\n", r.vertices, t, r.assemble, r.solve,
+                  r.rest, r.iterations, r.per_iteration, r.product, 100 * r.product_share, r.bytes_per_vertex);
+      if (t == 1) one = r;
+      else
+        std::printf("%9s %8s assembly %.2f x, product %.2f x, solve %.2f x faster with two threads\n", "", "",
+                    one.assemble / r.assemble, one.product / r.product, one.solve / r.solve);
+      std::fflush(stdout);
+    }
+  }
+  set_threads(most);
+}
+
+// The same system, after some steps, by every solver of the build.
+void bench_solvers(int side) {
+  set_threads(1);
+  Sheet sheet(side);
+  ImplicitEuler stepper(sheet.system, sheet.constraints, make_linear_solver("mpcg"));
+  for (int k = 0; k < 20; ++k) stepper.advance(sheet.state, 0.01);
+  std::printf("\nOne step of the same sheet from the same state, %d vertices, one thread\n", side * side);
+  std::printf("%12s %12s %10s %12s %10s\n", "solver", "solve ms", "x mpcg", "iterations", "residual");
+  double mpcg_ms = 0;
+  for (const LinearSolverInfo& info : linear_solvers()) {
+    ImplicitEuler other(sheet.system, sheet.constraints, make_linear_solver(info.name));
+    std::vector<double> ms;
+    StepReport r;
+    for (int k = 0; k < 4; ++k) {
+      State state = sheet.state;
+      r = other.advance(state, 0.01);
+      if (k > 0) ms.push_back(r.solve_ms);  // the first one analyses the pattern
+    }
+    if (info.name == "mpcg") mpcg_ms = median(ms);
+    std::printf("%12s %12.2f %10.2f %12d %10.1e\n", std::string(info.name).c_str(), median(ms), median(ms) / mpcg_ms,
+                r.linear_iterations, r.residual);
+    std::fflush(stdout);
+  }
+}
+
+void bench_ball() {
+  set_threads(1);
+  TriangleMesh mesh = grid(31, 31, 1, 1);
+  for (Vec3& x : mesh.positions) x.y() += 0.31;
+  Fabric fabric;
+  fabric.stretch_spring = 200;
+  fabric.bend_spring = 2e-7;
+  fabric.buckling_clamp = 200;
+  fabric.damping = 0.005;
+  System system(lumped_mass(mesh, 0.15));
+  system.add(noh_jung(mesh, fabric));
+  system.add(Gravity{});
+  Constraints constraints;
+  constraints.add(Obstacle{.shape = Sphere{{0, 0, 0}, 0.3}, .friction = 0.3});
+  ImplicitEuler stepper(system, constraints, make_linear_solver("mpcg"));
+  State state = at_rest(mesh);
+  std::vector<double> ms, collide, solves;
+  for (int k = 0; k < 300; ++k) {
+    const StepReport r = stepper.advance(state, 0.01);
+    ms.push_back(r.step_ms);
+    collide.push_back(r.collide_ms);
+    solves.push_back(r.linear_solves);
+  }
+  std::sort(ms.begin(), ms.end());
+  std::printf("\n961 particles dropped on a ball, k_s = 200 N/m, one thread: %.2f ms per step (95 %%: %.2f), contact %.3f ms\n",
+              median(ms), ms[ms.size() * 95 / 100], median(collide));
+}
+
+void bench_obj() {
+  const TriangleMesh mesh = grid(708, 708, 1, 1);
+  const std::filesystem::path path = std::filesystem::temp_directory_path() / "drape-bench.obj";
+  write_obj(path, mesh, mesh.positions);
+  const double ms = timed(3, [&] { read_obj(path); });
+  std::printf("\nOBJ of %d triangles: read in %.2f s\n", mesh.triangle_count(), ms / 1000);
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const bool quick = argc > 1 && std::strcmp(argv[1], "--quick") == 0;
+  std::printf("drape benchmarks; %d threads at most\n", threads());
+  if (quick) {
+    bench_sheets({{32, 30}, {100, 30}});
+    bench_ball();
+    return 0;
+  }
+  bench_sheets({{32, 60}, {100, 45}, {200, 15}, {400, 6}});
+  set_threads(1);
+  bench_solvers(32);
+  bench_solvers(100);
+  bench_ball();
+  bench_obj();
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  std::printf("\npeak memory of this process: %.0f MB\n", static_cast<double>(usage.ru_maxrss) / 1024);
+  return 0;
+}

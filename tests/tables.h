@@ -1,0 +1,81 @@
+// What several tests need: reference tables, random states with fixed seeds, small systems.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "solver/drape.h"
+#include "solver/tension_spring.h"
+
+namespace drape::test {
+
+// Rows of numbers of data/reference/NAME: comments and the header are passed over.
+inline std::vector<std::vector<double>> reference_table(const std::string& name) {
+  std::ifstream file(std::string(DRAPE_SOURCE_DIR) + "/data/reference/" + name);
+  if (!file) throw std::runtime_error("no data/reference/" + name);
+  std::vector<std::vector<double>> rows;
+  bool header = true;
+  for (std::string line; std::getline(file, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    if (std::exchange(header, false)) continue;
+    std::vector<double> row;
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+inline VecX random_vector(Eigen::Index n, double size, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> uniform(-size, size);
+  VecX v(n);
+  for (Eigen::Index i = 0; i < n; ++i) v[i] = uniform(engine);
+  return v;
+}
+
+inline Mat3 rotation(double angle, const Vec3& axis) {
+  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+}
+
+inline VecX moved_rigidly(const VecX& x, const Mat3& R, const Vec3& t) {
+  VecX y = x;
+  for (Eigen::Index i = 0; i < x.size() / 3; ++i) y.segment<3>(3 * i) = R * x.segment<3>(3 * i) + t;
+  return y;
+}
+
+// A chain of `links` springs of the same rest length along `direction` from the origin, lumped masses (half at the ends).
+struct Chain {
+  System system;
+  State state;
+  Constraints constraints;
+
+  Chain(int links, double length, double mass, double stiffness, const Vec3& direction)
+      : system(chain_masses(links, mass)) {
+    std::vector<PairForce<TensionSpring>::Element> elements;
+    for (int k = 0; k < links; ++k) elements.push_back({k, k + 1, {length / links, stiffness * links / length}});
+    system.add(std::make_unique<PairForce<TensionSpring>>(std::move(elements)));
+    state = {0, VecX(3 * (links + 1)), VecX::Zero(3 * (links + 1))};
+    for (int k = 0; k <= links; ++k) state.x.segment<3>(3 * k) = direction * (length * k / links);
+  }
+
+ private:
+  static std::vector<double> chain_masses(int links, double mass) {
+    std::vector<double> m(static_cast<std::size_t>(links) + 1, mass / links);
+    m.front() = m.back() = 0.5 * mass / links;
+    return m;
+  }
+};
+
+inline double max_speed(const State& state) {
+  double fastest = 0;
+  for (int i = 0; i < state.particles(); ++i) fastest = std::max(fastest, state.v.segment<3>(3 * i).norm());
+  return fastest;
+}
+
+}  // namespace drape::test

@@ -1,0 +1,66 @@
+// Arrows between the rooms go one way: mesh <- constraints <- solver <- app. Read from the #include lines.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::vector<std::string> rooms = {"mesh", "constraints", "solver", "app"};
+
+std::size_t level(const std::string& room) {
+  return static_cast<std::size_t>(std::find(rooms.begin(), rooms.end(), room) - rooms.begin());
+}
+
+// Every (file, included path) of a room.
+std::vector<std::pair<std::string, std::string>> includes(const std::string& room) {
+  std::vector<std::pair<std::string, std::string>> all;
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(DRAPE_SOURCE_DIR) / room)) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+    std::ifstream file(entry.path());
+    for (std::string line; std::getline(file, line);) {
+      if (line.rfind("#include", 0) != 0) continue;
+      const auto first = line.find_first_of("\"<");
+      const auto last = line.find_first_of("\">", first + 1);
+      all.emplace_back(fs::relative(entry.path(), DRAPE_SOURCE_DIR).string(), line.substr(first + 1, last - first - 1));
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("no room includes one above it", "[layering]") {
+  for (const std::string& room : rooms) {
+    const auto found = includes(room);
+    CHECK(found.size() > 10);
+    for (const auto& [file, path] : found) {
+      const std::string target = path.substr(0, path.find('/'));
+      INFO(file << " includes " << path);
+      if (level(target) < rooms.size()) CHECK(level(target) <= level(room));
+      CHECK(target != "tests");
+    }
+  }
+}
+
+TEST_CASE("only Eigen shows in headers; every other library is in one source file", "[layering]") {
+  const std::vector<std::string> libraries = {"embree3", "cholmod", "toml", "CLI", "nlohmann", "udunits2", "tiny_obj_loader", "omp"};
+  std::map<std::string, std::vector<std::string>> users;
+  for (const std::string& room : rooms)
+    for (const auto& [file, path] : includes(room))
+      for (const std::string& library : libraries)
+        if (path.rfind(library, 0) == 0) {
+          INFO(file << " includes " << path);
+          CHECK(fs::path(file).extension() == ".cpp");
+          if (users[library].empty() || users[library].back() != file) users[library].push_back(file);
+        }
+  for (const auto& [library, files] : users) {
+    INFO(library);
+    CHECK(files.size() == 1);
+  }
+  CHECK(users.size() >= 4);
+}

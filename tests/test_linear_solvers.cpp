@@ -1,0 +1,173 @@
+// Laws that every linear solver obeys: the constraints hold, the answer is the dense one, the report is the truth.
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+
+#include "solver/linear/mpcg.h"
+#include "tests/tables.h"
+
+using namespace drape;
+using namespace drape::test;
+
+namespace {
+
+struct Problem {
+  std::shared_ptr<const BlockPattern> pattern;
+  BlockMatrix A;
+  VecX b;
+  Filter filter;
+
+  Problem(int n, unsigned seed, bool constrained) : pattern(make_pattern(n, seed)), A(pattern), b(random_vector(3 * n, 1, seed)) {
+    std::mt19937 engine(seed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    A.set_to_mass(std::vector<double>(static_cast<std::size_t>(n), 0.3));
+    for (int r = 0; r < n; ++r) {
+      for (int s = pattern->row_start()[static_cast<std::size_t>(r)]; s < pattern->row_start()[static_cast<std::size_t>(r) + 1]; ++s) {
+        const int c = pattern->column()[static_cast<std::size_t>(s)];
+        if (c <= r) continue;
+        Mat3 G, H;  // |G x_r - H x_c|^2: semidefinite, with off-diagonal blocks that are not symmetric
+        for (int k = 0; k < 9; ++k) G(k) = 3 * uniform(engine), H(k) = 3 * uniform(engine);
+        A.at(pattern->diagonal(r)) += G.transpose() * G;
+        A.at(pattern->diagonal(c)) += H.transpose() * H;
+        A.at(s) -= G.transpose() * H;
+        A.at(pattern->slot(c, r)) -= H.transpose() * G;
+      }
+    }
+    if (!constrained) return;
+    for (int i = 0; i < n; i += 3) {
+      const Vec3 p = Vec3(uniform(engine), uniform(engine), uniform(engine)).normalized();
+      const Vec3 z(uniform(engine), uniform(engine), uniform(engine));
+      if (i % 2 == 0) filter.constrain(i, Mat3::Zero(), z);
+      else filter.constrain(i, Mat3::Identity() - p * p.transpose(), p * p.dot(z));
+    }
+  }
+
+  static std::shared_ptr<const BlockPattern> make_pattern(int n, unsigned seed) {
+    std::mt19937 engine(seed);
+    std::vector<ParticlePair> pairs;
+    for (int i = 0; i + 1 < n; ++i) {
+      pairs.push_back({i, i + 1});
+      pairs.push_back({i, static_cast<int>(engine() % static_cast<unsigned>(n))});
+      if (pairs.back().i == pairs.back().j) pairs.pop_back();
+    }
+    return std::make_shared<const BlockPattern>(n, pairs);
+  }
+
+  Eigen::MatrixXd dense() const {
+    Eigen::MatrixXd D = Eigen::MatrixXd::Zero(b.size(), b.size());
+    for (int r = 0; r < A.rows(); ++r)
+      for (int s = pattern->row_start()[static_cast<std::size_t>(r)]; s < pattern->row_start()[static_cast<std::size_t>(r) + 1]; ++s)
+        D.block<3, 3>(3 * r, 3 * pattern->column()[static_cast<std::size_t>(s)]) = A.at(s);
+    return D;
+  }
+
+  VecX dense_solution() const {
+    Eigen::MatrixXd S = Eigen::MatrixXd::Identity(b.size(), b.size());
+    VecX z = VecX::Zero(b.size());
+    for (const FilterEntry& e : filter.entries()) {
+      S.block<3, 3>(3 * e.particle, 3 * e.particle) = e.S;
+      z.segment<3>(3 * e.particle) = e.z;
+    }
+    const Eigen::MatrixXd D = dense(), I = Eigen::MatrixXd::Identity(b.size(), b.size());
+    return (S * D * S + I - S).ldlt().solve(S * (b - D * z)) + z;
+  }
+};
+
+std::vector<std::string> names() {
+  std::vector<std::string> all;
+  for (const auto& info : linear_solvers()) all.emplace_back(info.name);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("every linear solver gives the dense solution of the projected system", "[solvers]") {
+  for (const std::string& name : names()) {
+    for (bool constrained : {false, true}) {
+      Problem p(40, 11, constrained);
+      const auto solver = make_linear_solver(name);
+      for (int again = 0; again < 2; ++again) {  // the second time with the analysis kept
+        INFO(name << (constrained ? ", constrained" : ", free"));
+        VecX dv = random_vector(p.b.size(), 1, 5);
+        const LinearReport report = solver->solve(p.A, p.b, p.filter, {.tolerance = 1e-11}, dv);
+        CHECK(report.reason == StopReason::converged);
+        CHECK((dv - p.dense_solution()).norm() < 1e-8 * dv.norm());
+        for (const FilterEntry& e : p.filter.entries()) {
+          const Vec3 v = dv.segment<3>(3 * e.particle);
+          CHECK(((v - e.S * v) - e.z).norm() < 1e-13);
+        }
+        // The residual it reports is the true one.
+        VecX r = p.b - p.dense() * dv;
+        p.filter.apply(r);
+        CHECK(report.residual_impulse == Approx(r.norm()).margin(1e-13 * p.b.norm()));
+        p.b = random_vector(p.b.size(), 2, 77);
+      }
+    }
+  }
+}
+
+TEST_CASE("a solve that stops early says so, with the true residual", "[solvers]") {
+  Problem p(200, 3, true);
+  Mpcg solver;
+  VecX dv = VecX::Zero(p.b.size());
+  const LinearReport report = solver.solve(p.A, p.b, p.filter, {.tolerance = 1e-12, .max_iterations = 5}, dv);
+  CHECK(report.reason == StopReason::iteration_limit);
+  CHECK(report.iterations == 5);
+  VecX r = p.b - p.dense() * dv;
+  p.filter.apply(r);
+  CHECK(report.residual_impulse == Approx(r.norm()));
+  CHECK(report.residual > 1e-12);
+}
+
+TEST_CASE("indefinite and non-finite systems are reported, not looped on", "[solvers]") {
+  for (const std::string& name : names()) {
+    INFO(name);
+    Problem p(20, 4, false);
+    const auto solver = make_linear_solver(name);
+    VecX dv = VecX::Zero(p.b.size());
+    p.A.at(p.pattern->diagonal(7)) -= 1e4 * Mat3::Identity();
+    if (name == "mpcg" || name == "cholmod") CHECK(solver->solve(p.A, p.b, p.filter, {}, dv).reason != StopReason::converged);
+    Problem q(20, 4, false);
+    q.b[5] = std::nan("");
+    dv.setZero();
+    CHECK(solver->solve(q.A, q.b, q.filter, {}, dv).reason != StopReason::converged);
+  }
+}
+
+TEST_CASE("nothing to do is done in no iterations", "[solvers]") {
+  for (const std::string& name : names()) {
+    Problem p(20, 4, false);
+    p.b.setZero();
+    VecX dv = VecX::Zero(p.b.size());
+    const LinearReport report = make_linear_solver(name)->solve(p.A, p.b, p.filter, {}, dv);
+    CHECK(report.reason == StopReason::converged);
+    CHECK(report.iterations == 0);
+    CHECK(dv.norm() == 0);
+  }
+}
+
+TEST_CASE("an unknown linear solver is refused with the names there are", "[solvers]") {
+  CHECK_THROWS_WITH(make_linear_solver("magic"), Catch::Contains("mpcg") && Catch::Contains("magic"));
+}
+
+TEST_CASE("the block product is the dense product", "[solvers]") {
+  Problem p(60, 9, false);
+  const VecX x = random_vector(180, 1, 1);
+  VecX y(180);
+  p.A.multiply(x, y);
+  CHECK((y - p.dense() * x).norm() < 1e-12 * y.norm());
+}
+
+TEST_CASE("a pattern knows every pair once, in chunks that only neighbours share", "[solvers]") {
+  const Problem p(500, 21, false);
+  const BlockPattern& pattern = *p.pattern;
+  for (int r = 0; r < pattern.rows(); ++r) {
+    CHECK(pattern.particle_of()[static_cast<std::size_t>(pattern.row_of()[static_cast<std::size_t>(r)])] == r);
+    CHECK(pattern.column()[static_cast<std::size_t>(pattern.diagonal(r))] == r);
+    for (int s = pattern.row_start()[static_cast<std::size_t>(r)]; s < pattern.row_start()[static_cast<std::size_t>(r) + 1]; ++s)
+      CHECK(std::abs(pattern.column()[static_cast<std::size_t>(s)] / pattern.chunk_rows() - r / pattern.chunk_rows()) <= 1);
+  }
+  const TriangleMesh mesh = grid(60, 60, 1, 1);
+  System system(lumped_mass(mesh, 1));
+  system.add(noh_jung(mesh, {}));
+  CHECK(system.bind()->bandwidth() < 6 * 60);  // a sheet of n x n: a few rows of it, not n^2
+}

@@ -1,0 +1,171 @@
+// The files a run writes: their bytes, and that none appears before it is complete.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+
+#include "app/atomic_file.h"
+#include "app/measure.h"
+#include "app/pc2.h"
+#include "app/run_json.h"
+#include "app/steps_csv.h"
+#include "mesh/generate.h"
+#include "mesh/obj.h"
+
+using namespace drape;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Folder {
+  fs::path path;
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "drape-output-XXXXXX").string();
+    REQUIRE(mkdtemp(name.data()));
+    path = name;
+  }
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  long files() const { return std::distance(fs::directory_iterator(path), fs::directory_iterator()); }
+};
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+template <class T>
+T at(const std::string& bytes, std::size_t offset) {
+  T value;
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
+}  // namespace
+
+TEST_CASE("a point cache has the layout that Blender reads", "[output]") {
+  const Folder folder;
+  VecX x(9);
+  x << 9, 9, 9, 1, 2, 3, -4, 0.1, 1e-9;  // the first particle is another cloth's
+  {
+    Pc2Writer cache(folder.path / "a.pc2", 2);
+    cache.add(x, 1);
+    x *= 2;
+    cache.add(x, 1);
+    cache.add(x, 1);
+    cache.close();
+    CHECK_FALSE(fs::exists(folder.path / "a.pc2"));
+    cache.keep();
+  }
+  const std::string bytes = bytes_of(folder.path / "a.pc2");
+  REQUIRE(bytes.size() == 32 + 3 * 2 * 12);
+  CHECK(std::string(bytes.data(), 12) == std::string("POINTCACHE2\0", 12));
+  CHECK(at<std::int32_t>(bytes, 12) == 1);  // version
+  CHECK(at<std::int32_t>(bytes, 16) == 2);  // points
+  CHECK(at<float>(bytes, 20) == 0.0f);      // first frame
+  CHECK(at<float>(bytes, 24) == 1.0f);      // sample rate
+  CHECK(at<std::int32_t>(bytes, 28) == 3);  // samples
+  CHECK(at<float>(bytes, 32) == 1.0f);
+  CHECK(at<float>(bytes, 32 + 16) == 0.1f);
+  CHECK(at<float>(bytes, 32 + 24 + 12) == -8.0f);
+}
+
+TEST_CASE("a file appears only when it is complete", "[output]") {
+  const Folder folder;
+  const fs::path path = folder.path / "a.txt";
+  {
+    AtomicFile file(path);
+    file.write("half");
+  }
+  CHECK(folder.files() == 0);
+  {
+    AtomicFile file(path);
+    file.write("whole");
+    CHECK_FALSE(fs::exists(path));
+    file.keep();
+  }
+  CHECK(bytes_of(path) == "whole");
+  {
+    AtomicFile file(path);
+    file.write("another");
+  }
+  CHECK(bytes_of(path) == "whole");
+  CHECK(folder.files() == 1);
+}
+
+TEST_CASE("a write that fails leaves nothing behind and says why", "[output]") {
+  const Folder folder;
+  CHECK_THROWS_WITH(AtomicFile(folder.path / "none" / "a.txt"),
+                    Contains("a.txt: cannot write: No such file or directory"));
+  fs::create_directory(folder.path / "d");
+  CHECK_THROWS_WITH(AtomicFile(folder.path / "d"), Contains("Is a directory"));
+  CHECK(folder.files() == 1);
+}
+
+TEST_CASE("a row of steps.csv has a number for every column", "[output]") {
+  const Folder folder;
+  {
+    StepsWriter steps(folder.path / "steps.csv");
+    StepRow row;
+    row.step = 1;
+    row.elastic_energy = std::numeric_limits<double>::max();
+    row.kinetic_energy = -std::numeric_limits<double>::denorm_min();
+    steps.add(row);
+    steps.keep();
+  }
+  std::ifstream file(folder.path / "steps.csv");
+  std::string header, row, more;
+  std::getline(file, header);
+  std::getline(file, row);
+  CHECK_FALSE(std::getline(file, more));
+  CHECK(header.starts_with(
+      "step,time,newton_iterations,linear_iterations,residual,contacts,kinetic_energy,elastic_energy,"
+      "gravity_energy,max_speed,max_edge_strain,assemble_ms,solve_ms,collide_ms,step_ms"));
+  CHECK(std::count(header.begin(), header.end(), ',') == std::count(row.begin(), row.end(), ','));
+}
+
+TEST_CASE("run.json stays valid with names that are not UTF-8 and numbers that are not finite", "[output]") {
+  RunRecord record;
+  record.scene = "a\xFF\"b\\\n";
+  record.max_speed = std::numeric_limits<double>::infinity();
+  const std::string text = run_json(record);
+  CHECK_THAT(text, Contains("\"max_speed\": null") && Contains("\\\"b\\\\\\n"));
+}
+
+TEST_CASE("measures of a state", "[output]") {
+  const TriangleMesh mesh = grid(3, 3, 1, 1);
+  EdgeStrain strain;
+  strain.add(mesh, 1);  // behind another cloth's particle
+  VecX x(3 + 27);
+  x << Vec3::Zero(), stacked(mesh.positions);
+  CHECK(strain.largest(x) == Approx(0).margin(1e-15));
+  x *= 1.25;
+  CHECK(strain.largest(x) == Approx(0.25));
+  x *= 0.5;
+  CHECK(strain.largest(x) == 0);
+
+  VecX v = VecX::Zero(6);
+  v.tail<3>() = Vec3(3, 0, -4);
+  CHECK(max_speed(v) == Approx(5));
+
+  State state{0, VecX::Zero(3), VecX::Zero(3)};
+  const std::string hash = state_hash(state);
+  CHECK(hash.size() == 16);
+  state.v[2] = -0.0;  // another bit
+  CHECK(state_hash(state) != hash);
+
+  const Distribution d = distribution({5, 1, 2, 3, 4});
+  CHECK(d.median == 3);
+  CHECK(d.max == 5);
+  CHECK(d.mean == Approx(3));
+  CHECK(distribution({}).max == 0);
+}

@@ -1,0 +1,229 @@
+// Whole motions against closed forms and reference curves: oscillator, chain, strip, catenary, cantilever, the hung sheet.
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+
+#include "solver/buckling_spring.h"
+#include "solver/damping.h"
+#include "tests/tables.h"
+
+using namespace drape;
+using namespace drape::test;
+
+namespace {
+
+StepOptions tight() { return {.tolerance = 1e-10}; }
+
+// Largest error of a mass on a taut spring, one period, against the exact motion.
+double oscillator_error(int steps) {
+  // Along the spring; always in tension, so that the clamp never shows: x = L + a cos(w t), around rest under a constant pull.
+  const double k = 40, m = 0.5, L = 1, pull = 3;
+  System system({0.0, m});
+  system.add(std::make_unique<PairForce<TensionSpring>>(std::vector<PairForce<TensionSpring>::Element>{{0, 1, {L, k}}}));
+  system.add(Gravity{{pull, 0, 0}});
+  Constraints constraints;
+  ImplicitEuler stepper(system, constraints, make_linear_solver("mpcg"), tight());
+  const double omega = std::sqrt(k / m), centre = L + m * pull / k, amplitude = 0.5 * m * pull / k;
+  State state{0, VecX::Zero(6), VecX::Zero(6)};
+  state.x[3] = centre + amplitude;
+  const double h = 2 * M_PI / omega / steps;
+  double error = 0;
+  for (int n = 1; n <= steps; ++n) {
+    stepper.advance(state, h);
+    error = std::max(error, std::abs(state.x[3] - centre - amplitude * std::cos(omega * n * h)) / amplitude);
+  }
+  return error;
+}
+
+// Lets a system come to rest with long, strongly damping steps.
+void settle(System& system, Constraints& constraints, State& state, double h, int steps, double speed = 1e-7) {
+  ImplicitEuler stepper(system, constraints, make_linear_solver("mpcg"), tight());
+  for (int n = 0; n < steps; ++n) {
+    REQUIRE(stepper.advance(state, h).done);
+    if (max_speed(state) < speed) return;
+  }
+}
+
+}  // namespace
+
+TEST_CASE("an oscillator converges with order 1", "[physics]") {
+  const double coarse = oscillator_error(400), fine = oscillator_error(1600);
+  CHECK(std::log2(coarse / fine) / 2 == Approx(1).margin(0.06));
+  // And damps as the scheme must: 1/sqrt(1 + z^2) a step.
+  CHECK(oscillator_error(100) < 0.25);
+}
+
+TEST_CASE("a hanging chain takes the shape of the catenary, to second order", "[physics][reference]") {
+  double sag = 0;
+  for (const auto& row : reference_table("catenary.csv"))
+    if (row[0] == 0.5) sag = row[2];
+  REQUIRE(sag > 0.39);
+  std::vector<double> error;
+  for (int links : {10, 20, 40}) {
+    Chain chain(links, 1, 0.1, 1e5, {1, 0, 0});
+    // Start on an arc whose ends are half a length apart.
+    for (int k = 0; k <= links; ++k) {
+      const double s = M_PI * k / links;
+      chain.state.x.segment<3>(3 * k) = Vec3(-0.25 * std::cos(s), -0.4 * std::sin(s), 0);
+    }
+    chain.system.add(Gravity{});
+    chain.constraints.pin({0, links});
+    settle(chain.system, chain.constraints, chain.state, 0.05, 3000);
+    error.push_back(std::abs(-chain.state.x[3 * (links / 2) + 1] - sag));
+  }
+  INFO(error[0] << " " << error[1] << " " << error[2]);
+  CHECK(error[0] < 0.006);
+  CHECK(std::log2(error[0] / error[1]) > 1.8);
+  CHECK(std::log2(error[1] / error[2]) > 1.8);
+}
+
+TEST_CASE("a chain under its own weight is longer by m g L / (2 k L), for every number of links", "[physics]") {
+  for (int links : {3, 10, 40}) {
+    Chain chain(links, 1, 0.3, 50, {0, -1, 0});
+    chain.system.add(Gravity{});
+    chain.constraints.pin(0);
+    settle(chain.system, chain.constraints, chain.state, 0.05, 3000, 1e-10);
+    CHECK(-chain.state.x[3 * links + 1] - 1 == Approx(0.3 * 9.81 / (2 * 50)).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("a strip under its own weight is longer by sigma g L^2 / (2 Y), to second order in the mesh size", "[physics]") {
+  const double Y = 200, sigma = 0.2, L = 1;
+  std::vector<double> error;
+  for (int cells : {5, 10, 20, 40}) {
+    TriangleMesh mesh = grid(3, cells + 1, 2 * L / cells, L);  // square cells
+    System system(lumped_mass(mesh, sigma));
+    system.add(noh_jung(mesh, {.area_density = sigma, .stretch = Y, .bend = 0}));
+    system.add(Gravity{{0, 0, 9.81}});
+    Constraints constraints;
+    constraints.pin({0, 1, 2});
+    State state = at_rest(mesh);
+    settle(system, constraints, state, 0.05, 2000, 1e-10);
+    double mean = 0;
+    for (int i = 3 * cells; i < 3 * cells + 3; ++i) mean += (state.x[3 * i + 2] - mesh.positions[static_cast<std::size_t>(i)].z()) / 3;
+    error.push_back(std::abs(mean / (sigma * 9.81 * L * L / (2 * Y)) - 1));
+  }
+  INFO(error[0] << " " << error[1] << " " << error[2] << " " << error[3]);
+  CHECK(error[3] < 0.01);
+  for (std::size_t k = 1; k < error.size(); ++k) CHECK((error[k] < 1e-6 || std::log2(error[k - 1] / error[k]) > 1.7));
+}
+
+TEST_CASE("a hanging chain swings with the period of the Bessel function", "[physics][reference]") {
+  double omega = 0;  // of the lattice with half a mass at the tip, in sqrt(g/L)
+  const auto table = reference_table("hanging_chain_periods.csv");
+  omega = table[0][9];
+  CHECK(omega == Approx(table[0][2]).epsilon(1e-3));  // the continuum's, to 0.1 %
+  const int links = 50;
+  Chain chain(links, 1, 0.1, 1e6, {0, -1, 0});
+  chain.system.add(Gravity{});
+  chain.constraints.pin(0);
+  for (int k = 1; k <= links; ++k) {  // the first mode, J0(j01 sqrt(height)), half a degree of swing; every link as long as it was
+    const auto mode = [&](int i) { return 0.01 * std::cyl_bessel_j(0, 2.4048255577 * std::sqrt(1.0 - static_cast<double>(i) / links)); };
+    const double dx = mode(k) - mode(k - 1), l = 1.0 / links;
+    chain.state.x.segment<3>(3 * k) = chain.state.x.segment<3>(3 * k - 3) + Vec3(dx, -std::sqrt(l * l - dx * dx), 0);
+  }
+  ImplicitEuler stepper(chain.system, chain.constraints, make_linear_solver("mpcg"), {.tolerance = 1e-8});
+  std::vector<double> crossings;
+  double before = chain.state.x[3 * links];
+  const double h = 1e-3;
+  while (crossings.size() < 5 && chain.state.time < 6) {
+    REQUIRE(stepper.advance(chain.state, h).done);
+    const double tip = chain.state.x[3 * links];
+    if (tip * before < 0) crossings.push_back(chain.state.time - h * tip / (tip - before));
+    before = tip;
+  }
+  REQUIRE(crossings.size() == 5);
+  const double period = (crossings[4] - crossings[0]) / 2;
+  CHECK(period == Approx(2 * M_PI / (omega * std::sqrt(9.81))).epsilon(2e-3));
+}
+
+TEST_CASE("a spinning pair of masses loses spin as backward Euler must, not more", "[physics]") {
+  // L(t)/L0 = 1/sqrt(1 + 2 h w0^2 t) for a stiff rotor and the converged step.
+  System system({1.0, 1.0});
+  system.add(std::make_unique<PairForce<TensionSpring>>(std::vector<PairForce<TensionSpring>::Element>{{0, 1, {1, 1e6}}}));
+  Constraints constraints;
+  ImplicitEuler stepper(system, constraints, make_linear_solver("mpcg"), {.newton_iterations = 30, .newton_tolerance = 0, .tolerance = 1e-12});
+  State state{0, VecX::Zero(6), VecX::Zero(6)};
+  const double omega = 5, h = 0.01;
+  state.x << -0.5, 0, 0, 0.5, 0, 0;
+  state.v << 0, -0.5 * omega, 0, 0, 0.5 * omega, 0;
+  for (int n = 0; n < 100; ++n) stepper.advance(state, h);
+  const Vec3 spin = Vec3(state.x.segment<3>(0)).cross(Vec3(state.v.segment<3>(0))) + Vec3(state.x.segment<3>(3)).cross(Vec3(state.v.segment<3>(3)));
+  CHECK(spin.z() / (0.5 * omega) == Approx(1 / std::sqrt(1 + 2 * h * omega * omega)).epsilon(2e-3));
+  CHECK((state.v.segment<3>(0) + state.v.segment<3>(3)).norm() < 1e-9);  // momentum
+}
+
+TEST_CASE("the energy of a hung sheet never grows", "[physics]") {
+  const TriangleMesh mesh = grid(16, 16, 1, 1);
+  System system(lumped_mass(mesh, 0.2));
+  system.add(noh_jung(mesh, {.area_density = 0.2, .stretch = 300, .bend = 0}));
+  system.add(Gravity{});
+  Constraints constraints;
+  constraints.pin({0, 15});
+  ImplicitEuler stepper(system, constraints, make_linear_solver("mpcg"), {.newton_iterations = 8, .newton_tolerance = 1e-9, .tolerance = 1e-9});
+  State state = at_rest(mesh);
+  const auto energy = [&] { return system.elastic_energy(state.x) + system.kinetic_energy(state.v) + system.gravity_energy(state.x); };
+  double before = energy();
+  for (int n = 0; n < 150; ++n) {
+    stepper.advance(state, 0.01);
+    const double after = energy();
+    CHECK(after <= before + 1e-7);
+    before = after;
+  }
+}
+
+TEST_CASE("a sheet bends like its fabric: the cantilever", "[physics][reference]") {
+  // Gamma = sigma g L^3 / B; H/W from the master curve. Rows of equilateral triangles, bending across them; stiff in its plane.
+  for (double gamma : {3.0, 10.0}) {
+    const auto table = reference_table("cantilever_master.csv");
+    double expected = 0;
+    for (std::size_t k = 1; k < table.size(); ++k) {
+      if (table[k - 1][0] <= gamma && gamma <= table[k][0]) {
+        const double t = (std::log(gamma) - std::log(table[k - 1][0])) / (std::log(table[k][0]) - std::log(table[k - 1][0]));
+        expected = std::exp((1 - t) * std::log(table[k - 1][1]) + t * std::log(table[k][1]));
+      }
+    }
+    const double L = 0.1, sigma = 0.2, B = sigma * 9.81 * L * L * L / gamma;
+    const int rows = 25;
+    const double spacing = L / rows, edge = spacing / (std::sqrt(3) / 2);
+    TriangleMesh mesh = equilateral_sheet(4, rows + 2, edge);
+    System system(lumped_mass(mesh, sigma));
+    system.add(noh_jung(mesh, {.area_density = sigma, .stretch = 1e6, .bend = B}));
+    system.add(Gravity{});
+    Constraints constraints;
+    for (int i = 0; i < 8; ++i) constraints.pin(i);  // two rows: clamped
+    State state = at_rest(mesh);
+    settle(system, constraints, state, 0.02, 1500, 1e-5);
+    const int tip = mesh.vertex_count() - 2;
+    const double root = mesh.positions[4].z();  // the free length begins at the second row
+    const double H = -state.x[3 * tip + 1], W = std::abs(state.x[3 * tip + 2] - root);
+    INFO("Gamma " << gamma << ": H/W " << H / W << ", the elastica's " << expected);
+    CHECK(H / W == Approx(expected).epsilon(0.12));
+  }
+}
+
+TEST_CASE("a hung sheet passes half-way down at the same time on every mesh", "[physics]") {
+  std::vector<double> times;
+  for (int side : {32, 100, 200}) {
+    const TriangleMesh mesh = grid(side, side, 1, 1);
+    System system(lumped_mass(mesh, 0.2));
+    system.add(noh_jung(mesh, {.area_density = 0.2, .stretch = 1000, .bend = 1e-5}));
+    system.add(Gravity{});
+    Constraints constraints;
+    constraints.pin({0, side - 1});
+    ImplicitEuler stepper(system, constraints, make_linear_solver("mpcg"), {.tolerance = 1e-3});
+    State state = at_rest(mesh);
+    const int far = side * side - side / 2;  // middle of the free edge
+    double before = 0, passed = 0;
+    while (passed == 0 && state.time < 1) {
+      REQUIRE(stepper.advance(state, 0.01).done);
+      const double fallen = -state.x[3 * far + 1];
+      if (fallen > 0.5) passed = state.time - 0.01 * (fallen - 0.5) / (fallen - before);
+      before = fallen;
+    }
+    times.push_back(passed);
+  }
+  INFO(times[0] << " s, " << times[1] << " s, " << times[2] << " s");
+  CHECK(times[0] > 0.3);
+  CHECK(times[1] == Approx(times[0]).epsilon(0.01));
+  CHECK(times[2] == Approx(times[0]).epsilon(0.01));
+}

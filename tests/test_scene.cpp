@@ -1,0 +1,215 @@
+// The scene reader: what a scene becomes, and for every kind of mistake the file, the line and the words.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "app/fabrics.h"
+#include "app/scene.h"
+#include "app/toml_file.h"
+#include "mesh/obj.h"
+
+using namespace drape;
+using Catch::Contains;
+using Catch::StartsWith;
+
+namespace {
+
+Scene read(const std::string& text, const std::vector<Setting>& settings = {}) {
+  return read_scene(parse_toml(text, "scene.toml"), settings, "folder", "scene.toml");
+}
+
+const std::string cloth = "[[cloth]]\nmesh = \"sheet.obj\"\n";  // two lines: the next one is line 3
+const std::string sphere = "[[obstacle]]\nshape = \"sphere\"\n";
+
+}  // namespace
+
+TEST_CASE("the example of the interface is read", "[scene]") {
+  const Scene scene = read(R"(
+[simulation]
+duration      = "2 s"
+time_step     = "10 ms"
+frame_rate    = "25 Hz"
+gravity       = [0, -9.81, 0]
+integrator    = "implicit-euler"
+newton_iterations = 2
+linear_solver = "mpcg"
+tolerance     = 1e-6
+[[cloth]]
+name         = "sheet"
+mesh         = "sheet.obj"
+scale        = 0.01
+rotate       = { axis = [1, 0, 0], angle = "90 deg" }
+translate    = ["0 m", "50 cm", 0]
+model        = "noh-jung"
+fabric       = "cotton-poplin"
+area_density = "150 g/m^2"
+stretch      = "500 N/m"
+bend         = "10 uN.m"
+damping      = "0.01 N.s/m"
+neighbour_weighting = true
+pins         = [ { vertices = [0, 24] }, { box = [[-1, 0.9, -1], [1, "110 cm", 1]] }, { group = "collar" } ]
+[[obstacle]]
+shape    = "sphere"
+centre   = [0, 0, 0]
+radius   = "0.3 m"
+friction = { static = 0.4, kinetic = 0.3 }
+margin   = "3 mm"
+[[obstacle]]
+shape    = "mesh"
+mesh     = "body.obj"
+friction = 0.1
+)");
+  CHECK(scene.simulation.duration == 2);
+  CHECK(scene.simulation.time_step == Approx(0.01));
+  CHECK(scene.simulation.step.newton_iterations == 2);
+  REQUIRE(scene.cloths.size() == 1);
+  const ClothEntry& sheet = scene.cloths[0];
+  CHECK(sheet.mesh == std::filesystem::path("folder/sheet.obj"));
+  CHECK((sheet.placement.rotation * Vec3(0, 1, 0) - Vec3(0, 0, 1)).norm() < 1e-12);
+  CHECK((sheet.placement.translate - Vec3(0, 0.5, 0)).norm() < 1e-12);
+  CHECK(sheet.fabric.area_density == Approx(0.15));
+  CHECK(sheet.fabric.bend == Approx(1e-5));
+  CHECK(sheet.fabric.neighbour_weighting);
+  REQUIRE(sheet.pins.size() == 3);
+  CHECK(std::get<PinBox>(sheet.pins[1].rule).upper[1] == Approx(1.1));
+  CHECK(std::get<PinGroup>(sheet.pins[2].rule).name == "collar");
+  REQUIRE(scene.obstacles.size() == 2);
+  CHECK(std::get<Sphere>(scene.obstacles[0].obstacle.shape).radius == Approx(0.3));
+  CHECK(scene.obstacles[0].obstacle.friction.statics == Approx(0.4));
+  CHECK(scene.obstacles[0].obstacle.margin == Approx(3e-3));
+  CHECK(scene.obstacles[1].obstacle.friction.kinetic == Approx(0.1));
+  CHECK(scene.obstacles[1].mesh == std::filesystem::path("folder/body.obj"));
+}
+
+TEST_CASE("springs given replace the fabric's, and the other way round", "[scene]") {
+  const Scene springs =
+      read(cloth + "fabric = \"cotton-poplin\"\nstretch_spring = 200\nbend_spring = \"1e-7 N.m^2\"\n");
+  CHECK(springs.cloths[0].fabric.stretch_spring == 200.0);
+  CHECK(springs.cloths[0].fabric.bend_spring == 1e-7);
+  CHECK_FALSE(read(cloth).cloths[0].fabric.stretch_spring);
+}
+
+TEST_CASE("a mistake in a scene is told with its line", "[scene]") {
+  struct Mistake {
+    std::string text, place, message;
+  };
+  const Mistake table[] = {
+      {cloth + "bend = \"10 N/m\"\n",
+       "scene.toml:3:", "bend = \"10 N/m\": expected a bending rigidity such as \"10 uN.m\""},
+      {cloth + "bent = 3\n",
+       "scene.toml:3:", "unknown key 'bent' in [[cloth]] number 0; did you mean 'bend'?"},
+      {cloth + "\n\nstretch = -3\n", "scene.toml:5:", "not negative"},
+      {cloth + "stretch = true\n", "scene.toml:3:", "expected a membrane stiffness"},
+      {cloth + "stretch = 1\nstretch_spring = 1\n", "scene.toml:4:", "not both"},
+      {cloth + "area_density = 0\n", "scene.toml:3:", "greater than zero"},
+      {cloth + "fabric = \"coton-poplin\"\n", "scene.toml:3:", "did you mean 'cotton-poplin'?"},
+      {cloth + "fabric = 3\n", "scene.toml:3:", "expected a text in quotes"},
+      {cloth + "model = \"choi-ko\"\n", "scene.toml:3:", "not in this build"},
+      {cloth + "damping_kind = \"both\"\n", "scene.toml:3:", "relative, axial"},
+      {cloth + "scale = -1\n", "scene.toml:3:", "greater than zero"},
+      {cloth + "name = \"a/b\"\n", "scene.toml:3:", "slash"},
+      {cloth + "name = \"..\"\n", "scene.toml:3:", "dot"},
+      {cloth + "rotate = { axis = [0, 0, 0], angle = 1 }\n", "scene.toml:3:", "axis"},
+      {cloth + "rotate = { axis = [1, 0, 0] }\n", "scene.toml:3:", "'angle' is missing"},
+      {cloth + "translate = [1, 2]\n", "scene.toml:3:", "list of three"},
+      {cloth + "translate = [1, \"2 s\", 0]\n", "scene.toml:3:", "expected a length"},
+      {cloth + "pins = [3]\n", "scene.toml:3:", "expected tables"},
+      {cloth + "pins = [{ vertices = [-1] }]\n", "scene.toml:3:", "from 0 up"},
+      {cloth + "pins = [{ vertices = [1], group = \"a\" }]\n", "scene.toml:3:", "expected one of"},
+      {cloth + "pins = [{ box = [[1, 1, 1], [0, 2, 2]] }]\n", "scene.toml:3:", "lower"},
+      {cloth + "neighbour_weighting = 1\n", "scene.toml:3:", "true or false"},
+      {cloth + cloth, "scene.toml:3:", "two cloths are called 'sheet'"},
+      {cloth + "[simulation]\ntime_step = \"-1 s\"\n", "scene.toml:4:", "greater than zero"},
+      {cloth + "[simulation]\ntime_step = \"100 Hz\"\n", "scene.toml:4:", "expected a time"},
+      {cloth + "[simulation]\nduration = nan\n", "scene.toml:4:", "not a finite number"},
+      {cloth + "[simulation]\nduration = 1e300\n", "scene.toml:4:", "steps"},
+      {cloth + "[simulation]\nframe_rate = -1\n", "scene.toml:4:", "not negative"},
+      {cloth + "[simulation]\nnewton_iterations = 0\n", "scene.toml:4:", "from 1 up"},
+      {cloth + "[simulation]\nnewton_iterations = 1.5\n", "scene.toml:4:", "whole number"},
+      {cloth + "[simulation]\ntolerance = 0\n", "scene.toml:4:", "greater than zero"},
+      {cloth + "[simulation]\nthreads = 0\n", "scene.toml:4:", "from 1 up"},
+      {cloth + "[simulation]\nintegrator = \"euler\"\n", "scene.toml:4:", "known are: implicit-euler"},
+      {cloth + "[simulation]\nlinear_solver = \"mpgc\"\n", "scene.toml:4:", "did you mean 'mpcg'?"},
+      {cloth + "[simulatoin]\n", "scene.toml:3:", "did you mean 'simulation'?"},
+      {cloth + "[[obstacle]]\nshape = \"spere\"\n", "scene.toml:4:", "did you mean 'sphere'?"},
+      {cloth + sphere, "scene.toml:3:", "'radius' is missing"},
+      {cloth + sphere + "radius = 0\n", "scene.toml:5:", "greater than zero"},
+      {cloth + sphere + "radius = 1\nsize = [1, 1, 1]\n", "scene.toml:6:", "unknown key 'size'"},
+      {cloth + sphere + "radius = 1\nfriction = -0.1\n", "scene.toml:6:", "not negative"},
+      {cloth + sphere + "radius = 1\nfriction = { static = 0.1, kinetic = 0.3 }\n",
+       "scene.toml:3:", "kinetic"},
+      {cloth + sphere + "radius = 1\nmargin = \"-1 mm\"\n", "scene.toml:6:", "not negative"},
+      {cloth + "[[obstacle]]\nshape = \"box\"\nsize = [1, 0, 1]\n", "scene.toml:3:", "size"},
+      {cloth + "[[obstacle]]\nshape = \"plane\"\nnormal = [0, 0, 0]\n", "scene.toml:3:", "normal"},
+      {cloth + "[[obstacle]]\nshape = \"mesh\"\n", "scene.toml:3:", "'mesh' is missing"},
+      {"[simulation]\nduration = 1\n", "scene.toml:1:", "'cloth' is missing"},
+      {"cloth = []\n", "scene.toml:1:", "there is no cloth"},
+      {"cloth = 3\n", "scene.toml:1:", "expected tables"},
+      {"[[cloth]]\nname = \"a\"\n", "scene.toml:1:", "'mesh' is missing"},
+      {cloth + "= 4\n", "scene.toml:3:", "is not TOML"},
+      {cloth + "mesh = \"again.obj\"\n", "scene.toml:", "is not TOML"},
+      {cloth + "bend = 10 uN.m\n", "scene.toml:3:", "is not TOML"},
+  };
+  for (const Mistake& mistake : table) {
+    INFO(mistake.text);
+    CHECK_THROWS_AS(read(mistake.text), InputError);
+    CHECK_THROWS_WITH(read(mistake.text),
+                      StartsWith(mistake.place) && Contains(mistake.message) && !Contains("\n"));
+  }
+}
+
+TEST_CASE("settings change a scene before it is read", "[scene]") {
+  const std::string text =
+      cloth + "[[cloth]]\nmesh = \"b.obj\"\nname = \"skirt\"\nbend = 1\n" + sphere + "radius = 1\n";
+  const auto with = [&](const char* setting) { return read(text, {parse_setting(setting)}); };
+  CHECK(with("cloth.0.bend=5 uN.m").cloths[0].fabric.bend == Approx(5e-6));
+  CHECK(with("cloth.0.bend=\"5 uN.m\"").cloths[0].fabric.bend == Approx(5e-6));
+  CHECK(with("cloth.sheet.bend=2e-6").cloths[0].fabric.bend == Approx(2e-6));
+  CHECK(with("cloth.skirt.bend=2e-6").cloths[1].fabric.bend == Approx(2e-6));
+  CHECK(with("cloth.1.neighbour_weighting=true").cloths[1].fabric.neighbour_weighting);
+  CHECK(with("simulation.tolerance=1e-4").simulation.step.tolerance == Approx(1e-4));
+  CHECK(with("simulation.gravity=[0, 0, -1]").simulation.gravity[2] == -1);
+  CHECK(with("obstacle.sphere.friction=0.5").obstacles[0].obstacle.friction.kinetic == 0.5);
+  CHECK(with("obstacle.0.friction={static = 0.5, kinetic = 0.4}").obstacles[0].obstacle.friction.statics ==
+        0.5);
+  CHECK(with("cloth.0.pins=[{vertices = [3]}]").cloths[0].pins.size() == 1);
+  CHECK(
+      read("[cloth]\nmesh = \"a.obj\"\n", {parse_setting("cloth.0.damping=0.1")}).cloths[0].fabric.damping ==
+      0.1);
+}
+
+TEST_CASE("a mistake in a setting names the setting", "[scene]") {
+  const auto message_of = [&](const char* setting, const char* message) {
+    INFO(setting);
+    CHECK_THROWS_WITH(read(cloth, {parse_setting(setting)}), StartsWith("--set") && Contains(message));
+  };
+  message_of("cloth.0.bend=5 uN", "--set cloth.0.bend: bend = \"5 uN\": expected a bending rigidity");
+  message_of("cloth.0.bent=5", "unknown key 'bent'");
+  message_of("cloth.3.bend=5", "there is no '3' in the list");
+  message_of("cloth.skirt.bend=5", "it has, from 0: sheet");
+  message_of("obstacle.0.friction=1", "there is no [[obstacle]]");
+  message_of("simulation.duration=-1", "greater than zero");
+  message_of("cloth..bend=1", "empty part");
+  message_of("cloth.0.mesh.x=1", "has no parts");
+  message_of("tolerance=1", "unknown key");
+  message_of("tolerance", "expected PATH=VALUE");
+  message_of("=3", "expected PATH=VALUE");
+}
+
+TEST_CASE("every fabric file is complete and says what was assumed", "[scene]") {
+  const Names names = fabric_names();
+  REQUIRE(names.size() >= 7);
+  for (const std::string& name : names) {
+    INFO(name);
+    const NamedFabric named = load_fabric(name);
+    CHECK_FALSE(named.description.empty());
+    CHECK_FALSE(named.source.empty());
+    CHECK(named.fabric.area_density > 0.05);
+    CHECK(named.fabric.area_density < 0.5);
+    CHECK(named.fabric.bend > 1e-7);
+    CHECK(named.fabric.bend < 1e-4);
+    CHECK(std::find(named.assumed.begin(), named.assumed.end(), "stretch") != named.assumed.end());
+  }
+  CHECK(load_fabric("cotton-broad").fabric.bend == Approx(1.15718e-5));
+  CHECK(load_fabric("polyester-twill").fabric.bend == Approx((1.95e-6 + 6.1e-7) / 2));
+}
