@@ -1,5 +1,6 @@
 #include "app/run.h"
 
+#include <utility>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -175,9 +176,9 @@ void Run::record_step(const StepRow& row) {
   }
   if (!report.converged) {
     ++record_.steps_not_converged;
-    tell_once(told_not_converged_, at + "ended before its solve reached the tolerance (residual " +
-                                       rounded(report.residual, 2) +
-                                       "); further ones are counted in run.json (steps_not_converged)");
+    tell_once(told_not_converged_,
+              at + "had a solve that ended before it reached its tolerance; further ones are "
+                   "counted in run.json (steps_not_converged)");
   }
 }
 

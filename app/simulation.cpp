@@ -20,7 +20,7 @@ TriangleMesh load(const std::filesystem::path& path, const Placement& placement,
 
 void add_limp_message(const Cloth& cloth, const Fabric& fabric, Names& messages) {
   const double curvature = limp_below(cloth.mesh, fabric);
-  if (!(curvature > 2 * limp_curvature)) return;
+  if (!(curvature > 2 * limp_curvature(fabric.bend, fabric.area_density))) return;
   messages.push_back("warning: cloth " + cloth.name +
                      ": the buckling clamp makes it limp below a curvature of " + rounded(curvature, 2) +
                      " 1/m (a radius of " + rounded(100 / curvature, 2) +

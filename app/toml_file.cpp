@@ -47,6 +47,17 @@ Node converted(const TomlValue& value, const std::string& name) {
   return node;
 }
 
+// The library reads nested values by recursion, and some thousand brackets would overflow the stack.
+bool nested_too_deep(std::string_view text) {
+  constexpr int deepest = 200;
+  int depth = 0;
+  for (const char c : text) {
+    depth += c == '[' || c == '{' ? 1 : c == ']' || c == '}' ? -1 : 0;
+    if (depth > deepest) return true;
+  }
+  return false;
+}
+
 // The first line of the library's drawing, without its own function names.
 std::string reason(std::string_view what) {
   what = what.substr(0, what.find('\n'));
@@ -114,6 +125,7 @@ std::string written(const Node& node) {
 }
 
 Node parse_toml(std::string_view text, const std::string& name) {
+  if (nested_too_deep(text)) throw InputError(name + ": is not TOML: its brackets are nested too deep");
   try {
     std::istringstream stream{std::string(text)};
     return converted(toml::parse<toml::discard_comments, std::map, std::vector>(stream, name), name);

@@ -42,6 +42,7 @@ struct BucklingSpring {
     const Buckling b = immediate_buckling(delta);
     return {r.k_b / (r.L * r.L) * b.force, r.k_b / (r.L * r.L * r.L) * b.stiffness};
   }
+  static double stiffest(const Rest& r, double l) { return l > r.L * (1 - r.crossing) && l < 1.02 * r.L ? r.c_b : 0; }
 };
 
 }  // namespace drape

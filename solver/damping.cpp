@@ -16,6 +16,18 @@ Mat3 PairDamping::coefficient(const VecX& x, const Element& e) const {
   return l2 == 0 ? Mat3::Zero() : Mat3((k_d_ / l2 * d) * d.transpose());
 }
 
+double PairDamping::dissipation(const VecX& x, const VecX& v) const {
+  return sum_chunks(static_cast<int>(elements_.size()), [&](int begin, int end) {
+    double sum = 0;
+    for (int k = begin; k < end; ++k) {
+      const Element& e = elements_[static_cast<std::size_t>(k)];
+      const Vec3 dv = v.segment<3>(3 * e.i) - v.segment<3>(3 * e.j);
+      sum += 0.5 * dv.dot(coefficient(x, e) * dv);
+    }
+    return sum;
+  });
+}
+
 void PairDamping::add_force(const VecX& x, const VecX& v, VecX& f) const {
   schedule_.run(static_cast<int>(elements_.size()), [&](int k) {
     const Element& e = elements_[static_cast<std::size_t>(k)];
@@ -25,7 +37,7 @@ void PairDamping::add_force(const VecX& x, const VecX& v, VecX& f) const {
   });
 }
 
-void PairDamping::add_linearised(const VecX& x, const VecX& v, const VecX&, double c, BlockMatrix& A, VecX& b) const {
+void PairDamping::add_linearised(const VecX& x, const VecX& v, const VecX&, double c, Stiffness, BlockMatrix& A, VecX& b) const {
   schedule_.run(static_cast<int>(elements_.size()), [&](int k) {
     const Element& e = elements_[static_cast<std::size_t>(k)];
     const Mat3 cD = c * coefficient(x, e);

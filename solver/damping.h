@@ -8,8 +8,6 @@
 
 namespace drape {
 
-enum class DampingKind { relative, axial };
-
 class PairDamping final : public Force {
  public:
   struct Element {
@@ -23,8 +21,10 @@ class PairDamping final : public Force {
   void list_pairs(std::vector<ParticlePair>& pairs) const override;
   void bind(const BlockPattern& pattern) override { bind_pairs(pattern, elements_, schedule_); }
   double energy(const VecX&) const override { return 0; }
+  double dissipation(const VecX& x, const VecX& v) const override;
   void add_force(const VecX& x, const VecX& v, VecX& f) const override;
-  void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, BlockMatrix& A, VecX& b) const override;
+  void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness, BlockMatrix& A,
+                      VecX& b) const override;
 
  private:
   Mat3 coefficient(const VecX& x, const Element& e) const;  // D of the pair

@@ -8,6 +8,7 @@
 #include "mesh/obj.h"
 #include "mesh/topology.h"
 #include "solver/buckling_spring.h"
+#include "solver/damping.h"
 #include "solver/tension_spring.h"
 
 namespace drape {
@@ -26,6 +27,7 @@ struct BendConnection {
   double L;          // m
   double k_b;        // N m^2
   double clamp_k2;   // N/m/m^2: c_b times the square of the curvature below which it goes limp
+  double B;          // N m: the bending rigidity that k_b amounts to here
 };
 
 std::vector<BendConnection> bend_connections(const TriangleMesh& mesh, const Fabric& fabric) {
@@ -35,19 +37,19 @@ std::vector<BendConnection> bend_connections(const TriangleMesh& mesh, const Fab
     const Vec3 &c = mesh.positions[static_cast<std::size_t>(hinge.c)], &d = mesh.positions[static_cast<std::size_t>(hinge.d)];
     const double l = (b - a).norm(), L = (d - c).norm();
     if (l == 0 || L == 0) continue;
-    // Slivers would be infinitely stiff: a height counts for at least a twentieth of the edge.
+    // Slivers would be infinitely stiff: a height counts for at least a fifth of the edge.
     double h1 = (b - a).cross(c - a).norm() / l, h2 = (b - a).cross(d - a).norm() / l;
     if (h1 < 1e-9 * l || h2 < 1e-9 * l) continue;
-    h1 = std::max(h1, 0.05 * l);
-    h2 = std::max(h2, 0.05 * l);
-    const double of_fabric = fabric.bend * l * L * L * L / (6 * h1 * h2 * (h1 + h2));
-    const double k_b = fabric.bend_spring.value_or(of_fabric);
+    h1 = std::max(h1, 0.2 * l);
+    h2 = std::max(h2, 0.2 * l);
+    const double per_rigidity = l * L * L * L / (6 * h1 * h2 * (h1 + h2));
+    const double k_b = fabric.bend_spring.value_or(fabric.bend * per_rigidity);
     const double clamp_k2 = 96 * k_b / (L * h1 * h2 * (h1 + h2) * (h1 + h2));
     if (!out.empty() && out.back().c == hinge.c && out.back().d == hinge.d) {
       if (!fabric.bend_spring) out.back().k_b += k_b;
       out.back().clamp_k2 = std::max(out.back().clamp_k2, clamp_k2);
     } else {
-      out.push_back({hinge.c, hinge.d, L, k_b, clamp_k2});
+      out.push_back({hinge.c, hinge.d, L, k_b, clamp_k2, k_b / per_rigidity});
     }
   }
   return out;
@@ -80,7 +82,8 @@ std::vector<PairForce<TensionSpring>::Element> stretch_elements(const TriangleMe
 
 double clamp_of(const BendConnection& bend, const Fabric& fabric) {
   if (fabric.buckling_clamp) return *fabric.buckling_clamp;
-  return std::max(fabric.stretch_spring.value_or(fabric.stretch), bend.clamp_k2 / (limp_curvature * limp_curvature));
+  const double kappa = limp_curvature(bend.B, fabric.area_density), k_s = fabric.stretch_spring.value_or(fabric.stretch);
+  return std::clamp(bend.clamp_k2 / (kappa * kappa), k_s, stiffest_clamp * k_s);
 }
 
 }  // namespace
@@ -152,6 +155,8 @@ std::vector<std::unique_ptr<Force>> noh_jung(const TriangleMesh& mesh, const Fab
   if (!bend.empty()) forces.push_back(std::make_unique<PairForce<BucklingSpring>>(std::move(bend)));
   return forces;
 }
+
+double limp_curvature(double bend, double area_density) { return 0.1 * std::cbrt(area_density * 9.81 / bend); }
 
 double limp_below(const TriangleMesh& mesh, const Fabric& fabric) {
   std::vector<double> curvature;

@@ -8,7 +8,10 @@
 //
 // The clamp c_b [N/m] of the diagonals makes their response continuous but removes bending rigidity below the curvature
 //   kappa = sqrt(96 k_b / (c_b L h_1 h_2 (h_1 + h_2)^2))
-// By default c_b is chosen so that this is at most limp_curvature = 5 1/m (a radius of 20 cm), and not below k_s.
+// By default c_b is chosen so that this is at most a tenth of the curvature that the fabric takes under its own weight,
+//   limp_curvature = 0.1 / c,  c = (B / (sigma g))^(1/3) its bending length,
+// but between k_s and stiffest_clamp k_s: a clamp stiffer than that would cost more than the rigidity is worth (limp_below says
+// when a mesh is so fine that it shows).
 #pragma once
 
 #include <memory>
@@ -16,7 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/damping.h"
+#include "solver/force.h"
 
 namespace drape {
 
@@ -32,7 +35,10 @@ struct Fabric {
   bool neighbour_weighting = false;       // Noh & Jung eq. 1-3
 };
 
-inline constexpr double limp_curvature = 5;  // 1/m
+// 0.1 / c [1/m], of a bending rigidity B [N m] and an area density [kg/m^2] under g = 9.81 m/s^2.
+double limp_curvature(double bend, double area_density);
+
+inline constexpr double stiffest_clamp = 10;  // times k_s
 
 // Throws InputError naming the field when a value is negative, not finite, or zero where it may not be.
 void check(const Fabric& fabric);

@@ -10,6 +10,14 @@
 
 namespace drape {
 
+enum class DampingKind { relative, axial };  // of all relative motion, or along the connection only (solver/damping.h)
+
+// Which K stands in an implicit step.
+enum class Stiffness {
+  tangent,   // the positive semidefinite part of -df/dx here
+  majorant,  // also what a slack connection will resist with once it is taut: slower, and never surprised
+};
+
 class Force {
  public:
   virtual ~Force() = default;
@@ -21,10 +29,12 @@ class Force {
   virtual void bind(const BlockPattern& pattern) = 0;
 
   virtual double energy(const VecX& x) const = 0;                              // J
+  virtual double dissipation(const VecX& /*x*/, const VecX& /*v*/) const { return 0; }  // v . D v / 2 [W]
   virtual void add_force(const VecX& x, const VecX& v, VecX& f) const = 0;     // f += force [N]
   // The two sides of an implicit step, linearised at (x, v):  A += c D + c^2 K,  b += c (f - K y).
   // c [s], y [m]: see solver/implicit_euler.h.
-  virtual void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, BlockMatrix& A, VecX& b) const = 0;
+  virtual void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,
+                              BlockMatrix& A, VecX& b) const = 0;
 };
 
 }  // namespace drape

@@ -64,7 +64,7 @@ void ImplicitEuler::resize() {
   if (A_ && &A_->pattern() == pattern.get()) return;
   A_ = std::make_unique<BlockMatrix>(pattern);
   const Eigen::Index n = 3 * system_.particles();
-  for (VecX* vector : {&x_, &v_, &x_bar_, &y_, &x_new_, &v_new_, &guess_, &b_, &b_friction_, &r_, &dv_rows_, &b_rows_,
+  for (VecX* vector : {&x_, &v_, &x_bar_, &y_, &x_new_, &v_new_, &v_base_, &guess_, &b_, &b_friction_, &r_, &dv_rows_, &b_rows_,
                        &r_rows_, &dv_})
     vector->setZero(n);
   filter_.reserve(static_cast<std::size_t>(system_.particles()));
@@ -73,9 +73,13 @@ void ImplicitEuler::resize() {
 
 bool ImplicitEuler::attempt(State& state, double h, StepReport& report) {
   resize();
-  weight_impulse_ = 0;
-  for (double m : system_.masses()) weight_impulse_ += m * m;
-  weight_impulse_ = h * system_.gravity_acceleration().norm() * std::sqrt(weight_impulse_);
+  const double fall = h * system_.gravity_acceleration().norm();
+  weight_impulse_ = fall_energy_ = 0;
+  for (double m : system_.masses()) {
+    weight_impulse_ += m * m;
+    fall_energy_ += m * fall * fall;
+  }
+  weight_impulse_ = fall * std::sqrt(weight_impulse_);
 
   guess(h);
   {
@@ -85,26 +89,32 @@ bool ImplicitEuler::attempt(State& state, double h, StepReport& report) {
   x_ = state.x;
   v_ = state.v;
   LinearReport linear;
-  for (int k = 0; k < options_.newton_iterations; ++k) {
+  bool full = false;  // the last Newton step was taken whole
+  for (int k = 0; k < options_.newton_iterations || !full; ++k) {
+    if (k == options_.newton_iterations + options_.max_rescues) return fail(report, "no step lowers the energy", linear);
     // Linearise at (x, v): A = M + c D + c^2 K, b = M (v_bar - v) + c (f - K y).
     x_bar_ = state.x + constraints_.correction();
     y_ = x_bar_ + h * v_ - x_;
-    v_new_ = state.v;  // v_bar
     {
       const Stopwatch watch(report.assemble_ms);
-      assemble(h);
+      assemble(state.v, h, full || k == 0 ? Stiffness::tangent : Stiffness::majorant);
     }
     if (k > 0) {
-      if (nonlinear_residual(h) <= options_.newton_tolerance * weight_impulse_) break;
+      if (full && nonlinear_residual(h) <= options_.newton_tolerance * weight_impulse_) break;
       guess_.setZero();
     }
     // Solve S (A dv - b) = 0 until the contacts agree with the solution.
     linear = solve_within_contacts(h, report);
     ++report.newton_iterations;
-    if (fail(report, linear)) return false;
+    if (!good(linear)) return fail(report, "linear solve: " + std::string(drape::name(linear.reason)), linear);
     // v += dv, x = x_bar + c v
-    v_ += dv_;
+    {
+      const Stopwatch watch(report.assemble_ms);
+      full = descend(state.v, k == 0, h);
+      if (!full) ++report.rescues;
+    }
     x_ = state.x + constraints_.correction() + h * v_;
+    if (!x_.allFinite()) return fail(report, "the new positions are not finite numbers", linear);
   }
   x_new_ = x_;
   v_new_ = v_;
@@ -129,15 +139,15 @@ void ImplicitEuler::guess(double h) {
   for (Eigen::Index i = 0; i < guess_.size() / 3; ++i) guess_.segment<3>(3 * i) = h * system_.gravity_acceleration();
 }
 
-void ImplicitEuler::assemble(double h) {
+void ImplicitEuler::assemble(const VecX& v_bar, double h, Stiffness stiffness) {
   A_->set_to_mass(system_.masses());
   const std::vector<double>& mass = system_.masses();
   for_chunks(system_.particles(), [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
       b_.segment<3>(3 * i) = mass[static_cast<std::size_t>(i)] *
-                             (v_new_.segment<3>(3 * i) - v_.segment<3>(3 * i) + h * system_.gravity_acceleration());
+                             (v_bar.segment<3>(3 * i) - v_.segment<3>(3 * i) + h * system_.gravity_acceleration());
   });
-  for (const auto& force : system_.forces()) force->add_linearised(x_, v_, y_, h, *A_, b_);
+  for (const auto& force : system_.forces()) force->add_linearised(x_, v_, y_, h, stiffness, *A_, b_);
 }
 
 LinearReport ImplicitEuler::solve_within_contacts(double h, StepReport& report) {
@@ -214,24 +224,64 @@ void ImplicitEuler::remove_contact_friction() {
   for (const auto& [slot, block] : rubbed_) A_->at(slot) = block;
 }
 
-bool ImplicitEuler::fail(StepReport& report, const LinearReport& linear) const {
+bool ImplicitEuler::good(const LinearReport& linear) const {
+  if (!dv_.allFinite()) return false;
+  return linear.reason == StopReason::converged ||
+         (linear.reason == StopReason::iteration_limit && options_.max_linear_iterations > 0);
+}
+
+bool ImplicitEuler::fail(StepReport& report, const std::string& what, const LinearReport& linear) const {
   report.residual = linear.residual;
-  if (linear.reason == StopReason::converged && dv_.allFinite()) return false;
-  if (linear.reason == StopReason::iteration_limit && options_.max_linear_iterations > 0) return false;
-  report.converged = false;
-  report.failure.what = linear.reason == StopReason::converged ? "the new velocities are not finite numbers"
-                                                               : "linear solve: " + std::string(drape::name(linear.reason));
-  report.failure.force = system_.not_finite_force(x_, v_);
+  report.failure = {what, -1, std::string(system_.not_finite_force(x_, v_))};
   double worst = -1;
   for (int i = 0; i < system_.particles(); ++i) {
     const double size = dv_.segment<3>(3 * i).norm();
-    if (!std::isfinite(size) || size > worst) {
-      worst = size;
-      report.failure.particle = i;
-      if (!std::isfinite(size)) break;
-    }
+    if (std::isfinite(size) && size <= worst) continue;
+    worst = size;
+    report.failure.particle = i;
+    if (!std::isfinite(size)) break;
   }
-  return true;
+  return false;
+}
+
+// Phi(v), see the header.
+double ImplicitEuler::potential(const VecX& v, const VecX& v_bar, double h) {
+  x_new_ = x_bar_ + h * v;
+  const std::vector<double>& mass = system_.masses();
+  double phi = sum_chunks(system_.particles(), [&](int begin, int end) {
+    double sum = 0;
+    for (int i = begin; i < end; ++i) {
+      const Vec3 d = v.segment<3>(3 * i) - v_bar.segment<3>(3 * i) - h * system_.gravity_acceleration();
+      sum += 0.5 * mass[static_cast<std::size_t>(i)] * d.squaredNorm();
+    }
+    return sum;
+  });
+  for (const auto& force : system_.forces()) phi += force->energy(x_new_) + h * force->dissipation(x_, v);
+  for (const ContactFriction& f : constraints_.friction()) {
+    const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
+    phi += 0.5 * h * slip.dot(f.damping * slip) - f.impulse.dot(slip);
+  }
+  return phi;
+}
+
+// v <- v + dv when that lowers Phi, else as far towards it as does. True when the step was taken whole.
+bool ImplicitEuler::descend(const VecX& v_bar, bool first, double h) {
+  v_base_ = v_;
+  if (first) {  // the point of linearisation: standing still, but for what is prescribed
+    constraints_.filter(v_, filter_);
+    v_base_ = -v_;
+    filter_.impose(v_base_);
+    v_base_ += v_;
+  }
+  v_ += dv_;
+  const double start = potential(v_base_, v_bar, h);
+  // A tenth of the energy that the fall of one step brings: what a solve to its tolerance may leave.
+  const double allowed = start + 1e-9 * std::abs(start) + 0.05 * fall_energy_;
+  for (int halvings = 0; halvings < 12; ++halvings) {
+    if (potential(v_, v_bar, h) <= allowed) return halvings == 0;
+    v_ = 0.5 * (v_ + v_base_);
+  }
+  return false;
 }
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,

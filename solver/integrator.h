@@ -16,6 +16,7 @@ struct StepOptions {
   double tolerance = 1e-6;         // of the linear solve, see LinearOptions
   int max_linear_iterations = 0;   // 0: chosen by size, and reaching it is a failure; given: the solve stops there and says so
   int max_contact_solves = 5;      // how often a step may be solved again because a contact changed
+  int max_rescues = 20;            // further Newton iterations when a full one would raise the incremental potential
   int max_halvings = 6;            // how often a failed step may be halved before it is given up
 };
 
@@ -30,9 +31,10 @@ struct StepReport {
   bool done = true;             // false: the state is as it was before
   StepFailure failure;          // when not done
   int substeps = 1;             // pieces the step was cut into, because it failed whole
-  int newton_iterations = 0;    // these four summed over the substeps
+  int newton_iterations = 0;    // these summed over the substeps
   int linear_solves = 0;
   int linear_iterations = 0;
+  int rescues = 0;              // Newton iterations that had to be cut short, so that energy is not made
   int guarded = 0;              // particles stopped at a surface outside the equations
   double residual = 0;          // relative, the worst of the solves that the step ended with
   bool converged = true;        // every solve reached its tolerance

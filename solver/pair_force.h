@@ -3,7 +3,8 @@
 // A law is a small pure function of the distance l, given the rest data of one pair:
 //   struct Law { struct Rest {...}; static constexpr const char* name;
 //                static double energy(const Rest&, double l);         // E(l)                       [J]
-//                static Tension tension(const Rest&, double l); };    // t = dE/dl, dt/dl           [N], [N/m]
+//                static Tension tension(const Rest&, double l);       // t = dE/dl, dt/dl           [N], [N/m]
+//                static double stiffest(const Rest&, double l); };    // dt/dl, or what it jumps to nearby [N/m]
 // With d = x_i - x_j, l = |d|, n = d/l:
 //   f_i = -t n,  f_j = t n
 //   K   = max(dt/dl, 0) n n^T + max(t/l, 0) (I - n n^T)     of block (i,i) and (j,j); -K of (i,j) and (j,i)
@@ -140,12 +141,14 @@ class PairForce final : public Force {
     });
   }
 
-  void add_linearised(const VecX& x, const VecX&, const VecX& y, double c, BlockMatrix& A, VecX& b) const override {
+  void add_linearised(const VecX& x, const VecX&, const VecX& y, double c, Stiffness stiffness, BlockMatrix& A,
+                      VecX& b) const override {
     schedule_.run(static_cast<int>(elements_.size()), [&](int k) {
       const Element& e = elements_[static_cast<std::size_t>(k)];
       const Vec3 d = x.segment<3>(3 * e.i) - x.segment<3>(3 * e.j);
       const double l = d.norm();
-      const Tension law = Law::tension(e.rest, l);
+      Tension law = Law::tension(e.rest, l);
+      if (stiffness == Stiffness::majorant) law.dt = std::max(law.dt, Law::stiffest(e.rest, l));
       if ((law.t == 0 && law.dt == 0) || (l == 0 && law.t != 0)) return;
       const double pull = l == 0 ? 0 : law.t / l;
       const double across = l == 0 ? law.dt : std::max(pull, 0.0);

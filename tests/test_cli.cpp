@@ -134,6 +134,21 @@ TEST_CASE("frames may be OBJ files or none, and only the last", "[cli]") {
   CHECK(fs::file_size(shop.path / "l/sheet.pc2") == 32 + 169 * 12);
 }
 
+TEST_CASE("several cloths run together, each with its own files", "[cli]") {
+  const Workshop shop;
+  shop.write("two.toml", shop.cloth +
+                             "name = \"upper\"\ntranslate = [0, 1, 0]\npins = [{ vertices = [84] }]\n" +
+                             shop.cloth + "scale = 0.5\n[simulation]\nduration = 0.1\n");
+  REQUIRE(shop.run("simulate two.toml --out o").exit_code == 0);
+  CHECK(shop.files("o") ==
+        std::set<std::string>{"run.json", "steps.csv", "sheet.obj", "sheet.pc2", "upper.obj", "upper.pc2"});
+  const TriangleMesh start = read_obj(shop.path / "sheet.obj"), upper = read_obj(shop.path / "o/upper.obj"),
+                     lower = read_obj(shop.path / "o/sheet.obj");
+  CHECK((upper.positions[84] - start.positions[84] - Vec3(0, 1, 0)).norm() < 1e-6);
+  const double fallen = 9.81 * 0.01 * 0.01 * 55;  // implicit Euler: g h^2 (1 + 2 + ... + 10)
+  CHECK((lower.positions[84] - 0.5 * start.positions[84] + fallen * Vec3::UnitY()).norm() < 1e-6);
+}
+
 TEST_CASE("quiet says nothing, a settled cloth stops a run, the last step meets the duration", "[cli]") {
   const Workshop shop;
   const Outcome run = shop.run("simulate s.toml --out o --quiet --duration '95 ms' --time-step 0.02");

@@ -73,7 +73,7 @@ struct Network {
     BlockMatrix A(std::make_shared<const BlockPattern>(pattern));
     A.set_to_mass(std::vector<double>(8, 0.0));
     VecX b = VecX::Zero(24);
-    force.add_linearised(x, VecX::Zero(24), VecX::Zero(24), 1.0, A, b);
+    force.add_linearised(x, VecX::Zero(24), VecX::Zero(24), 1.0, Stiffness::tangent, A, b);
     Eigen::MatrixXd K(24, 24);
     VecX row = VecX::Zero(24), out(24), column(24);
     for (Eigen::Index k = 0; k < 24; ++k) {
@@ -162,7 +162,7 @@ TEMPLATE_LIST_TEST_CASE("the assembled stiffness is the positive semidefinite pa
     const VecX y = random_vector(24, 1, seed + 100);
     BlockMatrix A(std::make_shared<const BlockPattern>(net.pattern));
     VecX b = VecX::Zero(24);
-    net.force.add_linearised(net.x, y, y, 0.5, A, b);
+    net.force.add_linearised(net.x, y, y, 0.5, Stiffness::tangent, A, b);
     CHECK((b - 0.5 * (net.f(net.x) - K * y)).norm() < 1e-12 * (1 + b.norm()));
   }
 }
@@ -196,10 +196,10 @@ TEST_CASE("coincident particles: no direction, no force, and nothing that is not
   CHECK(f.norm() == 0);
   BlockMatrix A(std::make_shared<const BlockPattern>(pattern));
   VecX b = VecX::Zero(6);
-  bend.add_linearised(x, x, x, 1, A, b);
+  bend.add_linearised(x, x, x, 1, Stiffness::tangent, A, b);
   CHECK(b.norm() == 0);
   CHECK(A.at(pattern.diagonal(0)).norm() == 0);
-  weld.add_linearised(x, x, x, 1, A, b);
+  weld.add_linearised(x, x, x, 1, Stiffness::tangent, A, b);
   CHECK((A.at(pattern.diagonal(0)) - 30 * Mat3::Identity()).norm() == 0);
 }
 
@@ -219,7 +219,7 @@ TEST_CASE("damping resists relative motion only, and never drives", "[forces]") 
     // D is minus the slope of the force in v.
     BlockMatrix A(std::make_shared<const BlockPattern>(pattern));
     VecX b = VecX::Zero(9), row(9), out(9), Dv(9);
-    damping.add_linearised(x, v, VecX::Zero(9), 0.1, A, b);
+    damping.add_linearised(x, v, VecX::Zero(9), 0.1, Stiffness::tangent, A, b);
     CHECK((b - 0.1 * f).norm() < 1e-15);
     to_rows(pattern, v, row);
     A.multiply(row, out);

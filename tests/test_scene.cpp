@@ -146,6 +146,7 @@ TEST_CASE("a mistake in a scene is told with its line", "[scene]") {
       {"cloth = []\n", "scene.toml:1:", "there is no cloth"},
       {"cloth = 3\n", "scene.toml:1:", "expected tables"},
       {"[[cloth]]\nname = \"a\"\n", "scene.toml:1:", "'mesh' is missing"},
+      {"x = " + std::string(100000, '[') + "\n", "scene.toml:", "nested too deep"},
       {cloth + "= 4\n", "scene.toml:3:", "is not TOML"},
       {cloth + "mesh = \"again.obj\"\n", "scene.toml:", "is not TOML"},
       {cloth + "bend = 10 uN.m\n", "scene.toml:3:", "is not TOML"},
