@@ -10,8 +10,8 @@ namespace {
 
 // A contact changes its mind this often within a step, then keeps its grip until the next one.
 constexpr int most_changes = 3;
-// A particle whose sliding the friction could stop a thousand times over within the step is taken to have stopped.
-constexpr double stop_fraction = 1e-3;
+// A particle whose sliding the friction could stop a million times over within the step is taken to have stopped.
+constexpr double stop_fraction = 1e-6;
 
 const ContactPlane* plane_with(const Contact* contact, int obstacle) {
   if (!contact) return nullptr;
@@ -295,23 +295,30 @@ ContactReport Constraints::end_step(VecX& x_new, VecX& v_new) {
   return report;
 }
 
-// The last line of defence, outside the equations: no particle that was outside a body ends inside it, or behind it.
+// The last line of defence, outside the equations: no particle that was outside a body ends inside it, or behind it; none that
+// was inside ends deeper.
 void Constraints::guard(int particle, VecX& x_new, VecX& v_new, int& guarded) {
   const Vec3 x = x_.segment<3>(3 * particle);
   for (int o = 0; o < static_cast<int>(obstacles_.size()); ++o) {
     const Obstacle& obstacle = obstacles_[static_cast<std::size_t>(o)];
     const Vec3 path = x_new.segment<3>(3 * particle) - x;
-    const double travel = path.norm();
-    double& clear = clearance(o, particle);
-    if (clear >= 0 && clear < travel) {
-      if (const auto hit = first_hit(obstacle.shape, x, x + path, 0)) {
-        x_new.segment<3>(3 * particle) = x + hit->fraction * path;
-        const double inward = (v_new.segment<3>(3 * particle) - obstacle.velocity_at(x)).dot(hit->surface.normal);
-        if (inward < 0) v_new.segment<3>(3 * particle) -= inward * hit->surface.normal;
-        ++guarded;
-      }
+    const double travel = path.norm(), clear = clearance(o, particle);
+    clearance(o, particle) = std::max(0.0, clear - travel);
+    if (clear >= travel) continue;
+    Vec3 end = x + path;
+    if (clear >= 0) {
+      const auto hit = first_hit(obstacle.shape, x, end, 0);
+      if (!hit) continue;
+      end = x + hit->fraction * path;
     }
-    clear = std::max(0.0, clear - travel);
+    const SurfacePoint s = closest(obstacle.shape, end);
+    const double floor = std::min(clear, 0.0);
+    if (s.distance < floor) end += (floor - s.distance) * s.normal;
+    if (end == x + path) continue;
+    x_new.segment<3>(3 * particle) = end;
+    const double inward = (v_new.segment<3>(3 * particle) - obstacle.velocity_at(x)).dot(s.normal);
+    if (inward < 0) v_new.segment<3>(3 * particle) -= inward * s.normal;
+    ++guarded;
   }
 }
 

@@ -20,8 +20,8 @@ void parallel_for(int count, bool serial, const F& f) {
     for (int k = 0; k < count; ++k) f(k);
     return;
   }
-#pragma omp parallel for schedule(static) num_threads(threads())
-  for (int k = 0; k < count; ++k) f(k);
+  run_in_parallel(
+      count, [](const void* context, int k) { (*static_cast<const F*>(context))(k); }, &f);
 }
 
 inline constexpr int chunk_size = 512;

@@ -42,7 +42,11 @@ struct BucklingSpring {
     const Buckling b = immediate_buckling(delta);
     return {r.k_b / (r.L * r.L) * b.force, r.k_b / (r.L * r.L * r.L) * b.stiffness};
   }
-  static double stiffest(const Rest& r, double l) { return l > r.L * (1 - r.crossing) && l < 1.02 * r.L ? r.c_b : 0; }
+  // The chord to the rest length: the law falls off from it, so a parabola of this stiffness lies above the energy.
+  static double stiffest(const Rest& r, double l) {
+    if (l >= r.L) return l < 1.02 * r.L ? r.c_b : 0;
+    return tension(r, l).t / (l - r.L);
+  }
 };
 
 }  // namespace drape

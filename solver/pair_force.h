@@ -4,7 +4,7 @@
 //   struct Law { struct Rest {...}; static constexpr const char* name;
 //                static double energy(const Rest&, double l);         // E(l)                       [J]
 //                static Tension tension(const Rest&, double l);       // t = dE/dl, dt/dl           [N], [N/m]
-//                static double stiffest(const Rest&, double l); };    // dt/dl, or what it jumps to nearby [N/m]
+//                static double stiffest(const Rest&, double l); };    // >= dt/dl: of a parabola above E(l) [N/m]
 // With d = x_i - x_j, l = |d|, n = d/l:
 //   f_i = -t n,  f_j = t n
 //   K   = max(dt/dl, 0) n n^T + max(t/l, 0) (I - n n^T)     of block (i,i) and (j,j); -K of (i,j) and (j,i)

@@ -167,6 +167,19 @@ TEMPLATE_LIST_TEST_CASE("the assembled stiffness is the positive semidefinite pa
   }
 }
 
+TEMPLATE_LIST_TEST_CASE("the majorant stiffness is that of a parabola above the energy of a lengthening pair", "[forces]", Laws) {
+  using Law = typename TestType::Law;
+  const auto rest = TestType::rest();
+  for (double l = 0.01; l < 1.1; l += 0.037) {
+    const Tension law = Law::tension(rest, l);
+    const double k = std::max(law.dt, Law::stiffest(rest, l));
+    for (double to = l; to < 1.1; to += 0.041) {
+      INFO(l << " to " << to);
+      CHECK(Law::energy(rest, to) <= Law::energy(rest, l) + law.t * (to - l) + 0.5 * k * (to - l) * (to - l) + 1e-9);
+    }
+  }
+}
+
 TEMPLATE_LIST_TEST_CASE("internal forces carry no momentum, no torque, and no energy of rigid motion", "[forces]", Laws) {
   Network<TestType> net(8);
   const VecX f = net.f(net.x);

@@ -1,5 +1,5 @@
 # Configures and builds the library without its optional parts.
-#   cmake -DSOURCE_DIR= -DWORK_DIR= -DGENERATOR= -DCXX= -DLAUNCHER= -P no_options.cmake
+#   cmake -DSOURCE_DIR= -DWORK_DIR= -DGENERATOR= -DCXX= -DLAUNCHER= -P without_options.cmake
 foreach(step "configure" "build")
   if(step STREQUAL "configure")
     set(command -S ${SOURCE_DIR} -B ${WORK_DIR} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}

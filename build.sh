@@ -1,0 +1,286 @@
+#!/usr/bin/env bash
+# One script for everything: see usage below, or ./build.sh --help.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+usage() {
+  cat <<'END'
+usage: ./build.sh WORD
+
+  demo            install the packages that are missing, build, drape a cloth from an OBJ over a body into out/demo
+  test            the same, then build and run every test
+  build           install what is missing and build the program, build/release/drape
+  bench           build and run the benchmarks
+  compare         run the comparisons of tests/compare
+  lint            check the formatting, then clang-tidy
+  format          format the sources in place; format --check only looks
+  sanitize        build with the address and undefined-behaviour sanitizers and run the tests, but for the slow ones
+  install PREFIX  build, then install the program, the library and its headers under PREFIX
+
+Missing Debian or Ubuntu packages are installed with apt-get, through sudo when not root; elsewhere they are only named.
+DRAPE_JOBS=N sets the number of compile jobs; otherwise it follows from the processors and the free memory.
+END
+}
+
+say() { printf '== %s\n' "$*"; }
+warn() { printf 'build.sh: %s\n' "$*" >&2; }
+die() {
+  warn "$*"
+  exit 1
+}
+
+# --- packages ---------------------------------------------------------------------------------------------------------------
+
+required=(g++ cmake ninja-build libeigen3-dev libembree-dev libtoml11-dev libcli11-dev nlohmann-json3-dev libudunits2-dev)
+optional=(libsuitesparse-dev)
+for_tests=(catch2 libtinyobjloader-dev)
+for_format=(clang-format)
+for_lint=(clang-tidy)
+
+installed() {
+  case "$1" in  # a tool counts wherever it comes from
+    g++) [[ -n "${CXX:-}" ]] || command -v g++ >/dev/null ;;
+    cmake | clang-format | clang-tidy) command -v "$1" >/dev/null ;;
+    ninja-build) command -v ninja >/dev/null ;;
+    *) command -v dpkg-query >/dev/null && [[ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" == installed ]] ;;
+  esac
+}
+
+missing() {
+  local package
+  for package in "$@"; do
+    installed "$package" || printf '%s\n' "$package"
+  done
+}
+
+as_root() {
+  if [[ $EUID -eq 0 ]]; then "$@"; else sudo "$@"; fi
+}
+
+apt_install() {
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends "$@"
+}
+
+apt_knows() {  # every one of these packages
+  local package
+  for package in "$@"; do
+    [[ -n "$(apt-cache show --no-all-versions "$package" 2>/dev/null)" ]] || return 1
+  done
+}
+
+apt_update() {
+  say "updating the list of packages"
+  as_root apt-get update
+}
+
+# Installs those of the packages that are missing. Fails only when the package manager does.
+get() {
+  local -a needed
+  mapfile -t needed < <(missing "$@")
+  [[ ${#needed[@]} -gt 0 ]] || return 0
+  if ! command -v apt-get >/dev/null; then
+    warn "there is no apt-get here; this needs what Debian calls: ${needed[*]}"
+    return 0
+  fi
+  if [[ $EUID -ne 0 ]] && ! command -v sudo >/dev/null; then
+    warn "not root, and there is no sudo; to be installed: apt-get install ${needed[*]}"
+    return 0
+  fi
+  say "installing the missing packages: ${needed[*]}"
+  if ! apt_knows "${needed[@]}"; then
+    apt_update || return 1
+    apt_install "${needed[@]}"
+  else
+    # A list that has grown old names files that are gone.
+    apt_install "${needed[@]}" || { apt_update && apt_install "${needed[@]}"; }
+  fi
+}
+
+get_required() {
+  get "$@" || die "these packages could not be installed: $(missing "$@" | tr '\n' ' ')"
+}
+
+get_for_build() {
+  get_required "${required[@]}"
+  get "${optional[@]}" || warn "going on without: $(missing "${optional[@]}" | tr '\n' ' ')"
+}
+
+# --- building ---------------------------------------------------------------------------------------------------------------
+
+# As many compile jobs as there are processors, and at most one for every 1.5 GB of free memory.
+jobs() {
+  if [[ -n "${DRAPE_JOBS:-}" ]]; then
+    printf '%s\n' "$DRAPE_JOBS"
+    return
+  fi
+  local processors free_kb limit
+  processors=$(nproc 2>/dev/null || echo 1)
+  free_kb=$(awk '/^MemAvailable:/ { print $2 }' /proc/meminfo 2>/dev/null || true)
+  limit=$(cat /sys/fs/cgroup/memory.max 2>/dev/null || true)  # of a container
+  if [[ "$limit" =~ ^[0-9]+$ ]] && ((limit / 1024 < ${free_kb:-0})); then free_kb=$((limit / 1024)); fi
+  awk -v p="$processors" -v kb="${free_kb:-0}" 'BEGIN { m = kb > 0 ? int(kb / 1572864) : p; n = m < p ? m : p; print n < 1 ? 1 : n }'
+}
+
+# configure PRESET [OPTION...]
+configure() {
+  local preset=$1
+  shift
+  local -a options=("$@")
+  if command -v ccache >/dev/null; then options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
+  say "configuring build/$preset"
+  cmake --preset "$preset" ${options[@]+"${options[@]}"} || die "configuring failed, see above"
+}
+
+# compile PRESET [TARGET]
+compile() {
+  local preset=$1
+  say "building build/$preset"
+  cmake --build --preset "$preset" --parallel "$(jobs)" ${2:+--target "$2"} || die "building failed, see above"
+}
+
+# One tree serves every word. A new one is made without the tests; one that has them keeps them.
+configure_program() {
+  if [[ -f build/release/CMakeCache.txt ]]; then configure release; else configure release -DDRAPE_TESTS=OFF; fi
+}
+
+# run_tests PRESET [CTEST OPTION...]
+run_tests() {
+  local preset=$1
+  shift
+  say "running the tests of build/$preset"
+  ctest --test-dir "build/$preset" --output-on-failure --parallel "$(nproc)" "$@" || die "tests failed, see above"
+}
+
+# --- words ------------------------------------------------------------------------------------------------------------------
+
+build() {
+  get_for_build
+  configure_program
+  compile release drape_program
+}
+
+demo() {
+  local scene=data/scenes/poncho.toml out=out/demo
+  build
+  say "draping $scene into $out"
+  build/release/drape simulate "$scene" --out "$out" || die "the demo failed, see above"
+  say "written:"
+  find "$out" -type f -printf '%10s bytes  %p\n' | sort -k3
+}
+
+run_all_tests() {
+  get_for_build
+  get_required "${for_tests[@]}"
+  configure release -DDRAPE_TESTS=ON
+  compile release
+  run_tests release
+}
+
+sanitize() {
+  get_for_build
+  get_required "${for_tests[@]}"
+  configure sanitize -DDRAPE_TESTS=ON
+  compile sanitize
+  run_tests sanitize --label-exclude slow
+}
+
+bench() {
+  get_for_build
+  configure_program
+  compile release drape_bench
+  build/release/drape_bench "$@"
+}
+
+compare() {
+  local -a scripts
+  mapfile -t scripts < <(find tests/compare -maxdepth 1 -type f -perm -u+x | sort)
+  if [[ ${#scripts[@]} -eq 0 ]]; then
+    say "there are no comparisons in tests/compare yet; './build.sh bench' times our linear solvers beside Eigen's"
+    return 0
+  fi
+  build
+  local script
+  local -a failed=()
+  for script in "${scripts[@]}"; do
+    say "$script"
+    "$script" || failed+=("$script")
+  done
+  [[ ${#failed[@]} -eq 0 ]] || die "these comparisons failed: ${failed[*]}"
+}
+
+install_into() {
+  [[ $# -eq 1 ]] || { warn "install needs one folder: ./build.sh install PREFIX"; exit 2; }
+  build
+  compile release drape
+  cmake --install build/release --prefix "$1" || die "installing under $1 failed, see above"
+}
+
+sources() {  # the tracked ones, or in a copy without git all of them
+  git ls-files -- '*.h' '*.cpp' 2>/dev/null | grep . || find mesh constraints solver app tests -name '*.h' -o -name '*.cpp' | sort
+}
+
+# Another version of clang-format breaks lines elsewhere: only this one decides.
+format_version=14
+
+format() {
+  get_required "${for_format[@]}"
+  local version
+  version=$(clang-format --version | sed -n 's/.*version \([0-9]*\)\..*/\1/p')
+  local -a files
+  mapfile -t files < <(sources)
+  if [[ "$version" != "$format_version" ]]; then
+    warn "formatting is as clang-format $format_version does it, and this is version $version: not done"
+  elif [[ "${1:-}" == --check ]]; then
+    say "checking the format of ${#files[@]} files"
+    clang-format --dry-run -Werror "${files[@]}" || die "not formatted, see above; ./build.sh format puts it right"
+  else
+    clang-format -i "${files[@]}"
+  fi
+}
+
+lint() {
+  format --check
+  get_for_build
+  get_required "${for_tests[@]}" "${for_lint[@]}"
+  configure release -DDRAPE_TESTS=ON
+  # clang has no omp.h of its own where its OpenMP library is not installed; the compiler's serves, but for an attribute.
+  mkdir -p build/lint
+  sed 's/, __malloc__ (omp_free)//; s/__malloc__ (omp_free), //' "$("${CXX:-g++}" -print-file-name=include)/omp.h" >build/lint/omp.h
+  local -a files
+  mapfile -t files < <(sources | grep '\.cpp$' | grep -v '^tests/outside/')
+  say "clang-tidy on ${#files[@]} files"
+  tidy "${files[@]}" || die "clang-tidy has findings, see above"
+}
+
+# The analyzer is for the library: in app/ and tests/ it would spend minutes in the headers of the command line, TOML and Catch.
+tidy() {
+  local -a arguments=(--quiet -p build/release --extra-arg=-w "--extra-arg=-isystem$PWD/build/lint") library others
+  mapfile -t library < <(printf '%s\n' "$@" | grep -E '^(mesh|constraints|solver)/')
+  mapfile -t others < <(printf '%s\n' "$@" | grep -vE '^(mesh|constraints|solver)/')
+  local status=0
+  printf '%s\n' "${library[@]}" | xargs -P "$(jobs)" -n 1 clang-tidy "${arguments[@]}" || status=1
+  printf '%s\n' "${others[@]}" | xargs -P "$(jobs)" -n 1 clang-tidy "${arguments[@]}" '--checks=-clang-analyzer-*' || status=1
+  return $status
+}
+
+word=${1:-}
+[[ $# -eq 0 ]] || shift
+case "$word" in
+  demo | build | compare | lint | sanitize)
+    [[ $# -eq 0 ]] || { warn "'$word' takes nothing more, but got: $*"; exit 2; }
+    "$word"
+    ;;
+  test)
+    [[ $# -eq 0 ]] || { warn "'test' takes nothing more, but got: $*"; exit 2; }
+    run_all_tests
+    ;;
+  bench) bench "$@" ;;
+  format) format "$@" ;;
+  install) install_into "$@" ;;
+  -h | --help | help) usage ;;
+  *)
+    [[ -z "$word" ]] || warn "there is no '$word'"
+    usage >&2
+    exit 2
+    ;;
+esac

@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+"""Makes the meshes of this folder again: sheet-958.obj, tablecloth.obj, poncho.obj, flag.obj. Not run by the build.
+
+    python3 make_meshes.py                       the four generated meshes
+    python3 make_meshes.py BODY.obj TEE.obj      body.obj and tee.obj, too, from files in metres (see ../README.md)
+
+Needs numpy and scipy (Debian: python3-scipy). The seeds are fixed: it makes the same files every time.
+"""
+import pathlib
+import sys
+
+import numpy as np
+from scipy.spatial import Delaunay
+
+here = pathlib.Path(__file__).resolve().parent
+rounds_of_relaxation = 60
+smallest_angle = 25  # degrees, of the irregular meshes
+
+
+def triangulate(points, hole):
+    """Delaunay triangles of points (x, z), turned so that their normals point up (y), without those in the hole."""
+    t = Delaunay(points).simplices
+    a, b, c = (points[t[:, k]] for k in range(3))
+    twice = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    t[twice > 0] = t[twice > 0][:, [0, 2, 1]]
+    keep = np.abs(twice) > 1e-7  # what lies between points of one straight side has no area
+    if hole is not None:
+        # A triangle that only has vertices of the hole's rim lies in the hole.
+        keep &= ~hole[t].all(axis=1)
+    return t[keep]
+
+
+def area_and_middle(points, t):
+    a, b, c = (points[t[:, k]] for k in range(3))
+    area = 0.5 * np.abs((b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0]))
+    return area, (a + b + c) / 3
+
+
+def relaxed(rim, inside, hole=None):
+    """Lloyd relaxation of the inner points: each goes to the middle of the triangles around it. The rim stays."""
+    points = np.vstack([rim, inside])
+    for _ in range(rounds_of_relaxation):
+        t = triangulate(points, hole)
+        area, middle = area_and_middle(points, t)
+        weight = np.zeros(len(points))
+        moment = np.zeros_like(points)
+        for k in range(3):
+            np.add.at(weight, t[:, k], area)
+            np.add.at(moment, t[:, k], area[:, None] * middle)
+        points[len(rim):] = (moment / weight[:, None])[len(rim):]
+    points = np.round(points, 5)
+    return points, triangulate(points, hole)
+
+
+def spread(rng, count, low, high, inside, distance):
+    """`count` random points where `inside` holds, none nearer than `distance` to another."""
+    points = np.empty((0, 2))
+    while len(points) < count:
+        p = rng.uniform(low, high, 2)
+        if inside(p) and (len(points) == 0 or np.min(np.sum((points - p) ** 2, axis=1)) > distance**2):
+            points = np.vstack([points, p])
+    return points
+
+
+def square(rng, side, per_side, count):
+    """A square of `count` vertices, `per_side` edges on each side, centred."""
+    s = np.arange(per_side) / per_side * side - side / 2
+    e = np.full(per_side, side / 2)
+    rim = np.vstack([np.c_[s, -e], np.c_[e, s], np.c_[-s, e], np.c_[-e, -s]])
+    edge = side / per_side
+    half = side / 2 - 0.6 * edge
+    return relaxed(rim, spread(rng, count - len(rim), -half, half, lambda p: True, 0.72 * edge))
+
+
+def ring(rng, inner, outer, around_inner, around_outer, count):
+    def circle(radius, n):
+        a = 2 * np.pi * np.arange(n) / n
+        return radius * np.c_[np.cos(a), np.sin(a)]
+
+    rim = np.vstack([circle(inner, around_inner), circle(outer, around_outer)])
+    edge = 2 * np.pi * outer / around_outer
+    between = lambda p: inner + 0.6 * edge < np.hypot(*p) < outer - 0.6 * edge
+    hole = np.zeros(count, bool)
+    hole[:around_inner] = True
+    return relaxed(rim, spread(rng, count - len(rim), -outer, outer, between, 0.72 * edge), hole)
+
+
+def angles(points, t):
+    p = points[t]
+    smallest = 180.0
+    for k in range(3):
+        u, v = p[:, (k + 1) % 3] - p[:, k], p[:, (k + 2) % 3] - p[:, k]
+        cosine = (u * v).sum(1) / np.linalg.norm(u, axis=1) / np.linalg.norm(v, axis=1)
+        smallest = min(smallest, np.degrees(np.arccos(cosine)).min())
+    return smallest
+
+
+def number(value, digits):
+    text = f"{value:.{digits}f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def write(name, comments, points, faces, uv=None, digits=5):
+    lines = [f"# {c}" for c in comments]
+    lines += ["v " + " ".join(number(x, digits) for x in p) for p in points]
+    if uv is not None:
+        lines += ["vt " + " ".join(number(x, digits) for x in p) for p in uv]
+    for face in faces:
+        lines.append("f " + " ".join(f"{i + 1}/{i + 1}" if uv is not None else f"{i + 1}" for i in face))
+    (here / name).write_text("\n".join(lines) + "\n")
+    print(f"{name}: {len(points)} vertices, {len(faces)} faces")
+
+
+def first_good(make):
+    """make(rng) of the first seed whose triangles all have good angles."""
+    for seed in range(100):
+        plane, triangles = make(np.random.default_rng(seed))
+        if angles(plane, triangles) >= smallest_angle:
+            return plane, triangles
+    raise SystemExit("no seed gives good angles")
+
+
+def write_flat(name, comments, plane, triangles):
+    """Points (x, z) as a cloth in the plane y = 0; uv is the place in the plane in metres, from the lower left corner."""
+    found = angles(plane, triangles)
+    points = np.c_[plane[:, 0], np.zeros(len(plane)), plane[:, 1]]
+    uv = np.c_[plane[:, 0] - plane[:, 0].min(), plane[:, 1].max() - plane[:, 1]]
+    write(name, comments + [f"Metres, y up. Smallest angle {found:.0f} degrees. Made by make_meshes.py; CC0 1.0."], points, triangles, uv)
+
+
+def read(path):
+    points, faces = [], []
+    for line in pathlib.Path(path).read_text().splitlines():
+        word = line.split()
+        if word[:1] == ["v"]:
+            points.append([float(w) for w in word[1:4]])
+        elif word[:1] == ["f"]:
+            faces.append([int(w.split("/")[0]) - 1 for w in word[1:]])
+    return np.array(points), faces
+
+
+def flag(columns, rows, width, height):
+    """Upright, the hoist at x = 0, the upper edge at y = 0. Vertices row by row from the upper hoist corner; quads."""
+    x, y = np.meshgrid(np.linspace(0, width, columns + 1), np.linspace(0, -height, rows + 1))
+    points = np.c_[x.ravel(), y.ravel(), np.zeros(x.size)]
+    across = columns + 1
+    faces = [[r * across + c, (r + 1) * across + c, (r + 1) * across + c + 1, r * across + c + 1]
+             for r in range(rows) for c in range(columns)]
+    return points, faces, np.c_[points[:, 0], points[:, 1] + height]
+
+
+def main():
+    write_flat("sheet-958.obj", ["Square sheet, 1 m x 1 m, 958 vertices, irregular triangles."],
+               *first_good(lambda rng: square(rng, 1.0, 28, 958)))
+    write_flat("tablecloth.obj", ["Square cloth, 1.2 m x 1.2 m, 1600 vertices, irregular triangles."],
+               *first_good(lambda rng: square(rng, 1.2, 36, 1600)))
+    write_flat("poncho.obj", ["Ring, inner radius 0.115 m, outer radius 0.55 m, 1500 vertices, irregular triangles."],
+               *first_good(lambda rng: ring(rng, 0.115, 0.55, 27, 127, 1500)))
+    points, faces, uv = flag(30, 20, 1.5, 1.0)
+    write("flag.obj", ["Flag, 1.5 m x 1 m, 30 x 20 quads. Vertex 0: upper hoist corner, vertex 620: lower hoist corner.",
+                       "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces, uv)
+    if len(sys.argv) == 3:
+        points, faces = read(sys.argv[1])
+        write("body.obj", ["CC0 1.0. The base mesh hm08 of MakeHuman (makehumancommunity/makehuman, makehuman/data/3dobjs/base.obj), group",
+                           '"body", with the targets caucasian-male-young and universal-male-young-averagemuscle-averageweight.',
+                           "Metres, y up, feet at y = 0; rounded to 0.1 mm, texture coordinates dropped, quads kept."], points, faces, digits=4)
+        points, faces = read(sys.argv[2])
+        write("tee.obj", ["CC0 1.0. The tee of MakeHuman's clothes male_casualsuit04 (makehumancommunity/makehuman-assets,",
+                          "base/clothes/male_casualsuit04), fitted to body.obj with its .mhclo, at least 3 mm from it.",
+                          "Metres, y up; rounded to 0.01 mm, texture coordinates dropped."], points, faces, digits=5)
+
+
+if __name__ == "__main__":
+    main()
