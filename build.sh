@@ -243,9 +243,6 @@ lint() {
   get_for_build
   get_required "${for_tests[@]}" "${for_lint[@]}"
   configure release -DDRAPE_TESTS=ON
-  # clang has no omp.h of its own where its OpenMP library is not installed; the compiler's serves, but for an attribute.
-  mkdir -p build/lint
-  sed 's/, __malloc__ (omp_free)//; s/__malloc__ (omp_free), //' "$("${CXX:-g++}" -print-file-name=include)/omp.h" >build/lint/omp.h
   local -a files
   mapfile -t files < <(sources | grep '\.cpp$' | grep -v '^tests/outside/')
   say "clang-tidy on ${#files[@]} files"
@@ -254,7 +251,7 @@ lint() {
 
 # The analyzer is for the library: in app/ and tests/ it would spend minutes in the headers of the command line, TOML and Catch.
 tidy() {
-  local -a arguments=(--quiet -p build/release --extra-arg=-w "--extra-arg=-isystem$PWD/build/lint") library others
+  local -a arguments=(--quiet -p build/release --extra-arg=-w) library others
   mapfile -t library < <(printf '%s\n' "$@" | grep -E '^(mesh|constraints|solver)/')
   mapfile -t others < <(printf '%s\n' "$@" | grep -vE '^(mesh|constraints|solver)/')
   local status=0

@@ -5,6 +5,7 @@
 
 #include "app/simulation.h"
 #include "app/table.h"
+#include "mesh/examine.h"
 #include "mesh/obj.h"
 
 namespace drape {
@@ -132,6 +133,8 @@ class DropScene {
   void add_simulation() {
     Node simulation = Node::of_table("drape drop");
     simulation.members["duration"] = Node::of_text("3 s", "drape drop");
+    // A drape wants no more: a ten-thousandth of the cloth's weight.
+    simulation.members["tolerance"] = number(1e-4);
     simulation.members["stop_when_settled"] = parse_toml_value("true", "drape drop");
     root_.members["simulation"] = std::move(simulation);
   }
@@ -151,22 +154,28 @@ class DropScene {
   }
 
   // What the cloth looks like after all settings: it decides where a body stands.
-  Extent cloth_extent() const {
+  TriangleMesh cloth_mesh() const {
     std::vector<Setting> of_cloth;
     for (const Setting& setting : settings_)
       if (!setting.path.starts_with("obstacle")) of_cloth.push_back(setting);
     const Scene scene = read_scene(root_, of_cloth, {}, label_);
     const ClothEntry& cloth = scene.cloths.front();
-    return extent_of(placed(read_obj(cloth.mesh), cloth.placement, cloth.mesh.string()));
+    return placed(read_obj(cloth.mesh), cloth.placement, cloth.mesh.string());
   }
 
   void add_bodies() {
     constexpr double fall = 0.5;  // m, to the floor, when there is no body
-    const Extent cloth = cloth_extent();
+    const TriangleMesh mesh = cloth_mesh();
+    const Extent cloth = extent_of(mesh);
+    // Contact holds vertices; the straight edges between them must clear a curved body, the longer the edges
+    // the farther.
+    const double margin = options_.margin ? quantity(parse_toml_value(*options_.margin, "--margin"),
+                                                     dimension::length, Range::any)
+                                          : std::max(Obstacle().margin, examine(mesh).median_edge / 6);
     const Vec3 under(cloth.centre()[0], cloth.lower[1], cloth.centre()[2]);
     double bottom = under[1] - fall;
     Node list = Node::of_list({}, "drape drop");
-    if (!options_.onto.empty()) list.items.push_back(body(under, bottom));
+    if (!options_.onto.empty()) list.items.push_back(body(under, margin, bottom));
     if (options_.floor) {
       Node floor = Node::of_table("--floor");
       floor.members["shape"] = Node::of_text("plane", "--floor");
@@ -177,17 +186,15 @@ class DropScene {
     for (Node& obstacle : list.items) {
       if (options_.friction)
         obstacle.members["friction"] = parse_toml_value(*options_.friction, "--friction");
-      if (options_.margin) obstacle.members["margin"] = parse_toml_value(*options_.margin, "--margin");
+      obstacle.members["margin"] =
+          options_.margin ? parse_toml_value(*options_.margin, "--margin") : number(margin);
     }
     root_.members["obstacle"] = std::move(list);
   }
 
-  Node body(const Vec3& under, double& bottom) const {
+  Node body(const Vec3& under, double margin, double& bottom) const {
     const bool looks_like_file = options_.onto.ends_with(".obj") || options_.onto.ends_with(".OBJ");
     if (!looks_like_file && !std::filesystem::exists(options_.onto)) {
-      double margin = Obstacle().margin;
-      if (options_.margin)
-        margin = quantity(parse_toml_value(*options_.margin, "--margin"), dimension::length, Range::any);
       return built_in(options_.onto, under, 2 * margin, bottom);
     }
     Node mesh = Node::of_table("--onto");

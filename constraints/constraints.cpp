@@ -10,13 +10,15 @@ namespace {
 
 // A contact changes its mind this often within a step, then keeps its grip until the next one.
 constexpr int most_changes = 3;
-// A particle whose sliding the friction could stop a million times over within the step is taken to have stopped.
+// A particle whose sliding the friction could stop a million times over within the step is taken to have
+// stopped.
 constexpr double stop_fraction = 1e-6;
 
 const ContactPlane* plane_with(const Contact* contact, int obstacle) {
   if (!contact) return nullptr;
   for (int k = 0; k < contact->planes; ++k)
-    if (const ContactPlane& p = contact->plane[static_cast<std::size_t>(k)]; p.obstacle == obstacle) return &p;
+    if (const ContactPlane& p = contact->plane[static_cast<std::size_t>(k)]; p.obstacle == obstacle)
+      return &p;
   return nullptr;
 }
 
@@ -52,25 +54,27 @@ void Constraints::prepare(int particles, const std::vector<double>& masses) {
   for (std::size_t i = 0; i < n; ++i)
     if (masses[i] == 0) held_[i] = 1;
   clearance_.assign(n * obstacles_.size(), 0.0);  // nothing known yet: look at once
+  committed_.clear();
+  if (obstacles_.empty()) return;  // pins need no more memory than this
   committed_of_.assign(n, -1);
   contact_of_.assign(n, -1);
-  committed_.clear();
   correction_ = VecX::Zero(3 * particles);
   const auto chunks = static_cast<std::size_t>(chunk_count(particles));
   found_.resize(chunks);
   deepest_.resize(chunks);
   guarded_.resize(chunks);
-  if (obstacles_.empty()) return;
   trial_.reserve(n);  // so that no step allocates, however many touch
   committed_.reserve(n);
   friction_.reserve(n);
   for (auto& found : found_) found.reserve(chunk_size);
 }
 
-void Constraints::begin_step(const VecX& x, const VecX& v, const VecX& guess, const std::vector<double>& masses, double h) {
+void Constraints::begin_step(const VecX& x, const VecX& v, const VecX& guess,
+                             const std::vector<double>& masses, double h) {
   const int n = static_cast<int>(x.size() / 3);
   prepare(n, masses);
   h_ = h;
+  if (obstacles_.empty()) return;
   for (const Contact& c : trial_) {
     contact_of_[static_cast<std::size_t>(c.particle)] = -1;
     correction_.segment<3>(3 * c.particle).setZero();
@@ -78,7 +82,6 @@ void Constraints::begin_step(const VecX& x, const VecX& v, const VecX& guess, co
   trial_.clear();
   x_ = x;
   v_ = v;
-  if (obstacles_.empty()) return;
   predicted_ = v + guess;
   parallel_for(chunk_count(n), n < serial_below, [&](int k) {
     auto& found = found_[static_cast<std::size_t>(k)];
@@ -127,7 +130,8 @@ void Constraints::look_for_contact(int particle, std::vector<Contact>& found, do
       add_plane(contact, {o, s.normal, gap, body});
     } else if (gap < travel) {
       if (const auto hit = first_hit(obstacle.shape, x, x + path, obstacle.margin)) {
-        const double to_surface = -hit->fraction * path.dot(hit->surface.normal) + hit->surface.distance - obstacle.margin;
+        const double to_surface =
+            -hit->fraction * path.dot(hit->surface.normal) + hit->surface.distance - obstacle.margin;
         add_plane(contact, {o, hit->surface.normal, std::max(to_surface, 0.0), body});
       }
     }
@@ -201,7 +205,8 @@ bool Constraints::react(const VecX& v, const VecX& r, double noise) {
 
 bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double noise) const {
   const std::array<double, 3> lambda = multipliers(c, r);
-  const auto weakest = static_cast<std::size_t>(std::min_element(lambda.begin(), lambda.begin() + c.planes) - lambda.begin());
+  const auto weakest =
+      static_cast<std::size_t>(std::min_element(lambda.begin(), lambda.begin() + c.planes) - lambda.begin());
   if (lambda[weakest] < -noise) {  // it would pull the particle towards the body: let go
     for (auto k = static_cast<int>(weakest); k + 1 < c.planes; ++k)
       c.plane[static_cast<std::size_t>(k)] = c.plane[static_cast<std::size_t>(k) + 1];
@@ -228,7 +233,8 @@ bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double n
       if (slip.dot(c.friction_impulse) > 0) next = Grip::stick;  // friction would drive the motion
       break;
     case Grip::slide:
-      if (masses_[static_cast<std::size_t>(c.particle)] * slip.norm() < stop_fraction * mu.kinetic * normal) next = Grip::stick;
+      if (masses_[static_cast<std::size_t>(c.particle)] * slip.norm() < stop_fraction * mu.kinetic * normal)
+        next = Grip::stick;
       break;
   }
   if (next == c.grip) return false;
@@ -260,7 +266,8 @@ void Constraints::look_along_path(int particle, const Vec3& path, std::vector<Co
     const Obstacle& obstacle = obstacles_[static_cast<std::size_t>(o)];
     if (clearance(o, particle) > obstacle.margin + travel) continue;
     if (const auto hit = first_hit(obstacle.shape, x, x + path, obstacle.margin)) {
-      const double gap = -hit->fraction * path.dot(hit->surface.normal) + hit->surface.distance - obstacle.margin;
+      const double gap =
+          -hit->fraction * path.dot(hit->surface.normal) + hit->surface.distance - obstacle.margin;
       add_plane(contact, {o, hit->surface.normal, std::max(gap, 0.0), obstacle.velocity_at(x)});
     }
   }
@@ -295,8 +302,8 @@ ContactReport Constraints::end_step(VecX& x_new, VecX& v_new) {
   return report;
 }
 
-// The last line of defence, outside the equations: no particle that was outside a body ends inside it, or behind it; none that
-// was inside ends deeper.
+// The last line of defence, outside the equations: no particle that was outside a body ends inside it, or
+// behind it; none that was inside ends deeper.
 void Constraints::guard(int particle, VecX& x_new, VecX& v_new, int& guarded) {
   const Vec3 x = x_.segment<3>(3 * particle);
   for (int o = 0; o < static_cast<int>(obstacles_.size()); ++o) {
@@ -328,8 +335,8 @@ std::vector<double> Constraints::penetration(const VecX& x) const {
   for_chunks(n, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
       for (const Obstacle& obstacle : obstacles_)
-        depth[static_cast<std::size_t>(i)] =
-            std::max(depth[static_cast<std::size_t>(i)], -closest(obstacle.shape, x.segment<3>(3 * i)).distance);
+        depth[static_cast<std::size_t>(i)] = std::max(depth[static_cast<std::size_t>(i)],
+                                                      -closest(obstacle.shape, x.segment<3>(3 * i)).distance);
   });
   return depth;
 }

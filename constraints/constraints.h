@@ -1,11 +1,12 @@
-// Pins and obstacles: what particles may do. Makes the filter of a step and changes only through the reaction of its solve.
+// Pins and obstacles: what particles may do. Makes the filter of a step and changes only through the reaction
+// of its solve.
 //
 // A step calls, in this order:
 //   begin_step   finds the contacts of the predicted motion; the correction y and the targets stand
 //   filter       S and z for a given velocity;  friction  the dampers and impulses of what slides
-//   react        takes the reaction r of a solve: releases, sticks, slides; true when the step must be solved again
-//   check_paths  takes the motion found: catches what would pass through a body; true when it must be solved again
-//   end_step     guards the final motion (nothing crosses a surface), commits the contacts
+//   react        takes the reaction r of a solve: releases, sticks, slides; true when the step must be solved
+//   again check_paths  takes the motion found: catches what would pass through a body; true when it must be
+//   solved again end_step     guards the final motion (nothing crosses a surface), commits the contacts
 // A step that failed is abandoned by not calling end_step: the contacts of the last good step still stand.
 #pragma once
 
@@ -31,8 +32,8 @@ struct ContactFriction {
 
 struct ContactReport {
   int contacts = 0;
-  int guarded = 0;         // particles stopped at a surface after the solve, outside the equations
-  double deepest = 0;      // m, how far the deepest particle was inside a body when the step began
+  int guarded = 0;     // particles stopped at a surface after the solve, outside the equations
+  double deepest = 0;  // m, how far the deepest particle was inside a body when the step began
 };
 
 class Constraints {
@@ -47,10 +48,11 @@ class Constraints {
   const std::vector<int>& pinned() const { return pinned_; }
 
   // x [m], v and guess [m/s] (the change of velocity to expect), masses [kg], h [s].
-  void begin_step(const VecX& x, const VecX& v, const VecX& guess, const std::vector<double>& masses, double h);
+  void begin_step(const VecX& x, const VecX& v, const VecX& guess, const std::vector<double>& masses,
+                  double h);
   void filter(const VecX& v, Filter& filter) const;
   const std::vector<ContactFriction>& friction();
-  const VecX& correction() const { return correction_; }  // y [m]
+  const VecX& correction() const { return correction_; }  // y [m]; empty without obstacles
   // v [m/s] after the solve, r [N s]; impulses below `noise` [N s] are round-off of the solve.
   bool react(const VecX& v, const VecX& r, double noise);
   bool check_paths(const VecX& x_new);
@@ -80,13 +82,14 @@ class Constraints {
 
   // Scratch of the step under way.
   double h_ = 0;
-  std::vector<double> masses_;        // kg
+  std::vector<double> masses_;  // kg
   VecX x_, v_, predicted_, correction_;
-  std::vector<char> held_;            // pinned, or without mass
-  std::vector<int> contact_of_;       // particle -> place in trial_, -1: none
-  std::vector<double> clearance_;     // obstacle, particle -> a distance within which no surface was when last looked [m]
+  std::vector<char> held_;       // pinned, or without mass
+  std::vector<int> contact_of_;  // particle -> place in trial_, -1: none
+  std::vector<double>
+      clearance_;  // obstacle, particle -> a distance within which no surface was when last looked [m]
   std::vector<Contact> trial_, committed_;
-  std::vector<int> committed_of_;     // particle -> place in committed_, -1: none
+  std::vector<int> committed_of_;  // particle -> place in committed_, -1: none
   std::vector<ContactFriction> friction_;
   std::vector<std::vector<Contact>> found_;  // by chunk of particles
   std::vector<double> deepest_;              // by chunk of particles [m]

@@ -15,9 +15,11 @@ void check(const Obstacle& obstacle) {
   const Friction& mu = obstacle.friction;
   if (!(mu.statics >= 0) || !(mu.kinetic >= 0) || !std::isfinite(mu.statics) || !std::isfinite(mu.kinetic))
     throw InputError(where + ": a coefficient of friction is a number from 0 up");
-  if (mu.kinetic > mu.statics) throw InputError(where + ": kinetic friction is not greater than static friction");
+  if (mu.kinetic > mu.statics)
+    throw InputError(where + ": kinetic friction is not greater than static friction");
   if (!(obstacle.margin >= 0) || !std::isfinite(obstacle.margin))
-    throw InputError(where + ": margin = " + std::to_string(obstacle.margin) + " m: a margin is not negative");
+    throw InputError(where + ": margin = " + std::to_string(obstacle.margin) +
+                     " m: a margin is not negative");
 }
 
 Mat3 Contact::locked_directions() const {
@@ -40,7 +42,8 @@ void add_plane(Contact& contact, const ContactPlane& plane) {
     return;
   }
   contact.plane[static_cast<std::size_t>(contact.planes++)] = plane;
-  for (auto k = static_cast<std::size_t>(contact.planes) - 1; k > 0 && contact.plane[k].gap < contact.plane[k - 1].gap; --k)
+  for (auto k = static_cast<std::size_t>(contact.planes) - 1;
+       k > 0 && contact.plane[k].gap < contact.plane[k - 1].gap; --k)
     std::swap(contact.plane[k], contact.plane[k - 1]);
 }
 
@@ -49,7 +52,8 @@ static Mat3 gram(const Contact& contact) {
   Mat3 G = Mat3::Identity();
   for (int i = 0; i < contact.planes; ++i)
     for (int j = 0; j < contact.planes; ++j)
-      G(i, j) = contact.plane[static_cast<std::size_t>(i)].normal.dot(contact.plane[static_cast<std::size_t>(j)].normal);
+      G(i, j) = contact.plane[static_cast<std::size_t>(i)].normal.dot(
+          contact.plane[static_cast<std::size_t>(j)].normal);
   return G;
 }
 
@@ -58,7 +62,8 @@ Vec3 along_planes(const Contact& contact, const std::array<double, 3>& component
   for (int k = 0; k < contact.planes; ++k) t[k] = components[static_cast<std::size_t>(k)];
   if (contact.planes == 1) return t[0] * contact.plane[0].normal;
   const Vec3 weights = gram(contact).inverse() * t;
-  for (int k = 0; k < contact.planes; ++k) sum += weights[k] * contact.plane[static_cast<std::size_t>(k)].normal;
+  for (int k = 0; k < contact.planes; ++k)
+    sum += weights[k] * contact.plane[static_cast<std::size_t>(k)].normal;
   return sum;
 }
 

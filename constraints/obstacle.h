@@ -1,6 +1,7 @@
 // A body in the cloth's way: a shape that may move and that rubs.
 //   friction  Coulomb's coefficients [-]: static holds up to mu_s N, kinetic rubs with mu_k N
-//   margin    the cloth comes to rest this far outside the surface [m]: vertices stop at the offset surface phi = margin, so that
+//   margin    the cloth comes to rest this far outside the surface [m]: vertices stop at the offset surface
+//   phi = margin, so that
 //             the straight edges between them stay clear of a curved body
 //   velocity  of the body at a point [m/s]; bodies stand still for now, contact already asks
 #pragma once

@@ -24,14 +24,15 @@ std::vector<int> chosen(const PinBox& rule, const TriangleMesh& mesh) {
     const Vec3& x = mesh.positions[static_cast<std::size_t>(i)];
     lower = lower.cwiseMin(x);
     upper = upper.cwiseMax(x);
-    if ((x.array() >= rule.lower.array()).all() && (x.array() <= rule.upper.array()).all()) inside.push_back(i);
+    if ((x.array() >= rule.lower.array()).all() && (x.array() <= rule.upper.array()).all())
+      inside.push_back(i);
   }
   if (inside.empty()) {
     std::ostringstream message;
     const Eigen::IOFormat row(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
-    message << "pins: the box " << rule.lower.transpose().format(row) << " to " << rule.upper.transpose().format(row)
-            << " m holds no vertex; the cloth reaches from " << lower.transpose().format(row) << " to "
-            << upper.transpose().format(row) << " m";
+    message << "pins: the box " << rule.lower.transpose().format(row) << " to "
+            << rule.upper.transpose().format(row) << " m holds no vertex; the cloth reaches from "
+            << lower.transpose().format(row) << " to " << upper.transpose().format(row) << " m";
     throw InputError(message.str());
   }
   return inside;

@@ -20,7 +20,8 @@ struct PinGroup {
 };
 using PinRule = std::variant<PinVertices, PinBox, PinGroup>;
 
-// The vertices the rule selects, ascending. Throws InputError when it selects nothing, naming what there is to choose from.
+// The vertices the rule selects, ascending. Throws InputError when it selects nothing, naming what there is
+// to choose from.
 std::vector<int> select(const PinRule& rule, const TriangleMesh& mesh);
 
 }  // namespace drape

@@ -1,5 +1,6 @@
-// Loops over fixed chunks. The chunks depend on the size of the problem only, never on the number of threads, and every sum is
-// taken chunk by chunk in order: so 1, 2 or 7 threads give the same bits. Internal to the library (not installed).
+// Loops over fixed chunks. The chunks depend on the size of the problem only, never on the number of threads,
+// and every sum is taken chunk by chunk in order: so 1, 2 or 7 threads give the same bits. Internal to the
+// library (not installed).
 #pragma once
 
 #include <algorithm>
@@ -34,7 +35,8 @@ void for_chunks(int n, const F& f) {
                [&](int k) { f(k * chunk_size, std::min(n, (k + 1) * chunk_size)); });
 }
 
-// Sum of f(begin, end) over the chunks of [0, n): groups of up to `max_partials` chunks are summed in parallel, then in order.
+// Sum of f(begin, end) over the chunks of [0, n): groups of up to `max_partials` chunks are summed in
+// parallel, then in order.
 template <class F>
 double sum_chunks(int n, const F& f) {
   constexpr int max_partials = 1024;
@@ -52,8 +54,8 @@ double sum_chunks(int n, const F& f) {
   return total;
 }
 
-// a . b of n numbers in a fixed order: eight running sums, then those in order. (Eigen's own reductions depend on where in memory
-// a vector happens to begin.)
+// a . b of n numbers in a fixed order: eight running sums, then those in order. (Eigen's own reductions
+// depend on where in memory a vector happens to begin.)
 inline double dot_in_order(const double* a, const double* b, std::ptrdiff_t n) {
   std::array<double, 8> sum = {};
   std::ptrdiff_t i = 0;
@@ -67,7 +69,8 @@ inline double dot_in_order(const double* a, const double* b, std::ptrdiff_t n) {
 template <class Vector>
 double dot(const Vector& a, const Vector& b) {
   return sum_chunks(static_cast<int>(a.size() / 3), [&](int begin, int end) {
-    return dot_in_order(a.data() + 3 * static_cast<std::ptrdiff_t>(begin), b.data() + 3 * static_cast<std::ptrdiff_t>(begin),
+    return dot_in_order(a.data() + 3 * static_cast<std::ptrdiff_t>(begin),
+                        b.data() + 3 * static_cast<std::ptrdiff_t>(begin),
                         3 * static_cast<std::ptrdiff_t>(end - begin));
   });
 }

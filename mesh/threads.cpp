@@ -19,8 +19,9 @@ void breathe() {
 #endif
 }
 
-// Helpers that take chunks of a loop from the caller. The caller never waits for a helper that has not begun a chunk: on a busy
-// machine it does the work itself (with OpenMP's barriers the same loops were a hundred times slower there).
+// Helpers that take chunks of a loop from the caller. The caller never waits for a helper that has not begun
+// a chunk: on a busy machine it does the work itself (with OpenMP's barriers the same loops were a hundred
+// times slower there).
 class Helpers {
  public:
   explicit Helpers(int count) {
@@ -45,8 +46,8 @@ class Helpers {
   int count() const { return static_cast<int>(threads_.size()); }
 
  private:
-  // A loop is known by its generation; the ticket is the generation and the next chunk, so that a helper that comes late, when the
-  // next loop has been published, cannot take a chunk in the name of the old one.
+  // A loop is known by its generation; the ticket is the generation and the next chunk, so that a helper that
+  // comes late, when the next loop has been published, cannot take a chunk in the name of the old one.
   std::uint32_t publish(int count) {
     count_.store(count, std::memory_order_relaxed);
     const auto generation = static_cast<std::uint32_t>(ticket_.load() >> 32) + 1;
@@ -108,7 +109,8 @@ int threads() {
 }
 
 void set_threads(int count) {
-  if (count < 1) throw InputError("threads: " + std::to_string(count) + " is not a number of threads; give 1 or more");
+  if (count < 1)
+    throw InputError("threads: " + std::to_string(count) + " is not a number of threads; give 1 or more");
   chosen = count;
 }
 

@@ -3,10 +3,11 @@
 
 namespace drape {
 
-int threads();              // at least 1; starts as the number of processors
+int threads();                // at least 1; starts as the number of processors
 void set_threads(int count);  // throws InputError when count < 1
 
-// f(context, k) for k = 0 .. count-1, each once, in any order and by any thread; returns when all are done. f must not throw.
+// f(context, k) for k = 0 .. count-1, each once, in any order and by any thread; returns when all are done. f
+// must not throw.
 void run_in_parallel(int count, void (*f)(const void* context, int k), const void* context);
 
 }  // namespace drape

@@ -14,7 +14,9 @@ namespace {
 // Neighbours of every particle: sorted, each once, without itself.
 struct Graph {
   std::vector<int> start, neighbour;
-  int degree(int i) const { return start[static_cast<std::size_t>(i) + 1] - start[static_cast<std::size_t>(i)]; }
+  int degree(int i) const {
+    return start[static_cast<std::size_t>(i) + 1] - start[static_cast<std::size_t>(i)];
+  }
 };
 
 Graph make_graph(int particles, const std::vector<ParticlePair>& pairs) {
@@ -61,9 +63,8 @@ void breadth_first(const Graph& g, int root, std::vector<char>& seen, std::vecto
       seen[static_cast<std::size_t>(j)] = 1;
       order.push_back(j);
     }
-    std::sort(order.begin() + static_cast<std::ptrdiff_t>(first), order.end(), [&](int a, int b) {
-      return g.degree(a) != g.degree(b) ? g.degree(a) < g.degree(b) : a < b;
-    });
+    std::sort(order.begin() + static_cast<std::ptrdiff_t>(first), order.end(),
+              [&](int a, int b) { return g.degree(a) != g.degree(b) ? g.degree(a) < g.degree(b) : a < b; });
   }
 }
 
@@ -114,8 +115,8 @@ BlockPattern::BlockPattern(int particles, std::vector<ParticlePair> pairs) {
     for (int k = g.start[i]; k < g.start[i + 1]; ++k)
       column_.push_back(row_of_[static_cast<std::size_t>(g.neighbour[static_cast<std::size_t>(k)])]);
     std::sort(column_.begin() + first, column_.end());
-    diagonal_[r] = static_cast<int>(std::lower_bound(column_.begin() + first, column_.end(), static_cast<int>(r)) -
-                                    column_.begin());
+    diagonal_[r] = static_cast<int>(
+        std::lower_bound(column_.begin() + first, column_.end(), static_cast<int>(r)) - column_.begin());
     row_start_[r + 1] = static_cast<int>(column_.size());
     bandwidth_ = std::max({bandwidth_, column_.back() - static_cast<int>(r),
                            static_cast<int>(r) - column_[static_cast<std::size_t>(first)]});

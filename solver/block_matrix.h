@@ -1,8 +1,9 @@
 // The global sparse matrix in 3x3 blocks: a pattern that is built once, values that are refilled every step.
-//   Rows are renumbered by reverse Cuthill-McKee for locality [Cuthill & McKee 1969]; row_of() maps particle -> row.
-//   Both halves of the symmetric matrix are stored, a block column by column (9 doubles).
-//   Chunks of rows at least as long as the bandwidth: an element touches the chunk of its lowest row and the next one only, so
-//   all even chunks can be filled at the same time, then all odd ones, without locks and in an order that no thread count changes.
+//   Rows are renumbered by reverse Cuthill-McKee for locality [Cuthill & McKee 1969]; row_of() maps particle
+//   -> row. Both halves of the symmetric matrix are stored, a block column by column (9 doubles). Chunks of
+//   rows at least as long as the bandwidth: an element touches the chunk of its lowest row and the next one
+//   only, so all even chunks can be filled at the same time, then all odd ones, without locks and in an order
+//   that no thread count changes.
 #pragma once
 
 #include <cstdint>

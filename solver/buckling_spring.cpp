@@ -34,8 +34,8 @@ constexpr Series series = make_series();
 double first_guess(double delta) {
   return delta *
          (5.99860042 +
-          delta * (1.89802036 +
-                   delta * (-0.24499775 + delta * (4.47265052 + delta * (-5.98226664 + delta * 3.72304021)))));
+          delta * (1.89802036 + delta * (-0.24499775 +
+                                         delta * (4.47265052 + delta * (-5.98226664 + delta * 3.72304021)))));
 }
 
 }  // namespace

@@ -1,11 +1,14 @@
-// Diagonal connection: a beam that buckles at once into a circular arc.        [Choi & Ko 2002, section 4; Noh & Jung, eq. 9-13]
+// Diagonal connection: a beam that buckles at once into a circular arc.        [Choi & Ko 2002, section 4;
+// Noh & Jung, eq. 9-13]
 //   sinc(u) = l/L,  u in [0, pi],  kappa = 2 u / L
 //   E(l) = k_b L kappa^2 / 2 = 2 k_b u^2 / L
 //   t(l) = dE/dl = (k_b / L^2) 4 u^2 / (cos u - sinc u)       negative: it pushes apart
-//   t*   = max(t, c_b (l - L))                                the clamp: linear from l = L to where it meets t
+//   t*   = max(t, c_b (l - L))                                the clamp: linear from l = L to where it meets
+//   t
 // k_b [N m^2], L [m], c_b [N/m].  l >= L: no force.
 // The clamp takes the bending rigidity away below a curvature (solver/fabric.h says which, and chooses c_b).
-// When c_b L^3 / k_b <= 4 pi^2 the line never leaves the clamp for good: the connection is then linear throughout.
+// When c_b L^3 / k_b <= 4 pi^2 the line never leaves the clamp for good: the connection is then linear
+// throughout.
 #pragma once
 
 #include "solver/pair_force.h"
@@ -20,7 +23,8 @@ struct Buckling {
 };
 Buckling immediate_buckling(double delta);
 
-// Where the clamp c_hat = c_b L^3 / k_b meets the buckling law: the root of  c_hat delta = -force(delta); 1 when it never buckles.
+// Where the clamp c_hat = c_b L^3 / k_b meets the buckling law: the root of  c_hat delta = -force(delta); 1
+// when it never buckles.
 double clamp_crossing(double c_hat);
 
 struct BucklingSpring {
@@ -32,7 +36,9 @@ struct BucklingSpring {
     double crossing;  // clamp_crossing(c_b L^3 / k_b)
   };
 
-  static Rest rest(double L, double k_b, double c_b) { return {L, k_b, c_b, clamp_crossing(c_b * L * L * L / k_b)}; }
+  static Rest rest(double L, double k_b, double c_b) {
+    return {L, k_b, c_b, clamp_crossing(c_b * L * L * L / k_b)};
+  }
 
   static double energy(const Rest& r, double l);
   static Tension tension(const Rest& r, double l) {
@@ -42,7 +48,8 @@ struct BucklingSpring {
     const Buckling b = immediate_buckling(delta);
     return {r.k_b / (r.L * r.L) * b.force, r.k_b / (r.L * r.L * r.L) * b.stiffness};
   }
-  // The chord to the rest length: the law falls off from it, so a parabola of this stiffness lies above the energy.
+  // The chord to the rest length: the law falls off from it, so a parabola of this stiffness lies above the
+  // energy.
   static double stiffest(const Rest& r, double l) {
     if (l >= r.L) return l < 1.02 * r.L ? r.c_b : 0;
     return tension(r, l).t / (l - r.L);

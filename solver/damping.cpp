@@ -37,7 +37,8 @@ void PairDamping::add_force(const VecX& x, const VecX& v, VecX& f) const {
   });
 }
 
-void PairDamping::add_linearised(const VecX& x, const VecX& v, const VecX&, double c, Stiffness, BlockMatrix& A, VecX& b) const {
+void PairDamping::add_linearised(const VecX& x, const VecX& v, const VecX&, double c, Stiffness,
+                                 BlockMatrix& A, VecX& b) const {
   schedule_.run(static_cast<int>(elements_.size()), [&](int k) {
     const Element& e = elements_[static_cast<std::size_t>(k)];
     const Mat3 cD = c * coefficient(x, e);

@@ -23,8 +23,8 @@ class PairDamping final : public Force {
   double energy(const VecX&) const override { return 0; }
   double dissipation(const VecX& x, const VecX& v) const override;
   void add_force(const VecX& x, const VecX& v, VecX& f) const override;
-  void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness, BlockMatrix& A,
-                      VecX& b) const override;
+  void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,
+                      BlockMatrix& A, VecX& b) const override;
 
  private:
   Mat3 coefficient(const VecX& x, const Element& e) const;  // D of the pair

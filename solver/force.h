@@ -10,7 +10,10 @@
 
 namespace drape {
 
-enum class DampingKind { relative, axial };  // of all relative motion, or along the connection only (solver/damping.h)
+enum class DampingKind {
+  relative,
+  axial
+};  // of all relative motion, or along the connection only (solver/damping.h)
 
 // Which K stands in an implicit step.
 enum class Stiffness {
@@ -28,9 +31,9 @@ class Force {
   // Remembers where its blocks stand in matrices of this pattern.
   virtual void bind(const BlockPattern& pattern) = 0;
 
-  virtual double energy(const VecX& x) const = 0;                              // J
+  virtual double energy(const VecX& x) const = 0;                                       // J
   virtual double dissipation(const VecX& /*x*/, const VecX& /*v*/) const { return 0; }  // v . D v / 2 [W]
-  virtual void add_force(const VecX& x, const VecX& v, VecX& f) const = 0;     // f += force [N]
+  virtual void add_force(const VecX& x, const VecX& v, VecX& f) const = 0;              // f += force [N]
   // The two sides of an implicit step, linearised at (x, v):  A += c D + c^2 K,  b += c (f - K y).
   // c [s], y [m]: see solver/implicit_euler.h.
   virtual void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,

@@ -13,7 +13,9 @@ namespace {
 class Stopwatch {
  public:
   explicit Stopwatch(double& ms) : ms_(ms), start_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() { ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count(); }
+  ~Stopwatch() {
+    ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
 
@@ -29,7 +31,8 @@ ImplicitEuler::ImplicitEuler(System& system, Constraints& constraints, std::uniq
     : system_(system), constraints_(constraints), solver_(std::move(solver)), options_(options) {}
 
 StepReport ImplicitEuler::advance(State& state, double h) {
-  if (!(h > 0) || !std::isfinite(h)) throw InputError("time step = " + std::to_string(h) + " s: a time step is greater than zero");
+  if (!(h > 0) || !std::isfinite(h))
+    throw InputError("time step = " + std::to_string(h) + " s: a time step is greater than zero");
   if (state.particles() != system_.particles() || state.v.size() != state.x.size())
     throw InputError("state: " + std::to_string(state.particles()) + " particles, but the system has " +
                      std::to_string(system_.particles()));
@@ -64,8 +67,8 @@ void ImplicitEuler::resize() {
   if (A_ && &A_->pattern() == pattern.get()) return;
   A_ = std::make_unique<BlockMatrix>(pattern);
   const Eigen::Index n = 3 * system_.particles();
-  for (VecX* vector : {&x_, &v_, &x_bar_, &y_, &x_new_, &v_new_, &v_base_, &guess_, &b_, &b_friction_, &r_, &dv_rows_, &b_rows_,
-                       &r_rows_, &dv_})
+  for (VecX* vector : {&x_, &v_, &x_bar_, &y_, &x_new_, &v_new_, &v_base_, &guess_, &b_, &b_friction_,
+                       &dv_rows_, &b_rows_, &dv_})
     vector->setZero(n);
   filter_.reserve(static_cast<std::size_t>(system_.particles()));
   rubbed_.reserve(static_cast<std::size_t>(system_.particles()));
@@ -91,9 +94,11 @@ bool ImplicitEuler::attempt(State& state, double h, StepReport& report) {
   LinearReport linear;
   bool full = false;  // the last Newton step was taken whole
   for (int k = 0; k < options_.newton_iterations || !full; ++k) {
-    if (k == options_.newton_iterations + options_.max_rescues) return fail(report, "no step lowers the energy", linear);
+    if (k == options_.newton_iterations + options_.max_rescues)
+      return fail(report, "no step lowers the energy", linear);
     // Linearise at (x, v): A = M + c D + c^2 K, b = M (v_bar - v) + c (f - K y).
-    x_bar_ = state.x + constraints_.correction();
+    x_bar_ = state.x;
+    if (constraints_.correction().size() > 0) x_bar_ += constraints_.correction();
     y_ = x_bar_ + h * v_ - x_;
     {
       const Stopwatch watch(report.assemble_ms);
@@ -106,14 +111,12 @@ bool ImplicitEuler::attempt(State& state, double h, StepReport& report) {
     // Solve S (A dv - b) = 0 until the contacts agree with the solution.
     linear = solve_within_contacts(h, report);
     ++report.newton_iterations;
-    if (!good(linear)) return fail(report, "linear solve: " + std::string(drape::name(linear.reason)), linear);
+    if (!good(linear))
+      return fail(report, "linear solve: " + std::string(drape::name(linear.reason)), linear);
     // v += dv, x = x_bar + c v
-    {
-      const Stopwatch watch(report.assemble_ms);
-      full = descend(state.v, k == 0, h);
-      if (!full) ++report.rescues;
-    }
-    x_ = state.x + constraints_.correction() + h * v_;
+    full = descend(state.v, k == 0, h);
+    if (!full) ++report.rescues;
+    x_ = x_bar_ + h * v_;
     if (!x_.allFinite()) return fail(report, "the new positions are not finite numbers", linear);
   }
   x_new_ = x_;
@@ -133,10 +136,11 @@ bool ImplicitEuler::attempt(State& state, double h, StepReport& report) {
   return true;
 }
 
-// What the velocity will change by, as a start for the iteration: free fall. So rigid motion is right from the first iterate, and
-// a solve that is cut short cannot eat gravity.
+// What the velocity will change by, as a start for the iteration: free fall. So rigid motion is right from
+// the first iterate, and a solve that is cut short cannot eat gravity.
 void ImplicitEuler::guess(double h) {
-  for (Eigen::Index i = 0; i < guess_.size() / 3; ++i) guess_.segment<3>(3 * i) = h * system_.gravity_acceleration();
+  for (Eigen::Index i = 0; i < guess_.size() / 3; ++i)
+    guess_.segment<3>(3 * i) = h * system_.gravity_acceleration();
 }
 
 void ImplicitEuler::assemble(const VecX& v_bar, double h, Stiffness stiffness) {
@@ -144,16 +148,19 @@ void ImplicitEuler::assemble(const VecX& v_bar, double h, Stiffness stiffness) {
   const std::vector<double>& mass = system_.masses();
   for_chunks(system_.particles(), [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
-      b_.segment<3>(3 * i) = mass[static_cast<std::size_t>(i)] *
-                             (v_bar.segment<3>(3 * i) - v_.segment<3>(3 * i) + h * system_.gravity_acceleration());
+      b_.segment<3>(3 * i) =
+          mass[static_cast<std::size_t>(i)] *
+          (v_bar.segment<3>(3 * i) - v_.segment<3>(3 * i) + h * system_.gravity_acceleration());
   });
   for (const auto& force : system_.forces()) force->add_linearised(x_, v_, y_, h, stiffness, *A_, b_);
 }
 
 LinearReport ImplicitEuler::solve_within_contacts(double h, StepReport& report) {
-  // Which contacts hold is found with loose solves; the last one is to the tolerance asked for, from where they came.
+  // Which contacts hold is found with loose solves; the last one is to the tolerance asked for, from where
+  // they came.
   const bool contact = !constraints_.obstacles().empty();
-  double tolerance = contact ? std::max(options_.tolerance, std::sqrt(options_.tolerance)) : options_.tolerance;
+  double tolerance =
+      contact ? std::max(options_.tolerance, std::sqrt(options_.tolerance)) : options_.tolerance;
   for (int round = 0;; ++round) {
     if (round == options_.max_contact_solves) tolerance = options_.tolerance;
     LinearReport linear;
@@ -167,7 +174,6 @@ LinearReport ImplicitEuler::solve_within_contacts(double h, StepReport& report) 
     if (!contact || round == options_.max_contact_solves) return linear;
 
     const Stopwatch watch(report.collide_ms);
-    reaction();
     v_new_ = v_ + dv_;
     // Twice the residual: what the solve left over is not a reaction.
     bool changed = constraints_.react(v_new_, r_, 2 * linear.residual_impulse);
@@ -190,8 +196,7 @@ LinearReport ImplicitEuler::solve_once(double h, double tolerance) {
   const LinearOptions options{tolerance, options_.max_linear_iterations, weight_impulse_};
   const LinearReport linear = solver_->solve(*A_, b_rows_, filter_, options, dv_rows_);
   to_particles(pattern, dv_rows_, dv_);
-  A_->multiply(dv_rows_, r_rows_);  // for the reaction, while the friction stands in A
-  r_rows_ -= b_rows_;
+  if (!constraints_.obstacles().empty()) reaction();  // while the friction stands in A
   remove_contact_friction();
   return linear;
 }
@@ -207,7 +212,13 @@ double ImplicitEuler::nonlinear_residual(double h) {
 }
 
 // r = A dv - b: the impulse with which the constraints hold the particles.
-void ImplicitEuler::reaction() { to_particles(A_->pattern(), r_rows_, r_); }
+void ImplicitEuler::reaction() {
+  r_.resize(dv_.size());
+  r_rows_.resize(dv_.size());
+  A_->multiply(dv_rows_, r_rows_);
+  r_rows_ -= b_rows_;
+  to_particles(A_->pattern(), r_rows_, r_);
+}
 
 void ImplicitEuler::add_contact_friction(double h) {
   rubbed_.clear();
@@ -285,8 +296,10 @@ bool ImplicitEuler::descend(const VecX& v_bar, bool first, double h) {
 }
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,
-                                            std::unique_ptr<LinearSolver> solver, const StepOptions& options) {
-  if (name == "implicit-euler") return std::make_unique<ImplicitEuler>(system, constraints, std::move(solver), options);
+                                            std::unique_ptr<LinearSolver> solver,
+                                            const StepOptions& options) {
+  if (name == "implicit-euler")
+    return std::make_unique<ImplicitEuler>(system, constraints, std::move(solver), options);
   throw InputError("integrator '" + std::string(name) + "' is not in this build; it has: implicit-euler");
 }
 

@@ -1,11 +1,13 @@
-// The implicit step, as the backward difference formula of order 1.       [Baraff & Witkin 1998, eq. 6 and 18; Noh & Jung, eq. 16-17]
+// The implicit step, as the backward difference formula of order 1.       [Baraff & Witkin 1998, eq. 6 and
+// 18; Noh & Jung, eq. 16-17]
 //   (M + c D + c^2 K) dv = M (v_bar - v) + c (f(x, v) - K y),   y = x_bar + c v - x,   c = h
 //   x_bar = x_n + correction,  v_bar = v_n;   then v += dv, x = x_bar + c v
 //   This is Newton's iteration for the minimum of the incremental potential
 //     Phi(v) = 1/2 |v - v_bar - h g|^2_M + E(x_bar + h v) + h/2 v . D v
-//   that starts from standing still (v = -(x_bar - x_n)/h). A full step that would raise Phi is cut short by halves, and iterations
-//   go on until a full one is good: so a step makes no energy, however stiff the cloth.    [Nocedal & Wright 2006, section 3.1]
-//   K = -df/dx, D = -df/dv at the point of linearisation (x, v): the last state first, the last iterate after.
+//   that starts from standing still (v = -(x_bar - x_n)/h). A full step that would raise Phi is cut short by
+//   halves, and iterations go on until a full one is good: so a step makes no energy, however stiff the
+//   cloth.    [Nocedal & Wright 2006, section 3.1] K = -df/dx, D = -df/dv at the point of linearisation (x,
+//   v): the last state first, the last iterate after.
 // x [m], v [m/s], M [kg], f [N], h [s].
 #pragma once
 
@@ -16,10 +18,12 @@ namespace drape {
 class ImplicitEuler final : public Integrator {
  public:
   // Keeps references to the system and the constraints.
-  ImplicitEuler(System& system, Constraints& constraints, std::unique_ptr<LinearSolver> solver, const StepOptions& options = {});
+  ImplicitEuler(System& system, Constraints& constraints, std::unique_ptr<LinearSolver> solver,
+                const StepOptions& options = {});
 
   std::string_view name() const override { return "implicit-euler"; }
-  // A step that fails (not finite, no convergence) is taken again in halves, at most max_halvings times halved.
+  // A step that fails (not finite, no convergence) is taken again in halves, at most max_halvings times
+  // halved.
   StepReport advance(State& state, double h) override;
 
   StepOptions& options() { return options_; }
@@ -50,11 +54,11 @@ class ImplicitEuler final : public Integrator {
   std::unique_ptr<BlockMatrix> A_;
   Filter filter_;
   VecX x_, v_, x_bar_, y_, x_new_, v_new_, v_base_;  // particle order
-  VecX guess_, b_, b_friction_, r_;          // particle order
-  VecX dv_rows_, b_rows_, r_rows_, dv_;      // row order, but dv_
-  std::vector<std::pair<int, Mat3>> rubbed_;  // diagonal blocks as they were before contact friction
-  double weight_impulse_ = 0;                // N s, h |m g|
-  double fall_energy_ = 0;                   // J, sum of m (h g)^2
+  VecX guess_, b_, b_friction_, r_;                  // particle order
+  VecX dv_rows_, b_rows_, r_rows_, dv_;              // row order, but dv_
+  std::vector<std::pair<int, Mat3>> rubbed_;         // diagonal blocks as they were before contact friction
+  double weight_impulse_ = 0;                        // N s, h |m g|
+  double fall_energy_ = 0;                           // J, sum of m (h g)^2
 };
 
 }  // namespace drape

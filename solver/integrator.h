@@ -11,13 +11,15 @@
 namespace drape {
 
 struct StepOptions {
-  int newton_iterations = 1;       // linear solves per step; 1 is Baraff & Witkin's step
-  double newton_tolerance = 1e-6;  // of the nonlinear residual, relative to h |m g|: fewer iterations when it is met
-  double tolerance = 1e-6;         // of the linear solve, see LinearOptions
-  int max_linear_iterations = 0;   // 0: chosen by size, and reaching it is a failure; given: the solve stops there and says so
-  int max_contact_solves = 5;      // how often a step may be solved again because a contact changed
-  int max_rescues = 20;            // further Newton iterations when a full one would raise the incremental potential
-  int max_halvings = 6;            // how often a failed step may be halved before it is given up
+  int newton_iterations = 1;  // linear solves per step; 1 is Baraff & Witkin's step
+  double newton_tolerance =
+      1e-6;                 // of the nonlinear residual, relative to h |m g|: fewer iterations when it is met
+  double tolerance = 1e-6;  // of the linear solve, see LinearOptions
+  int max_linear_iterations =
+      0;  // 0: chosen by size, and reaching it is a failure; given: the solve stops there and says so
+  int max_contact_solves = 5;  // how often a step may be solved again because a contact changed
+  int max_rescues = 20;  // further Newton iterations when a full one would raise the incremental potential
+  int max_halvings = 6;  // how often a failed step may be halved before it is given up
 };
 
 // Why and where a step failed.
@@ -28,18 +30,18 @@ struct StepFailure {
 };
 
 struct StepReport {
-  bool done = true;             // false: the state is as it was before
-  StepFailure failure;          // when not done
-  int substeps = 1;             // pieces the step was cut into, because it failed whole
-  int newton_iterations = 0;    // these summed over the substeps
+  bool done = true;           // false: the state is as it was before
+  StepFailure failure;        // when not done
+  int substeps = 1;           // pieces the step was cut into, because it failed whole
+  int newton_iterations = 0;  // these summed over the substeps
   int linear_solves = 0;
   int linear_iterations = 0;
-  int rescues = 0;              // Newton iterations that had to be cut short, so that energy is not made
-  int guarded = 0;              // particles stopped at a surface outside the equations
-  double residual = 0;          // relative, the worst of the solves that the step ended with
-  bool converged = true;        // every solve reached its tolerance
-  int contacts = 0;             // particles in contact at the end
-  double penetration = 0;       // m, deepest particle inside a body at the start
+  int rescues = 0;         // Newton iterations that had to be cut short, so that energy is not made
+  int guarded = 0;         // particles stopped at a surface outside the equations
+  double residual = 0;     // relative, the worst of the solves that the step ended with
+  bool converged = true;   // every solve reached its tolerance
+  int contacts = 0;        // particles in contact at the end
+  double penetration = 0;  // m, deepest particle inside a body at the start
   double assemble_ms = 0, solve_ms = 0, collide_ms = 0, step_ms = 0;
 };
 
@@ -52,7 +54,8 @@ class Integrator {
 
 // "implicit-euler". Throws InputError for a name that integrators() does not list.
 std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,
-                                            std::unique_ptr<LinearSolver> solver, const StepOptions& options = {});
+                                            std::unique_ptr<LinearSolver> solver,
+                                            const StepOptions& options = {});
 
 struct IntegratorInfo {
   std::string_view name, summary;

@@ -37,10 +37,14 @@ const std::vector<Entry>& entries() {
 
 std::string_view name(StopReason reason) {
   switch (reason) {
-    case StopReason::converged: return "converged";
-    case StopReason::iteration_limit: return "iteration limit";
-    case StopReason::indefinite: return "matrix not positive definite";
-    case StopReason::not_finite: return "not finite";
+    case StopReason::converged:
+      return "converged";
+    case StopReason::iteration_limit:
+      return "iteration limit";
+    case StopReason::indefinite:
+      return "matrix not positive definite";
+    case StopReason::not_finite:
+      return "not finite";
   }
   return "";
 }

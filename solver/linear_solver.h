@@ -1,6 +1,7 @@
 // Solves A dv = b within a filter: S (A dv - b) = 0 and (I - S) dv = z. One verb, and a report that is data.
 //   All vectors, and the filter's particle numbers, are in row order (solver/block_matrix.h).
-//   A [kg], b [N s], dv [m/s]; the residual is |S (b - A dv)| [N s], computed afresh at the end, outside the iteration.
+//   A [kg], b [N s], dv [m/s]; the residual is |S (b - A dv)| [N s], computed afresh at the end, outside the
+//   iteration.
 #pragma once
 
 #include <memory>
@@ -38,8 +39,8 @@ class LinearSolver {
   virtual ~LinearSolver() = default;
   virtual std::string_view name() const = 0;
   // dv: in, the guess (its locked part is replaced by z); out, the solution.
-  virtual LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
-                             VecX& dv) = 0;
+  virtual LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter,
+                             const LinearOptions& options, VecX& dv) = 0;
 };
 
 // "mpcg", and what linear_solver_names() lists. Throws InputError for any other name.

@@ -1,15 +1,17 @@
-// Forces between two particles along the line that joins them: gather, scatter, threads and slots, written once.
+// Forces between two particles along the line that joins them: gather, scatter, threads and slots, written
+// once.
 //
 // A law is a small pure function of the distance l, given the rest data of one pair:
 //   struct Law { struct Rest {...}; static constexpr const char* name;
 //                static double energy(const Rest&, double l);         // E(l)                       [J]
-//                static Tension tension(const Rest&, double l);       // t = dE/dl, dt/dl           [N], [N/m]
-//                static double stiffest(const Rest&, double l); };    // >= dt/dl: of a parabola above E(l) [N/m]
+//                static Tension tension(const Rest&, double l);       // t = dE/dl, dt/dl           [N],
+//                [N/m] static double stiffest(const Rest&, double l); };    // >= dt/dl: of a parabola above
+//                E(l) [N/m]
 // With d = x_i - x_j, l = |d|, n = d/l:
 //   f_i = -t n,  f_j = t n
 //   K   = max(dt/dl, 0) n n^T + max(t/l, 0) (I - n n^T)     of block (i,i) and (j,j); -K of (i,j) and (j,i)
-// The two eigenvalues of the exact stiffness are dt/dl and t/l (twice), so clamping them at zero is its exact positive
-// semidefinite part: it drops the transverse term under compression, as Choi & Ko 2002 do.
+// The two eigenvalues of the exact stiffness are dt/dl and t/l (twice), so clamping them at zero is its exact
+// positive semidefinite part: it drops the transverse term under compression, as Choi & Ko 2002 do.
 // Coincident particles: no direction, so no force; K = dt/dl I when t = 0 there (a weld), else 0.
 #pragma once
 
@@ -17,8 +19,8 @@
 #include <cmath>
 #include <utility>
 
-#include "solver/force.h"
 #include "mesh/parallel.h"
+#include "solver/force.h"
 
 namespace drape {
 
@@ -141,8 +143,8 @@ class PairForce final : public Force {
     });
   }
 
-  void add_linearised(const VecX& x, const VecX&, const VecX& y, double c, Stiffness stiffness, BlockMatrix& A,
-                      VecX& b) const override {
+  void add_linearised(const VecX& x, const VecX&, const VecX& y, double c, Stiffness stiffness,
+                      BlockMatrix& A, VecX& b) const override {
     schedule_.run(static_cast<int>(elements_.size()), [&](int k) {
       const Element& e = elements_[static_cast<std::size_t>(k)];
       const Vec3 d = x.segment<3>(3 * e.i) - x.segment<3>(3 * e.j);

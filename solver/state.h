@@ -1,4 +1,5 @@
-// The only thing a step changes: time [s], positions x [m] and velocities v [m/s], three numbers a particle, in the mesh's order.
+// The only thing a step changes: time [s], positions x [m] and velocities v [m/s], three numbers a particle,
+// in the mesh's order.
 #pragma once
 
 #include <vector>

@@ -20,7 +20,8 @@ VecX stacked(const std::vector<Vec3>& points) {
 
 std::vector<Vec3> unstacked(const VecX& numbers) {
   std::vector<Vec3> points(static_cast<std::size_t>(numbers.size() / 3));
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] = numbers.segment<3>(3 * static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] = numbers.segment<3>(3 * static_cast<Eigen::Index>(i));
   return points;
 }
 
@@ -59,7 +60,8 @@ double System::elastic_energy(const VecX& x) const {
 double System::kinetic_energy(const VecX& v) const {
   return sum_chunks(particles(), [&](int begin, int end) {
     double sum = 0;
-    for (int i = begin; i < end; ++i) sum += 0.5 * masses_[static_cast<std::size_t>(i)] * v.segment<3>(3 * i).squaredNorm();
+    for (int i = begin; i < end; ++i)
+      sum += 0.5 * masses_[static_cast<std::size_t>(i)] * v.segment<3>(3 * i).squaredNorm();
     return sum;
   });
 }
@@ -67,7 +69,8 @@ double System::kinetic_energy(const VecX& v) const {
 double System::gravity_energy(const VecX& x) const {
   return sum_chunks(particles(), [&](int begin, int end) {
     double sum = 0;
-    for (int i = begin; i < end; ++i) sum -= masses_[static_cast<std::size_t>(i)] * gravity_.dot(x.segment<3>(3 * i));
+    for (int i = begin; i < end; ++i)
+      sum -= masses_[static_cast<std::size_t>(i)] * gravity_.dot(x.segment<3>(3 * i));
     return sum;
   });
 }

@@ -32,12 +32,13 @@ class System {
   // The pattern of all forces together; built, and the forces bound to it, on the first call after a change.
   const std::shared_ptr<const BlockPattern>& bind();
 
-  double elastic_energy(const VecX& x) const;  // J
-  double kinetic_energy(const VecX& v) const;  // J
-  double gravity_energy(const VecX& x) const;  // J, zero at the origin
+  double elastic_energy(const VecX& x) const;      // J
+  double kinetic_energy(const VecX& v) const;      // J
+  double gravity_energy(const VecX& x) const;      // J, zero at the origin
   VecX force(const VecX& x, const VecX& v) const;  // N, gravity included
 
-  // Which force first gives something that is not a finite number at (x, v); "gravity" and the like. Empty: none does.
+  // Which force first gives something that is not a finite number at (x, v); "gravity" and the like. Empty:
+  // none does.
   std::string_view not_finite_force(const VecX& x, const VecX& v) const;
 
  private:

@@ -1,8 +1,9 @@
-// Edge connection: a spring that goes slack instead of pushing.                            [Noh & Jung, eq. 5-8]
+// Edge connection: a spring that goes slack instead of pushing.                            [Noh & Jung, eq.
+// 5-8]
 //   E(l) = k/2 (l - L)^2   l >= L,   0 otherwise
 //   t    = k (l - L)
-// k [N/m], L [m]. A pair within round-off of its rest length counts as taut, so that a sheet at rest resists at once.
-// L = 0 is a weld: it pulls coincident particles back together.
+// k [N/m], L [m]. A pair within round-off of its rest length counts as taut, so that a sheet at rest resists
+// at once. L = 0 is a weld: it pulls coincident particles back together.
 #pragma once
 
 #include "solver/pair_force.h"

@@ -1,4 +1,5 @@
-// Counts the heap allocations of this process, whoever asks (new, malloc, Eigen). Not under the sanitizers, which bring their own.
+// Counts the heap allocations of this process, whoever asks (new, malloc, Eigen). Not under the sanitizers,
+// which bring their own.
 #pragma once
 
 namespace drape::test {

@@ -49,7 +49,8 @@ inline VecX moved_rigidly(const VecX& x, const Mat3& R, const Vec3& t) {
   return y;
 }
 
-// A chain of `links` springs of the same rest length along `direction` from the origin, lumped masses (half at the ends).
+// A chain of `links` springs of the same rest length along `direction` from the origin, lumped masses (half
+// at the ends).
 struct Chain {
   System system;
   State state;
@@ -58,7 +59,8 @@ struct Chain {
   Chain(int links, double length, double mass, double stiffness, const Vec3& direction)
       : system(chain_masses(links, mass)) {
     std::vector<PairForce<TensionSpring>::Element> elements;
-    for (int k = 0; k < links; ++k) elements.push_back({k, k + 1, {length / links, stiffness * links / length}});
+    for (int k = 0; k < links; ++k)
+      elements.push_back({k, k + 1, {length / links, stiffness * links / length}});
     system.add(std::make_unique<PairForce<TensionSpring>>(std::move(elements)));
     state = {0, VecX(3 * (links + 1)), VecX::Zero(3 * (links + 1))};
     for (int k = 0; k <= links; ++k) state.x.segment<3>(3 * k) = direction * (length * k / links);

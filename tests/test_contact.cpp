@@ -30,7 +30,10 @@ struct Cloth {
   ImplicitEuler stepper;
 
   Cloth(TriangleMesh m, const Fabric& fabric, const Vec3& lift)
-      : mesh(std::move(m)), system(masses(mesh, fabric)), state(at_rest(mesh)), stepper(system, constraints, make_linear_solver("mpcg")) {
+      : mesh(std::move(m)),
+        system(masses(mesh, fabric)),
+        state(at_rest(mesh)),
+        stepper(system, constraints, make_linear_solver("mpcg")) {
     for (int i = 0; i < state.particles(); ++i) state.x.segment<3>(3 * i) += lift;
     system.add(noh_jung(mesh, fabric));
     system.add(Gravity{});
@@ -86,14 +89,16 @@ TEST_CASE("sliding goes with g (sin - mu cos)", "[contact]") {
 TEST_CASE("static friction above kinetic holds longer and slides faster", "[contact]") {
   const double angle = 0.35;  // tan = 0.365
   Particle held, pushed;
-  for (Particle* p : {&held, &pushed}) p->constraints.add(Obstacle{.shape = incline(angle), .friction = {0.5, 0.2}, .margin = 0});
+  for (Particle* p : {&held, &pushed})
+    p->constraints.add(Obstacle{.shape = incline(angle), .friction = {0.5, 0.2}, .margin = 0});
   pushed.state.v = Vec3(std::cos(angle), -std::sin(angle), 0) * 0.5;
   for (int k = 0; k < 100; ++k) {
     held.step();
     pushed.step();
   }
   CHECK(held.state.v.norm() < 1e-9);
-  CHECK(pushed.state.v.norm() == Approx(0.5 + 9.81 * (std::sin(angle) - 0.2 * std::cos(angle))).epsilon(0.01));
+  CHECK(pushed.state.v.norm() ==
+        Approx(0.5 + 9.81 * (std::sin(angle) - 0.2 * std::cos(angle))).epsilon(0.01));
 }
 
 TEST_CASE("a sliding particle stops after v^2 / (2 mu g), and stays", "[contact]") {
@@ -125,7 +130,8 @@ TEST_CASE("the constraint pushes and never pulls", "[contact]") {
   lifted.state = p.state;
   for (int n = 1; n <= 20; ++n) {
     lifted.step();
-    CHECK(lifted.state.x[1] == Approx(2e-3 + 4 * 1e-4 * n * (n + 1) / 2).epsilon(1e-9));  // free fall, upwards
+    CHECK(lifted.state.x[1] ==
+          Approx(2e-3 + 4 * 1e-4 * n * (n + 1) / 2).epsilon(1e-9));  // free fall, upwards
   }
 }
 
@@ -143,8 +149,8 @@ TEST_CASE("a falling particle lands on the offset surface, at any speed", "[cont
 
 TEST_CASE("nothing tunnels through thin things", "[contact]") {
   const TriangleMesh sheet = grid(5, 5, 1, 1);  // an open surface: thick by its margin only
-  const std::vector<Shape> thin = {Box{{0, 0, 0}, {1, 1e-3, 1}}, Capsule{{-1, 0, 0}, {1, 0, 0}, 1e-3}, Bowl{{0, 0.2, 0}, 0.2, 1e-3},
-                                   body(sheet)};
+  const std::vector<Shape> thin = {Box{{0, 0, 0}, {1, 1e-3, 1}}, Capsule{{-1, 0, 0}, {1, 0, 0}, 1e-3},
+                                   Bowl{{0, 0.2, 0}, 0.2, 1e-3}, body(sheet)};
   for (const Shape& shape : thin) {
     for (double v : {1.0, 10.0, 100.0}) {
       Particle p;

@@ -18,7 +18,8 @@ double total_area(const TriangleMesh& mesh) {
   return area;
 }
 
-// Rows of the sheet (z constant) folded one after the other about an axis along x: a polyline on a cylinder, no edge changes length.
+// Rows of the sheet (z constant) folded one after the other about an axis along x: a polyline on a cylinder,
+// no edge changes length.
 VecX rolled(const TriangleMesh& mesh, double fold) {
   VecX x = stacked(mesh.positions);
   Vec3 at = mesh.positions.front();
@@ -58,7 +59,8 @@ TEST_CASE("stretching a sheet stores Y eps^2 / 2 per area in every direction", "
   system.add(noh_jung(mesh, {.stretch = 800, .bend = 0}));
   const double eps = 1e-4, area = total_area(mesh);
   for (double angle : {0.0, 0.4, M_PI / 6, M_PI / 2}) {
-    // Both principal strains positive, so that no edge goes slack: E = C11/2 (e1^2 + e2^2) + C12 e1 e2, nu = 1/3.
+    // Both principal strains positive, so that no edge goes slack: E = C11/2 (e1^2 + e2^2) + C12 e1 e2, nu =
+    // 1/3.
     VecX x = stacked(mesh.positions);
     const Vec3 a(std::cos(angle), 0, std::sin(angle)), b(-std::sin(angle), 0, std::cos(angle));
     for (Eigen::Index i = 0; i < x.size() / 3; ++i) {
@@ -74,7 +76,8 @@ TEST_CASE("stretching a sheet stores Y eps^2 / 2 per area in every direction", "
 TEST_CASE("rolling a sheet stores B kappa^2 / 2 per area, on coarse and fine meshes", "[fabric]") {
   const double B = 2e-5, radius = 0.1;
   for (double edge : {0.02, 0.01, 0.005}) {
-    const TriangleMesh mesh = equilateral_sheet(static_cast<int>(0.4 / edge) + 1, static_cast<int>(0.4 / edge) + 1, edge);
+    const TriangleMesh mesh =
+        equilateral_sheet(static_cast<int>(0.4 / edge) + 1, static_cast<int>(0.4 / edge) + 1, edge);
     const double spacing = edge * std::sqrt(3) / 2;
     System system(lumped_mass(mesh, 0.1));
     system.add(noh_jung(mesh, {.stretch = 500, .bend = B, .buckling_clamp = 1e7}));
@@ -85,16 +88,20 @@ TEST_CASE("rolling a sheet stores B kappa^2 / 2 per area, on coarse and fine mes
   }
 }
 
-TEST_CASE("the default clamp leaves a fabric its rigidity on any mesh, Choi & Ko's c_b = k_s does not", "[fabric]") {
+TEST_CASE("the default clamp leaves a fabric its rigidity on any mesh, Choi & Ko's c_b = k_s does not",
+          "[fabric]") {
   for (double edge : {0.04, 0.01, 0.006}) {
     const TriangleMesh mesh = equilateral_sheet(12, 12, edge);
     CHECK(limp_below(mesh, {.stretch = 500, .bend = 1e-5}) <= limp_curvature(1e-5, 0.15) * (1 + 1e-9));
   }
   const TriangleMesh fine = equilateral_sheet(12, 12, 0.0025);
-  CHECK(limp_below(fine, {.stretch = 500, .bend = 1e-5, .buckling_clamp = 500}) > 5 * limp_curvature(1e-5, 0.15));
-  // Finer still, the default stops at stiffest_clamp: limper than it should be, but less so, and it can be told.
+  CHECK(limp_below(fine, {.stretch = 500, .bend = 1e-5, .buckling_clamp = 500}) >
+        5 * limp_curvature(1e-5, 0.15));
+  // Finer still, the default stops at stiffest_clamp: limper than it should be, but less so, and it can be
+  // told.
   CHECK(limp_below(fine, {.stretch = 500, .bend = 1e-5}) > 2 * limp_curvature(1e-5, 0.15));
-  CHECK(limp_below(fine, {.stretch = 500, .bend = 1e-5}) < limp_below(fine, {.stretch = 500, .bend = 1e-5, .buckling_clamp = 500}) / 3);
+  CHECK(limp_below(fine, {.stretch = 500, .bend = 1e-5}) <
+        limp_below(fine, {.stretch = 500, .bend = 1e-5, .buckling_clamp = 500}) / 3);
   // The curvature it names is where the clamp lets go.
   const TriangleMesh mesh = equilateral_sheet(12, 12, 0.01);
   const Fabric fabric{.stretch = 500, .bend = 1e-5, .buckling_clamp = 400};
@@ -104,7 +111,8 @@ TEST_CASE("the default clamp leaves a fabric its rigidity on any mesh, Choi & Ko
 
 TEST_CASE("neighbour weighting is masses, so momentum and symmetry survive it", "[fabric]") {
   const TriangleMesh mesh = grid(6, 6, 1, 1);
-  const std::vector<double> plain = lumped_mass(mesh, 0.2), weighted = masses(mesh, {.area_density = 0.2, .neighbour_weighting = true});
+  const std::vector<double> plain = lumped_mass(mesh, 0.2),
+                            weighted = masses(mesh, {.area_density = 0.2, .neighbour_weighting = true});
   double lightest = 1e9, heaviest = 0;
   for (std::size_t i = 0; i < plain.size(); ++i) {
     lightest = std::min(lightest, weighted[i] / plain[i]);
@@ -121,7 +129,8 @@ TEST_CASE("neighbour weighting is masses, so momentum and symmetry survive it", 
   const VecX x = stacked(mesh.positions) + random_vector(3 * 36, 0.03, 1);
   for (const auto& force : system.forces()) force->add_linearised(x, b, b, 0.01, Stiffness::tangent, A, b);
   for (int r = 0; r < A.rows(); ++r)
-    for (int s = pattern->row_start()[static_cast<std::size_t>(r)]; s < pattern->row_start()[static_cast<std::size_t>(r) + 1]; ++s) {
+    for (int s = pattern->row_start()[static_cast<std::size_t>(r)];
+         s < pattern->row_start()[static_cast<std::size_t>(r) + 1]; ++s) {
       const int c = pattern->column()[static_cast<std::size_t>(s)];
       CHECK((A.at(s) - A.at(pattern->slot(c, r)).transpose()).norm() == 0);
     }
@@ -150,7 +159,8 @@ TEST_CASE("masses: a third of every triangle, nothing lost, isolated vertices no
 TEST_CASE("degenerate triangles give finite springs", "[fabric]") {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0.5, 0, 0}};
-  mesh.triangles = {{0, 1, 2}, {1, 3, 2}, {0, 4, 1}, {0, 1, 2}};  // a seam of no width, a collinear one, a double
+  mesh.triangles = {
+      {0, 1, 2}, {1, 3, 2}, {0, 4, 1}, {0, 1, 2}};  // a seam of no width, a collinear one, a double
   System system(lumped_mass(mesh, 0.2));
   for (double m : system.masses()) CHECK(m > 0);
   system.add(noh_jung(mesh, {}));

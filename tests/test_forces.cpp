@@ -50,7 +50,9 @@ struct Network {
   BlockPattern pattern;
   VecX x;
 
-  explicit Network(unsigned seed) : force(elements()), pattern(8, pairs()), x(random_vector(24, 0.5, seed)) { force.bind(pattern); }
+  explicit Network(unsigned seed) : force(elements()), pattern(8, pairs()), x(random_vector(24, 0.5, seed)) {
+    force.bind(pattern);
+  }
 
   static std::vector<typename Force::Element> elements() {
     std::vector<typename Force::Element> all;
@@ -90,7 +92,8 @@ struct Network {
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("a pair law: tension is the slope of the energy, stiffness the slope of the tension", "[forces]", Laws) {
+TEMPLATE_LIST_TEST_CASE("a pair law: tension is the slope of the energy, stiffness the slope of the tension",
+                        "[forces]", Laws) {
   using Law = typename TestType::Law;
   const auto rest = TestType::rest();
   const double h = 1e-6;
@@ -105,7 +108,8 @@ TEMPLATE_LIST_TEST_CASE("a pair law: tension is the slope of the energy, stiffne
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("a pair law: the energy is continuous across its branches, and least at rest", "[forces]", Laws) {
+TEMPLATE_LIST_TEST_CASE("a pair law: the energy is continuous across its branches, and least at rest",
+                        "[forces]", Laws) {
   using Law = typename TestType::Law;
   const auto rest = TestType::rest();
   for (double kink : TestType::kinks()) {
@@ -124,20 +128,25 @@ TEMPLATE_LIST_TEST_CASE("a pair force is minus the gradient of its energy", "[fo
       VecX plus = net.x, minus = net.x;
       plus[k] += 1e-6;
       minus[k] -= 1e-6;
-      CHECK(f[k] == Approx(-(net.force.energy(plus) - net.force.energy(minus)) / 2e-6).epsilon(1e-5).margin(1e-4));
+      CHECK(f[k] ==
+            Approx(-(net.force.energy(plus) - net.force.energy(minus)) / 2e-6).epsilon(1e-5).margin(1e-4));
     }
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("the assembled stiffness is the positive semidefinite part of the exact one", "[forces]", Laws) {
+TEMPLATE_LIST_TEST_CASE("the assembled stiffness is the positive semidefinite part of the exact one",
+                        "[forces]", Laws) {
   using Force = PairForce<typename TestType::Law>;
   for (unsigned seed : {4u, 5u, 6u, 7u}) {
     Network<TestType> net(seed);
     Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(24, 24);
     bool smooth = true;
-    for (const auto& e : net.force.elements()) {  // element by element: exact by differences, clamped by eigenvalues
+    for (const auto& e :
+         net.force.elements()) {  // element by element: exact by differences, clamped by eigenvalues
       Force one({{e.i, e.j, e.rest}});
-      smooth = smooth && !near_kink(TestType::kinks(), (net.x.template segment<3>(3 * e.i) - net.x.template segment<3>(3 * e.j)).norm());
+      smooth = smooth &&
+               !near_kink(TestType::kinks(),
+                          (net.x.template segment<3>(3 * e.i) - net.x.template segment<3>(3 * e.j)).norm());
       Mat3 exact;
       for (int k = 0; k < 3; ++k) {
         VecX plus = net.x, minus = net.x, fp = VecX::Zero(24), fm = fp;
@@ -148,7 +157,8 @@ TEMPLATE_LIST_TEST_CASE("the assembled stiffness is the positive semidefinite pa
         exact.col(k) = -(fp - fm).template segment<3>(3 * e.i) / 2e-6;
       }
       const Eigen::SelfAdjointEigenSolver<Mat3> eigen(0.5 * (exact + exact.transpose()));
-      const Mat3 part = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
+      const Mat3 part = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() *
+                        eigen.eigenvectors().transpose();
       expected.block<3, 3>(3 * e.i, 3 * e.i) += part;
       expected.block<3, 3>(3 * e.j, 3 * e.j) += part;
       expected.block<3, 3>(3 * e.i, 3 * e.j) -= part;
@@ -167,7 +177,8 @@ TEMPLATE_LIST_TEST_CASE("the assembled stiffness is the positive semidefinite pa
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("the majorant stiffness is that of a parabola above the energy of a lengthening pair", "[forces]", Laws) {
+TEMPLATE_LIST_TEST_CASE("the majorant stiffness is that of a parabola above the energy of a lengthening pair",
+                        "[forces]", Laws) {
   using Law = typename TestType::Law;
   const auto rest = TestType::rest();
   for (double l = 0.01; l < 1.1; l += 0.037) {
@@ -175,12 +186,14 @@ TEMPLATE_LIST_TEST_CASE("the majorant stiffness is that of a parabola above the 
     const double k = std::max(law.dt, Law::stiffest(rest, l));
     for (double to = l; to < 1.1; to += 0.041) {
       INFO(l << " to " << to);
-      CHECK(Law::energy(rest, to) <= Law::energy(rest, l) + law.t * (to - l) + 0.5 * k * (to - l) * (to - l) + 1e-9);
+      CHECK(Law::energy(rest, to) <=
+            Law::energy(rest, l) + law.t * (to - l) + 0.5 * k * (to - l) * (to - l) + 1e-9);
     }
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("internal forces carry no momentum, no torque, and no energy of rigid motion", "[forces]", Laws) {
+TEMPLATE_LIST_TEST_CASE("internal forces carry no momentum, no torque, and no energy of rigid motion",
+                        "[forces]", Laws) {
   Network<TestType> net(8);
   const VecX f = net.f(net.x);
   Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
@@ -256,7 +269,8 @@ TEST_CASE("immediate buckling agrees with the 50-digit table to 1e-12", "[forces
 }
 
 TEST_CASE("immediate buckling keeps its digits arbitrarily near the straight state", "[forces][reference]") {
-  for (double delta = 1e-14; delta < 1e-3; delta *= 7) {  // E = 12 delta + 3.6 delta^2 + ..., f = -12 - 7.2 delta - ...
+  for (double delta = 1e-14; delta < 1e-3;
+       delta *= 7) {  // E = 12 delta + 3.6 delta^2 + ..., f = -12 - 7.2 delta - ...
     const Buckling b = immediate_buckling(delta);
     CHECK(b.energy == Approx(12 * delta + 3.6 * delta * delta).epsilon(1e-12 + delta * delta));
     CHECK(b.force == Approx(-12 - 7.2 * delta).epsilon(1e-12 + delta * delta));

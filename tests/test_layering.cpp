@@ -26,7 +26,8 @@ std::vector<std::pair<std::string, std::string>> includes(const std::string& roo
       if (line.rfind("#include", 0) != 0) continue;
       const auto first = line.find_first_of("\"<");
       const auto last = line.find_first_of("\">", first + 1);
-      all.emplace_back(fs::relative(entry.path(), DRAPE_SOURCE_DIR).string(), line.substr(first + 1, last - first - 1));
+      all.emplace_back(fs::relative(entry.path(), DRAPE_SOURCE_DIR).string(),
+                       line.substr(first + 1, last - first - 1));
     }
   }
   return all;
@@ -48,7 +49,8 @@ TEST_CASE("no room includes one above it", "[layering]") {
 }
 
 TEST_CASE("only Eigen shows in headers; every other library is in one source file", "[layering]") {
-  const std::vector<std::string> libraries = {"embree3", "cholmod", "toml", "CLI", "nlohmann", "udunits2", "tiny_obj_loader"};
+  const std::vector<std::string> libraries = {"embree3",  "cholmod",  "toml",           "CLI",
+                                              "nlohmann", "udunits2", "tiny_obj_loader"};
   std::map<std::string, std::vector<std::string>> users;
   for (const std::string& room : rooms)
     for (const auto& [file, path] : includes(room))

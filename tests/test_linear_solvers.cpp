@@ -1,4 +1,5 @@
-// Laws that every linear solver obeys: the constraints hold, the answer is the dense one, the report is the truth.
+// Laws that every linear solver obeys: the constraints hold, the answer is the dense one, the report is the
+// truth.
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 
@@ -16,12 +17,14 @@ struct Problem {
   VecX b;
   Filter filter;
 
-  Problem(int n, unsigned seed, bool constrained) : pattern(make_pattern(n, seed)), A(pattern), b(random_vector(3 * n, 1, seed)) {
+  Problem(int n, unsigned seed, bool constrained)
+      : pattern(make_pattern(n, seed)), A(pattern), b(random_vector(3 * n, 1, seed)) {
     std::mt19937 engine(seed);
     std::uniform_real_distribution<double> uniform(-1, 1);
     A.set_to_mass(std::vector<double>(static_cast<std::size_t>(n), 0.3));
     for (int r = 0; r < n; ++r) {
-      for (int s = pattern->row_start()[static_cast<std::size_t>(r)]; s < pattern->row_start()[static_cast<std::size_t>(r) + 1]; ++s) {
+      for (int s = pattern->row_start()[static_cast<std::size_t>(r)];
+           s < pattern->row_start()[static_cast<std::size_t>(r) + 1]; ++s) {
         const int c = pattern->column()[static_cast<std::size_t>(s)];
         if (c <= r) continue;
         Mat3 G, H;  // |G x_r - H x_c|^2: semidefinite, with off-diagonal blocks that are not symmetric
@@ -36,8 +39,10 @@ struct Problem {
     for (int i = 0; i < n; i += 3) {
       const Vec3 p = Vec3(uniform(engine), uniform(engine), uniform(engine)).normalized();
       const Vec3 z(uniform(engine), uniform(engine), uniform(engine));
-      if (i % 2 == 0) filter.constrain(i, Mat3::Zero(), z);
-      else filter.constrain(i, Mat3::Identity() - p * p.transpose(), p * p.dot(z));
+      if (i % 2 == 0)
+        filter.constrain(i, Mat3::Zero(), z);
+      else
+        filter.constrain(i, Mat3::Identity() - p * p.transpose(), p * p.dot(z));
     }
   }
 
@@ -55,7 +60,8 @@ struct Problem {
   Eigen::MatrixXd dense() const {
     Eigen::MatrixXd D = Eigen::MatrixXd::Zero(b.size(), b.size());
     for (int r = 0; r < A.rows(); ++r)
-      for (int s = pattern->row_start()[static_cast<std::size_t>(r)]; s < pattern->row_start()[static_cast<std::size_t>(r) + 1]; ++s)
+      for (int s = pattern->row_start()[static_cast<std::size_t>(r)];
+           s < pattern->row_start()[static_cast<std::size_t>(r) + 1]; ++s)
         D.block<3, 3>(3 * r, 3 * pattern->column()[static_cast<std::size_t>(s)]) = A.at(s);
     return D;
   }
@@ -125,7 +131,8 @@ TEST_CASE("indefinite and non-finite systems are reported, not looped on", "[sol
     const auto solver = make_linear_solver(name);
     VecX dv = VecX::Zero(p.b.size());
     p.A.at(p.pattern->diagonal(7)) -= 1e4 * Mat3::Identity();
-    if (name == "mpcg" || name == "cholmod") CHECK(solver->solve(p.A, p.b, p.filter, {}, dv).reason != StopReason::converged);
+    if (name == "mpcg" || name == "cholmod")
+      CHECK(solver->solve(p.A, p.b, p.filter, {}, dv).reason != StopReason::converged);
     Problem q(20, 4, false);
     q.b[5] = std::nan("");
     dv.setZero();
@@ -161,10 +168,13 @@ TEST_CASE("a pattern knows every pair once, in chunks that only neighbours share
   const Problem p(500, 21, false);
   const BlockPattern& pattern = *p.pattern;
   for (int r = 0; r < pattern.rows(); ++r) {
-    CHECK(pattern.particle_of()[static_cast<std::size_t>(pattern.row_of()[static_cast<std::size_t>(r)])] == r);
+    CHECK(pattern.particle_of()[static_cast<std::size_t>(pattern.row_of()[static_cast<std::size_t>(r)])] ==
+          r);
     CHECK(pattern.column()[static_cast<std::size_t>(pattern.diagonal(r))] == r);
-    for (int s = pattern.row_start()[static_cast<std::size_t>(r)]; s < pattern.row_start()[static_cast<std::size_t>(r) + 1]; ++s)
-      CHECK(std::abs(pattern.column()[static_cast<std::size_t>(s)] / pattern.chunk_rows() - r / pattern.chunk_rows()) <= 1);
+    for (int s = pattern.row_start()[static_cast<std::size_t>(r)];
+         s < pattern.row_start()[static_cast<std::size_t>(r) + 1]; ++s)
+      CHECK(std::abs(pattern.column()[static_cast<std::size_t>(s)] / pattern.chunk_rows() -
+                     r / pattern.chunk_rows()) <= 1);
   }
   const TriangleMesh mesh = grid(60, 60, 1, 1);
   System system(lumped_mass(mesh, 1));

@@ -16,15 +16,19 @@ struct Sheet {
   Constraints constraints;
   State state;
 
-  explicit Sheet(TriangleMesh m, const Fabric& fabric = {}) : mesh(std::move(m)), system(lumped_mass(mesh, fabric.area_density)), state(at_rest(mesh)) {
+  explicit Sheet(TriangleMesh m, const Fabric& fabric = {})
+      : mesh(std::move(m)), system(lumped_mass(mesh, fabric.area_density)), state(at_rest(mesh)) {
     system.add(noh_jung(mesh, fabric));
     system.add(Gravity{});
   }
-  ImplicitEuler stepper(const StepOptions& options = {}) { return {system, constraints, make_linear_solver("mpcg"), options}; }
+  ImplicitEuler stepper(const StepOptions& options = {}) {
+    return {system, constraints, make_linear_solver("mpcg"), options};
+  }
 };
 
 bool same_bits(const VecX& a, const VecX& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+  return a.size() == b.size() &&
+         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
 }
 
 struct ThreadsRestored {
@@ -35,8 +39,9 @@ struct ThreadsRestored {
 }  // namespace
 
 TEST_CASE("free fall is exact, however loose or short the solve", "[step]") {
-  for (const StepOptions& options : {StepOptions{}, StepOptions{.tolerance = 0.5}, StepOptions{.max_linear_iterations = 1},
-                                     StepOptions{.newton_iterations = 4}}) {
+  for (const StepOptions& options :
+       {StepOptions{}, StepOptions{.tolerance = 0.5}, StepOptions{.max_linear_iterations = 1},
+        StepOptions{.newton_iterations = 4}}) {
     Sheet sheet(grid(20, 20, 1, 1), {.damping = 0.05});
     sheet.constraints.add(Obstacle{.shape = Plane{{0, -100, 0}, {0, 1, 0}}});
     auto stepper = sheet.stepper(options);
@@ -47,14 +52,16 @@ TEST_CASE("free fall is exact, however loose or short the solve", "[step]") {
       CHECK(report.linear_iterations == 0);
       const double fallen = 9.81 * 1e-4 * n * (n + 1) / 2;  // the scheme's own exact value
       for (int i = 0; i < sheet.state.particles(); ++i)
-        CHECK((sheet.state.x.segment<3>(3 * i) - start.segment<3>(3 * i) + Vec3(0, fallen, 0)).norm() < 1e-11);
+        CHECK((sheet.state.x.segment<3>(3 * i) - start.segment<3>(3 * i) + Vec3(0, fallen, 0)).norm() <
+              1e-11);
     }
     CHECK(sheet.state.time == Approx(0.5));
   }
 }
 
 TEST_CASE("a truncated solve says so, and does not eat gravity", "[step]") {
-  // Hung by two corners; three iterations a step reach a few vertices around the pins only. The far edge must still fall freely.
+  // Hung by two corners; three iterations a step reach a few vertices around the pins only. The far edge must
+  // still fall freely.
   Sheet sheet(grid(60, 60, 1, 1), {.stretch = 1000});
   sheet.constraints.pin({0, 59});
   auto stepper = sheet.stepper({.max_linear_iterations = 3});
@@ -80,10 +87,10 @@ TEST_CASE("the same bits with 1, 2 and 7 threads, and from run to run", "[step]"
     sheet.constraints.pin(0);
     sheet.constraints.add(Obstacle{.shape = Sphere{{0, -0.11, 0}, 0.1}});
     sheet.constraints.add(Obstacle{.shape = MeshBody(std::make_shared<SurfaceDistance>([&] {
-                             TriangleMesh ball = sphere(2, 0.1);
-                             for (Vec3& p : ball.positions) p += Vec3(0.25, -0.12, 0.1);
-                             return ball;
-                           }()))});
+                                     TriangleMesh ball = sphere(2, 0.1);
+                                     for (Vec3& p : ball.positions) p += Vec3(0.25, -0.12, 0.1);
+                                     return ball;
+                                   }()))});
     auto stepper = sheet.stepper();
     std::vector<double> unrelated(static_cast<std::size_t>(17 * t));  // another place in memory
     int contacts = 0;
@@ -140,12 +147,14 @@ TEST_CASE("a step that cannot be done leaves the state as it was and says where"
 
 namespace {
 
-// Fails every solve until the time step has been halved often enough: told from the mass it sees on the diagonal.
+// Fails every solve until the time step has been halved often enough: told from the mass it sees on the
+// diagonal.
 class Fussy final : public LinearSolver {
  public:
   explicit Fussy(double largest_scale) : largest_(largest_scale) {}
   std::string_view name() const override { return "fussy"; }
-  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options, VecX& dv) override {
+  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
+                     VecX& dv) override {
     LinearReport report = inner_->solve(A, b, filter, options, dv);
     if (options.scale > largest_) report.reason = StopReason::iteration_limit;  // scale = h |m g|
     return report;
@@ -196,7 +205,8 @@ TEST_CASE("more Newton iterations solve the nonlinear equation", "[step]") {
     double residual = 0;
     for (int i = 0; i < 100; ++i) {
       if (i == 0 || i == 9) continue;
-      const Vec3 r = sheet.system.masses()[static_cast<std::size_t>(i)] * (sheet.state.v.segment<3>(3 * i) - before.v.segment<3>(3 * i)) -
+      const Vec3 r = sheet.system.masses()[static_cast<std::size_t>(i)] *
+                         (sheet.state.v.segment<3>(3 * i) - before.v.segment<3>(3 * i)) -
                      0.01 * f.segment<3>(3 * i);
       residual = std::max(residual, r.norm());
     }

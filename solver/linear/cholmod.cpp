@@ -1,6 +1,9 @@
-// SuiteSparse's CHOLMOD over the same filtered system: LL^T, the analysis kept while the pattern's serial stands.
-//   The supernodal part that it links is GPL (README.md says what that means); without SuiteSparse this file is not built.
-//                                                              [Chen, Davis, Hager & Rajamanickam 2008, CHOLMOD]
+// SuiteSparse's CHOLMOD over the same filtered system: LL^T, the analysis kept while the pattern's serial
+// stands.
+//   The supernodal part that it links is GPL (README.md says what that means); without SuiteSparse this file
+//   is not built.
+//                                                              [Chen, Davis, Hager & Rajamanickam 2008,
+//                                                              CHOLMOD]
 #include <cholmod.h>
 
 #include "solver/linear/projected.h"

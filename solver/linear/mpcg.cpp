@@ -13,8 +13,8 @@ void Mpcg::resize(Eigen::Index n) {
   inverse_.resize(static_cast<std::size_t>(2 * n));
 }
 
-// The 3x3 diagonal blocks of S A S + I - S, inverted: the preconditioner knows the constraints. False when one of them is not
-// positive definite, and so A neither.
+// The 3x3 diagonal blocks of S A S + I - S, inverted: the preconditioner knows the constraints. False when
+// one of them is not positive definite, and so A neither.
 bool Mpcg::invert_diagonal(const BlockMatrix& A, const Filter& filter) {
   std::atomic<bool> definite{true};
   const auto store = [&](int row, const Mat3& block) {
@@ -33,8 +33,8 @@ bool Mpcg::invert_diagonal(const BlockMatrix& A, const Filter& filter) {
   return definite;
 }
 
-LinearReport Mpcg::solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
-                         VecX& dv) {
+LinearReport Mpcg::solve(const BlockMatrix& A, const VecX& b, const Filter& filter,
+                         const LinearOptions& options, VecX& dv) {
   resize(b.size());
   const int rows = A.rows();
   LinearReport report;

@@ -1,6 +1,7 @@
-// The modified preconditioned conjugate gradient.                              [Baraff & Witkin 1998, section 5.3]
-//   Start dv_0 = S guess + z and the symmetric convergence test of [Ascher & Boxerman 2003]; preconditioner: the inverses of the
-//   3x3 diagonal blocks of the projected matrix S A S + I - S.
+// The modified preconditioned conjugate gradient.                              [Baraff & Witkin 1998,
+// section 5.3]
+//   Start dv_0 = S guess + z and the symmetric convergence test of [Ascher & Boxerman 2003]; preconditioner:
+//   the inverses of the 3x3 diagonal blocks of the projected matrix S A S + I - S.
 #pragma once
 
 #include "solver/linear_solver.h"

@@ -11,12 +11,14 @@ void ProjectedSystem::build_pattern(const BlockPattern& pattern) {
   int* outer = matrix_.outerIndexPtr();
   std::vector<int> inner;
   inner.reserve(static_cast<std::size_t>(pattern.blocks()) * 5);
-  for (int j = 0; j < pattern.rows(); ++j) {  // the pattern is symmetric: row j of blocks is column j of blocks
+  for (int j = 0; j < pattern.rows();
+       ++j) {  // the pattern is symmetric: row j of blocks is column j of blocks
     for (int c = 0; c < 3; ++c) {
       outer[3 * j + c] = static_cast<int>(inner.size());
       for (int s = pattern.diagonal(j); s < start[static_cast<std::size_t>(j) + 1]; ++s)
         for (int r = 0; r < 3; ++r)
-          if (const int row = 3 * column[static_cast<std::size_t>(s)] + r; row >= 3 * j + c) inner.push_back(row);
+          if (const int row = 3 * column[static_cast<std::size_t>(s)] + r; row >= 3 * j + c)
+            inner.push_back(row);
     }
   }
   outer[n] = static_cast<int>(inner.size());
@@ -25,7 +27,8 @@ void ProjectedSystem::build_pattern(const BlockPattern& pattern) {
   serial_ = pattern.serial();
 }
 
-void ProjectedSystem::project(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options) {
+void ProjectedSystem::project(const BlockMatrix& A, const VecX& b, const Filter& filter,
+                              const LinearOptions& options) {
   const BlockPattern& pattern = A.pattern();
   if (serial_ != pattern.serial()) build_pattern(pattern);
   right_.resize(b.size());
@@ -52,9 +55,11 @@ void ProjectedSystem::project(const BlockMatrix& A, const VecX& b, const Filter&
       if (fj) block = block * fj->S;
       if (fi && i == j) block += Mat3::Identity() - fi->S;
       const int above = 3 * (s - first);
-      for (int c = 0; c < 3; ++c)  // column c starts c entries lower: its part above the diagonal is not stored
+      for (int c = 0; c < 3;
+           ++c)  // column c starts c entries lower: its part above the diagonal is not stored
         for (int r = (i == j ? c : 0); r < 3; ++r)
-          value[static_cast<std::ptrdiff_t>(matrix_.outerIndexPtr()[3 * j + c]) + above + r - c] = block(r, c);
+          value[static_cast<std::ptrdiff_t>(matrix_.outerIndexPtr()[3 * j + c]) + above + r - c] =
+              block(r, c);
     }
   }
 }

@@ -5,7 +5,6 @@
 
 #include "mesh/parallel.h"
 #include "solver/linear_solver.h"
-#include "mesh/parallel.h"
 
 namespace drape {
 
@@ -24,8 +23,8 @@ inline int iteration_limit(const LinearOptions& options, int rows) {
 }
 
 // |S (b - A z)|: the right-hand side of the projected system. r is scratch.
-inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
-                                VecX& z, VecX& r) {
+inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filter& filter,
+                                const LinearOptions& options, VecX& z, VecX& r) {
   z.setZero();
   bool moving = false;
   for (const FilterEntry& e : filter.entries()) {
@@ -41,17 +40,20 @@ inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filte
   return std::max(std::sqrt(dot(r, r)), options.scale);
 }
 
-// The report of a direct solver, or of any that has no residual of its own; the constraints are met to the last bit.
-inline LinearReport finished(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options, VecX& dv,
-                             double reference, VecX& scratch) {
+// The report of a direct solver, or of any that has no residual of its own; the constraints are met to the
+// last bit.
+inline LinearReport finished(const BlockMatrix& A, const VecX& b, const Filter& filter,
+                             const LinearOptions& options, VecX& dv, double reference, VecX& scratch) {
   scratch.resize(dv.size());
   filter.impose(dv);
   residual(A, b, filter, dv, scratch);
   LinearReport report;
   report.residual_impulse = std::sqrt(dot(scratch, scratch));
   report.residual = reference > 0 ? report.residual_impulse / reference : report.residual_impulse;
-  if (!std::isfinite(report.residual)) report.reason = StopReason::not_finite;
-  else if (report.residual > std::max(options.tolerance, 1e-12)) report.reason = StopReason::iteration_limit;
+  if (!std::isfinite(report.residual))
+    report.reason = StopReason::not_finite;
+  else if (report.residual > std::max(options.tolerance, 1e-12))
+    report.reason = StopReason::iteration_limit;
   return report;
 }
 
