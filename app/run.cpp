@@ -1,10 +1,10 @@
 #include "app/run.h"
 
-#include <utility>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "app/interrupt.h"
 #include "app/measure.h"

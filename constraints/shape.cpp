@@ -31,6 +31,8 @@ template <class... Cases>
 struct Match : Cases... {
   using Cases::operator()...;
 };
+template <class... Cases>
+Match(Cases...) -> Match<Cases...>;
 
 // A unit vector across the unit vector n.
 Vec3 across(const Vec3& n) { return n.unitOrthogonal(); }

@@ -161,6 +161,7 @@ std::vector<std::unique_ptr<Force>> noh_jung(const TriangleMesh& mesh, const Fab
   }
   if (fabric.damping > 0) {
     std::vector<PairDamping::Element> damped;
+    damped.reserve(stretch.size() + bend.size());
     for (const auto& e : stretch) damped.push_back({e.i, e.j});
     for (const auto& e : bend) damped.push_back({e.i, e.j});
     forces.push_back(std::make_unique<PairDamping>(std::move(damped), fabric.damping, fabric.damping_kind));

@@ -241,7 +241,7 @@ bool ImplicitEuler::good(const LinearReport& linear) const {
          (linear.reason == StopReason::iteration_limit && options_.max_linear_iterations > 0);
 }
 
-bool ImplicitEuler::fail(StepReport& report, const std::string& what, const LinearReport& linear) const {
+bool ImplicitEuler::fail(StepReport& report, const std::string& what, const LinearReport& linear) {
   report.residual = linear.residual;
   report.failure = {what, -1, std::string(system_.not_finite_force(x_, v_))};
   double worst = -1;
@@ -252,7 +252,26 @@ bool ImplicitEuler::fail(StepReport& report, const std::string& what, const Line
     report.failure.particle = i;
     if (!std::isfinite(size)) break;
   }
+  if (report.failure.force.empty()) report.failure.force = stiffest_force(report.failure.particle);
   return false;
+}
+
+// The force with the largest stiffness at a particle, or one that is not finite: what to look at when a solve
+// failed there.
+std::string ImplicitEuler::stiffest_force(int particle) {
+  const int slot = A_->pattern().diagonal(A_->pattern().row_of()[static_cast<std::size_t>(particle)]);
+  std::string stiffest;
+  double most = -1;
+  for (const auto& force : system_.forces()) {
+    A_->set_to_mass(std::vector<double>(system_.masses().size(), 0.0));
+    force->add_linearised(x_, v_, y_, 1.0, Stiffness::majorant, *A_, b_);
+    const double size = A_->at(slot).norm();
+    if (size <= most) continue;
+    stiffest = force->name();
+    if (!std::isfinite(size)) break;
+    most = size;
+  }
+  return stiffest;
 }
 
 // Phi(v), see the header.

@@ -44,7 +44,8 @@ class ImplicitEuler final : public Integrator {
   bool descend(const VecX& v_bar, bool first, double h);
   void reaction();
   bool good(const LinearReport& linear) const;
-  bool fail(StepReport& report, const std::string& what, const LinearReport& linear) const;
+  bool fail(StepReport& report, const std::string& what, const LinearReport& linear);
+  std::string stiffest_force(int particle);
 
   System& system_;
   Constraints& constraints_;

@@ -374,13 +374,13 @@ TEST_CASE("an interrupted run leaves complete files", "[cli]") {
 
 TEST_CASE("a failed computation says where, ends with 1 and keeps what went before", "[cli]") {
   const Workshop shop;
-  for (const char* absurd : {"stretch=1e300", "bend=1e300"}) {
+  for (const char* absurd : {"stretch=1e300", "stretch_spring=1e305"}) {
     INFO(absurd);
     const Outcome run = shop.run(std::string("simulate hung.toml --out o --quiet --set cloth.0.") + absurd);
     CHECK(run.exit_code == 1);
     CHECK(lines_of(run.err) == 1);
     CHECK_THAT(run.err, StartsWith("error: step ") && Contains(" of sheet (at ") &&
-                            Contains("the term is '") && Contains("try a smaller --time-step"));
+                            Contains("the term is 'stretch'") && Contains("try a smaller --time-step"));
     CHECK(shop.files("o") == usual_files);
     const Json json = shop.json("o/run.json");
     CHECK(json["state"] == "failed");

@@ -1,4 +1,5 @@
-// One implicit step of a sheet in free fall above a ball, by the installed library. Exit code 0: it fell as it should.
+// One implicit step of a sheet in free fall above a ball, by the installed library. Exit code 0: it fell as
+// it should.
 #include <drape/drape.h>
 
 #include <cmath>
@@ -10,7 +11,8 @@ int main() {
   system.add(drape::noh_jung(sheet, {.stretch = 500, .bend = 1e-5}));
   system.add(drape::gravity({0, -9.81, 0}));
   drape::Constraints constraints;
-  constraints.add(drape::Obstacle{.shape = drape::Sphere{.centre = {0, -1, 0}, .radius = 0.3}, .friction = 0.3});
+  constraints.add(
+      drape::Obstacle{.shape = drape::Sphere{.centre = {0, -1, 0}, .radius = 0.3}, .friction = 0.3});
   drape::ImplicitEuler stepper(system, constraints, drape::make_linear_solver("mpcg"));
   drape::State state = drape::at_rest(sheet);
 
@@ -22,7 +24,9 @@ int main() {
   }
   const double expected = -9.81 * h * h;  // m, backward Euler's first step from standing still
   double worst = 0;
-  for (int i = 0; i < state.particles(); ++i) worst = std::fmax(worst, std::fabs(state.x[3 * i + 1] - expected));
-  std::printf("%d particles fell by %g m in %g s, off by at most %g m\n", state.particles(), -expected, h, worst);
+  for (int i = 0; i < state.particles(); ++i)
+    worst = std::fmax(worst, std::fabs(state.x[3 * i + 1] - expected));
+  std::printf("%d particles fell by %g m in %g s, off by at most %g m\n", state.particles(), -expected, h,
+              worst);
   return worst < 1e-12 ? 0 : 1;
 }
