@@ -7,14 +7,22 @@ namespace {
 
 volatile std::sig_atomic_t asked_to_end = 0;
 
-void on_interrupt(int) { asked_to_end = 1; }
+// The step under way is finished first; who asks a third time does not want to wait. (Twice is not enough:
+// `timeout` and some shells send the same signal to the process and to its group.)
+void on_interrupt(int signal) {
+  asked_to_end = asked_to_end + 1;
+  if (asked_to_end >= 3) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+}
 
 }  // namespace
 
 void catch_interrupts() {
   struct sigaction action = {};
   action.sa_handler = on_interrupt;
-  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
