@@ -48,12 +48,10 @@ struct BucklingSpring {
     const Buckling b = immediate_buckling(delta);
     return {r.k_b / (r.L * r.L) * b.force, r.k_b / (r.L * r.L * r.L) * b.stiffness};
   }
-  // The chord to the rest length: the law falls off from it, so a parabola of this stiffness lies above the
-  // energy.
-  static double stiffest(const Rest& r, double l) {
-    if (l >= r.L) return l < 1.02 * r.L ? r.c_b : 0;
-    return tension(r, l).t / (l - r.L);
-  }
+  // The force of a buckled connection hardly changes until the clamp takes it away at once: with its slope alone, a step shoots past
+  // the clamp and back, for ever. The chord to the rest length sees it coming; its parabola lies above the energy.
+  static double chord(const Rest& r, double l) { return l < r.L ? tension(r, l).t / (l - r.L) : 0; }
+  static double stiffest(const Rest& r, double l) { return l >= r.L && l < 1.02 * r.L ? r.c_b : chord(r, l); }
 };
 
 }  // namespace drape

@@ -102,7 +102,7 @@ bool ImplicitEuler::attempt(State& state, double h, StepReport& report) {
     y_ = x_bar_ + h * v_ - x_;
     {
       const Stopwatch watch(report.assemble_ms);
-      assemble(state.v, h, full || k == 0 ? Stiffness::tangent : Stiffness::majorant);
+      assemble(state.v, h, full || k == 0 ? Stiffness::chord : Stiffness::majorant);
     }
     if (k > 0) {
       if (full && nonlinear_residual(h) <= options_.newton_tolerance * weight_impulse_) break;

@@ -150,6 +150,7 @@ class PairForce final : public Force {
       const Vec3 d = x.segment<3>(3 * e.i) - x.segment<3>(3 * e.j);
       const double l = d.norm();
       Tension law = Law::tension(e.rest, l);
+      if (stiffness == Stiffness::chord) law.dt = std::max(law.dt, Law::chord(e.rest, l));
       if (stiffness == Stiffness::majorant) law.dt = std::max(law.dt, Law::stiffest(e.rest, l));
       if ((law.t == 0 && law.dt == 0) || (l == 0 && law.t != 0)) return;
       const double pull = l == 0 ? 0 : law.t / l;

@@ -22,6 +22,7 @@ struct TensionSpring {
   static Tension tension(const Rest& r, double l) {
     return taut(r, l) ? Tension{r.k * (l - r.L), r.k} : Tension{0, 0};
   }
+  static double chord(const Rest&, double) { return 0; }
   static double stiffest(const Rest& r, double) { return r.k; }
 };
 
