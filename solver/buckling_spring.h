@@ -48,8 +48,9 @@ struct BucklingSpring {
     const Buckling b = immediate_buckling(delta);
     return {r.k_b / (r.L * r.L) * b.force, r.k_b / (r.L * r.L * r.L) * b.stiffness};
   }
-  // The force of a buckled connection hardly changes until the clamp takes it away at once: with its slope alone, a step shoots past
-  // the clamp and back, for ever. The chord to the rest length sees it coming; its parabola lies above the energy.
+  // The force of a buckled connection hardly changes until the clamp takes it away at once: with its slope
+  // alone, a step shoots past the clamp and back, for ever. The chord to the rest length sees it coming; its
+  // parabola lies above the energy.
   static double chord(const Rest& r, double l) { return l < r.L ? tension(r, l).t / (l - r.L) : 0; }
   static double stiffest(const Rest& r, double l) { return l >= r.L && l < 1.02 * r.L ? r.c_b : chord(r, l); }
 };

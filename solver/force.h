@@ -17,8 +17,9 @@ enum class DampingKind {
 
 // Which K stands in an implicit step.
 enum class Stiffness {
-  tangent,   // the positive semidefinite part of -df/dx here
-  chord,     // stiffer where a force falls off on the way to the rest length, so that a step does not overshoot it
+  tangent,  // the positive semidefinite part of -df/dx here
+  chord,  // stiffer where a force falls off on the way to the rest length, so that a step does not overshoot
+          // it
   majorant,  // also what a slack connection will resist with once it is taut: slower, and never surprised
 };
 
