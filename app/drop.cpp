@@ -171,7 +171,7 @@ class DropScene {
     // the farther.
     const double margin = options_.margin ? quantity(parse_toml_value(*options_.margin, "--margin"),
                                                      dimension::length, Range::any)
-                                          : std::max(Obstacle().margin, examine(mesh).median_edge / 6);
+                                          : std::max(Obstacle().margin, examine(mesh).median_edge / 5);
     const Vec3 under(cloth.centre()[0], cloth.lower[1], cloth.centre()[2]);
     double bottom = under[1] - fall;
     Node list = Node::of_list({}, "drape drop");
