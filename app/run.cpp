@@ -51,6 +51,7 @@ class Run {
   void record_step(const StepRow& row);
   void write_due_frames();
   void write_frame();
+  bool at_last_step() const { return next_step_ == step_count_; }
   bool at_end() const { return next_step_ > step_count_; }
   void conclude();
   void note_failure(const StepFailure& failure);
@@ -116,8 +117,7 @@ bool Run::step() {
   before_ = state;
   StepRow row;
   row.step = next_step_;
-  row.report =
-      simulation_.integrator->advance(state, next_step_ == step_count_ ? last_step_ : wanted_.time_step);
+  row.report = simulation_.integrator->advance(state, at_last_step() ? last_step_ : wanted_.time_step);
   if (row.report.done && !(state.x.allFinite() && state.v.allFinite())) {  // out of the range of numbers
     row.report.done = false;
     row.report.failure = {"a position or velocity is not a finite number", first_not_finite(state), {}};
@@ -127,6 +127,8 @@ bool Run::step() {
     note_failure(row.report.failure);
     return false;
   }
+  // Whole steps from the start, not a sum that drifts by round-off.
+  state.time = at_last_step() ? wanted_.duration : static_cast<double>(next_step_) * wanted_.time_step;
   row.time = state.time;
   row.kinetic_energy = simulation_.system->kinetic_energy(state.v);
   row.elastic_energy = simulation_.system->elastic_energy(state.x);

@@ -2,16 +2,13 @@
 //   One pass over the text; faces may refer to vertices that come later, so references ahead are remembered
 //   with their line and looked at again at the end. Faces are cut into triangles last, when every position is
 //   known.
-// Groups: a face belongs to the names of the last 'g' (several allowed) and of the last 'o'. An 'o' ends the
-// groups of the object before it, unless no face has come since the 'g'.
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <limits>
-#include <map>
 #include <system_error>
 
 #include "mesh/obj.h"
+#include "mesh/obj_notes.h"
 #include "mesh/obj_scan.h"
 #include "mesh/polygon.h"
 
@@ -45,17 +42,12 @@ class ObjReader {
     int highest_v, highest_vt;
     int line;
   };
-  struct GroupSpan {  // from this face on, these groups
-    std::size_t first_face;
-    std::vector<int> groups;
-  };
   enum Kind { kVertex, kTexcoord, kNormal };
 
   [[noreturn]] void fail(const std::string& what) const { fail_at(scanner_.line(), what); }
   [[noreturn]] void fail_at(int line, const std::string& what) const {
     throw InputError(name_ + ":" + std::to_string(line) + ": " + what);
   }
-  void warn(int line, const std::string& kind, const std::string& what);
   void read_line(std::string_view line);
   void read_vertex(std::string_view rest);
   void read_normal(std::string_view rest);
@@ -63,15 +55,12 @@ class ObjReader {
   ObjCorner read_corner(std::string_view word, bool& ahead);
   long long read_index(std::string_view digits, std::string_view word, Kind kind) const;
   void read_element(std::string_view keyword, std::string_view line);
-  void read_names(std::string_view keyword, std::string_view rest);
   void keep(std::string_view line);
   bool is_relative_curve(std::string_view keyword, std::string_view rest) const;
 
   void check_references();
   void drop_broken_elements();
   void cut_faces();
-  void collect_groups();
-  void report_warnings();
 
   obj::LineScanner scanner_;
   std::string name_;
@@ -80,23 +69,9 @@ class ObjReader {
   std::vector<Ahead> ahead_;
   std::vector<Element> elements_;
   std::vector<int> face_lines_;  // only of faces with more than three corners: {face, line} pairs
-  std::map<std::string, int> group_numbers_;
-  std::vector<std::string> group_names_;
-  std::vector<GroupSpan> spans_;
-  std::vector<int> current_groups_, current_object_;
-  std::size_t faces_at_group_ = 0;
-  struct Warning {
-    int line;
-    std::string text;
-    std::size_t more;
-  };
-  std::map<std::string, Warning> warnings_;  // by kind
+  obj::Groups groups_;
+  obj::Warnings warnings_;
 };
-
-void ObjReader::warn(int line, const std::string& kind, const std::string& what) {
-  const auto [found, fresh] = warnings_.try_emplace(kind, Warning{line, what, 0});
-  if (!fresh) ++found->second.more;
-}
 
 TriangleMesh ObjReader::read() {
   document_.face_start.push_back(0);
@@ -107,18 +82,15 @@ TriangleMesh ObjReader::read() {
   if (mesh_.positions.empty()) throw InputError(name_ + ": no vertices ('v' lines): is this an OBJ file?");
   check_references();
   if (document_.face_count() == 0) {
-    std::string skipped;
-    for (const auto& [kind, warning] : warnings_) {
-      if (kind == "corners")
-        skipped = " (" + name_ + ":" + std::to_string(warning.line) + ": " + warning.text + ")";
-    }
-    throw InputError(
-        name_ + ": no faces of three corners or more ('f' lines): there is no surface to simulate" + skipped);
+    const std::string skipped = warnings_.first("corners", name_);
+    throw InputError(name_ +
+                     ": no faces of three corners or more ('f' lines): there is no surface to simulate" +
+                     (skipped.empty() ? "" : " (" + skipped + ")"));
   }
   drop_broken_elements();
   cut_faces();
-  collect_groups();
-  report_warnings();
+  mesh_.groups = groups_.collect(document_, mesh_.vertex_count());
+  document_.warnings = warnings_.lines(name_);
   mesh_.document = std::make_shared<const ObjDocument>(std::move(document_));
   return std::move(mesh_);
 }
@@ -135,13 +107,13 @@ void ObjReader::read_line(std::string_view line) {
   } else if (keyword == "vn") {
     read_normal(rest);
   } else if (keyword == "g" || keyword == "o") {
-    read_names(keyword, rest.substr(0, obj::comment_start(rest)));
+    groups_.read(keyword, rest.substr(0, obj::comment_start(rest)), document_.face_count());
     keep(line);
   } else if (keyword == "l" || keyword == "p") {
     read_element(keyword, rest.substr(0, obj::comment_start(rest)));
   } else if (is_relative_curve(keyword, rest)) {
-    warn(scanner_.line(), "curve",
-         "'" + std::string(keyword) + "' counts vertices from the end: it is left out");
+    warnings_.add(scanner_.line(), "curve",
+                  "'" + std::string(keyword) + "' counts vertices from the end: it is left out");
   } else {
     keep(line);
   }
@@ -180,8 +152,8 @@ void ObjReader::read_normal(std::string_view rest) {
   for (int k = 0; k < 3; ++k) {
     const std::string_view word = next_word(rest);
     if (obj::parse_number(word, n[k]) == Number::good) continue;
-    warn(scanner_.line(), "normal",
-         "normal " + quoted(word) + " is not a finite number: it is computed anew");
+    warnings_.add(scanner_.line(), "normal",
+                  "normal " + quoted(word) + " is not a finite number: it is computed anew");
     n.setZero();
     break;
   }
@@ -227,9 +199,9 @@ ObjCorner ObjReader::read_corner(std::string_view word, bool& ahead) {
              (index == 0 ? ", but vertices count from 1" : ", but the file has ") +
              (index == 0 ? "" : std::to_string(count) + (index < 0 ? " before it" : "")));
       } else {
-        warn(scanner_.line(), names[kind],
-             std::string("face refers to ") + names[kind] + " " + std::string(digits.substr(0, 20)) +
-                 ", which is not there: the reference is dropped");
+        warnings_.add(scanner_.line(), names[kind],
+                      std::string("face refers to ") + names[kind] + " " + std::string(digits.substr(0, 20)) +
+                          ", which is not there: the reference is dropped");
       }
     }
     if (slash == rest.npos) return corner;
@@ -252,8 +224,9 @@ void ObjReader::read_face(std::string_view rest) {
   }
   const std::size_t count = corners.size() - start;
   if (count < 3) {
-    warn(scanner_.line(), "corners",
-         "face of " + std::to_string(count) + (count == 1 ? " corner" : " corners") + " is passed over");
+    warnings_.add(
+        scanner_.line(), "corners",
+        "face of " + std::to_string(count) + (count == 1 ? " corner" : " corners") + " is passed over");
     corners.resize(start);
     ahead_.resize(ahead_before);
     return;
@@ -261,7 +234,8 @@ void ObjReader::read_face(std::string_view rest) {
   if (document_.face_count() >= static_cast<std::size_t>(kMany)) fail("more faces than can be numbered");
   const ObjCorner* const c = corners.data() + start;
   if (count == 3 && (c[0].v == c[1].v || c[1].v == c[2].v || c[2].v == c[0].v)) {
-    warn(scanner_.line(), "triangle", "triangle names a vertex twice: it is kept, but not simulated");
+    warnings_.add(scanner_.line(), "triangle",
+                  "triangle names a vertex twice: it is kept, but not simulated");
   } else if (count > 3) {
     face_lines_.push_back(static_cast<int>(document_.face_count()));
     face_lines_.push_back(scanner_.line());
@@ -303,30 +277,6 @@ void ObjReader::read_element(std::string_view keyword, std::string_view rest) {
   keep(text);
 }
 
-void ObjReader::read_names(std::string_view keyword, std::string_view rest) {
-  const auto number = [&](std::string_view name) {
-    const auto [found, fresh] =
-        group_numbers_.try_emplace(std::string(name), static_cast<int>(group_names_.size()));
-    if (fresh) group_names_.emplace_back(name);
-    return found->second;
-  };
-  if (keyword == "o") {  // the whole line is the name of one object
-    rest = obj::trim(rest);
-    current_object_.clear();
-    if (!rest.empty()) current_object_.push_back(number(rest));
-    if (faces_at_group_ != document_.face_count()) current_groups_.clear();
-  } else {
-    current_groups_.clear();
-    faces_at_group_ = document_.face_count();
-    for (std::string_view name = next_word(rest); !name.empty(); name = next_word(rest)) {
-      current_groups_.push_back(number(name));
-    }
-  }
-  GroupSpan span{document_.face_count(), current_groups_};
-  span.groups.insert(span.groups.end(), current_object_.begin(), current_object_.end());
-  spans_.push_back(std::move(span));
-}
-
 // References to what came later in the file, now that all of it is known.
 void ObjReader::check_references() {
   const int v_count = mesh_.vertex_count();
@@ -338,9 +288,9 @@ void ObjReader::check_references() {
     }
     const auto drop = [&](int& slot, std::size_t count, const std::string& kind) {
       if (slot < 0 || static_cast<std::size_t>(slot) < count) return;
-      warn(ahead.line, kind,
-           "face refers to " + kind + " " + std::to_string(slot + 1) + ", but the file has " +
-               std::to_string(count) + ": the reference is dropped");
+      warnings_.add(ahead.line, kind,
+                    "face refers to " + kind + " " + std::to_string(slot + 1) + ", but the file has " +
+                        std::to_string(count) + ": the reference is dropped");
       slot = -1;
     };
     drop(corner.vt, document_.texcoords.size(), "texture coordinate");
@@ -357,7 +307,8 @@ void ObjReader::drop_broken_elements() {
     const bool good = element->highest_v <= mesh_.vertex_count() &&
                       static_cast<std::size_t>(element->highest_vt) <= document_.texcoords.size();
     if (good) continue;
-    warn(element->line, "element", "line or point element refers to what is not there: it is left out");
+    warnings_.add(element->line, "element",
+                  "line or point element refers to what is not there: it is left out");
     statements.erase(statements.begin() + static_cast<std::ptrdiff_t>(element->statement));
   }
 }
@@ -382,70 +333,13 @@ void ObjReader::cut_faces() {
     const int line = face_lines_[next_line + 1];
     next_line += 2;
     if (outcome.repeated_corner)
-      warn(line, "repeated", "polygon repeats a corner: the repetition is passed over");
-    if (outcome.folded) warn(line, "folded", "polygon crosses or folds back on itself: it is cut as a fan");
+      warnings_.add(line, "repeated", "polygon repeats a corner: the repetition is passed over");
+    if (outcome.folded)
+      warnings_.add(line, "folded", "polygon crosses or folds back on itself: it is cut as a fan");
   }
-}
-
-void ObjReader::collect_groups() {
-  std::vector<std::vector<std::size_t>> spans_of(group_names_.size());
-  for (std::size_t s = 0; s < spans_.size(); ++s) {
-    for (const int group : spans_[s].groups) spans_of[group].push_back(s);
-  }
-  std::vector<int> last_group(mesh_.positions.size(), -1);
-  for (int group = 0; group < static_cast<int>(group_names_.size()); ++group) {
-    std::vector<int> members;
-    for (const std::size_t s : spans_of[group]) {
-      const std::size_t end_face = s + 1 < spans_.size() ? spans_[s + 1].first_face : document_.face_count();
-      const std::size_t end = document_.face_start[end_face];
-      for (std::size_t k = document_.face_start[spans_[s].first_face]; k < end; ++k) {
-        const int v = document_.corners[k].v;
-        if (last_group[v] != group) members.push_back(v);
-        last_group[v] = group;
-      }
-    }
-    std::sort(members.begin(), members.end());
-    if (!members.empty()) mesh_.groups.push_back({group_names_[group], std::move(members)});
-  }
-}
-
-void ObjReader::report_warnings() {
-  std::vector<const Warning*> in_order;
-  for (const auto& [kind, warning] : warnings_) in_order.push_back(&warning);
-  std::stable_sort(in_order.begin(), in_order.end(),
-                   [](const Warning* a, const Warning* b) { return a->line < b->line; });
-  for (const Warning* w : in_order) {
-    document_.warnings.push_back(name_ + ":" + std::to_string(w->line) + ": " + w->text +
-                                 (w->more == 0 ? "" : " (and " + std::to_string(w->more) + " more like it)"));
-  }
-}
-
-std::string read_text(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw InputError(name + ": no such file");
-  if (std::filesystem::is_directory(status))
-    throw InputError(name + ": is a directory; name an OBJ file in it");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(name.c_str(), "rb"), &std::fclose);
-  if (!file) throw InputError(name + ": cannot be opened: " + std::generic_category().message(errno));
-  std::string text;
-  if (std::filesystem::is_regular_file(status)) text.resize(std::filesystem::file_size(path, error) + 1);
-  std::size_t length = 0;
-  while (true) {
-    if (length == text.size()) text.resize(text.size() + text.size() / 2 + 65536);
-    const std::size_t got = std::fread(text.data() + length, 1, text.size() - length, file.get());
-    if (got == 0) break;
-    length += got;
-  }
-  if (std::ferror(file.get())) throw InputError(name + ": cannot be read to its end");
-  text.resize(length);
-  return text;
 }
 
 }  // namespace
-
-TriangleMesh read_obj(const std::filesystem::path& path) { return parse_obj(read_text(path), path.string()); }
 
 TriangleMesh parse_obj(std::string_view text, const std::string& name) {
   if (text.empty()) throw InputError(name + ": the file is empty");

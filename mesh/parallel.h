@@ -25,6 +25,14 @@ void parallel_for(int count, bool serial, const F& f) {
       count, [](const void* context, int k) { (*static_cast<const F*>(context))(k); }, &f);
 }
 
+// f(k) for k = 0 .. count-1, the even ones in any order, then the odd ones: f(k) may write what belongs to k
+// and to k + 1, and adds up in the same order on any number of threads.
+template <class F>
+void even_then_odd(int count, bool serial, const F& f) {
+  for (int parity = 0; parity < 2; ++parity)
+    parallel_for((count + 1 - parity) / 2, serial, [&](int k) { f(2 * k + parity); });
+}
+
 inline constexpr int chunk_size = 512;
 inline int chunk_count(int n) { return (n + chunk_size - 1) / chunk_size; }
 

@@ -93,6 +93,15 @@ std::vector<int> locality_order(const Graph& g) {
 typedef double Four __attribute__((vector_size(32), aligned(8)));
 inline Four load(const double* p) { return *reinterpret_cast<const Four*>(p); }
 
+// y[0..2] += the sums of the lanes of p, q, r.
+inline void add_sums(const Four& p, const Four& q, const Four& r, double* y) {
+  typedef long long Lanes __attribute__((vector_size(32)));
+  const Four pq = __builtin_shuffle(p, q, Lanes{0, 4, 2, 6}) + __builtin_shuffle(p, q, Lanes{1, 5, 3, 7});
+  y[0] += pq[0] + pq[2];
+  y[1] += pq[1] + pq[3];
+  y[2] += (r[0] + r[1]) + r[2];
+}
+
 }  // namespace
 
 BlockPattern::BlockPattern(int particles, std::vector<ParticlePair> pairs) {
@@ -106,20 +115,18 @@ BlockPattern::BlockPattern(int particles, std::vector<ParticlePair> pairs) {
     row_of_[static_cast<std::size_t>(particle_of_[r])] = static_cast<int>(r);
 
   row_start_.assign(particle_of_.size() + 1, 0);
-  diagonal_.resize(particle_of_.size());
-  column_.reserve(g.neighbour.size() + particle_of_.size());
+  column_.reserve(g.neighbour.size() / 2 + particle_of_.size());
   for (std::size_t r = 0; r < particle_of_.size(); ++r) {
     const auto i = static_cast<std::size_t>(particle_of_[r]);
     const auto first = static_cast<std::ptrdiff_t>(column_.size());
-    column_.push_back(static_cast<int>(r));
+    const int row = static_cast<int>(r);
+    column_.push_back(row);
     for (int k = g.start[i]; k < g.start[i + 1]; ++k)
-      column_.push_back(row_of_[static_cast<std::size_t>(g.neighbour[static_cast<std::size_t>(k)])]);
+      if (const int c = row_of_[static_cast<std::size_t>(g.neighbour[static_cast<std::size_t>(k)])]; c > row)
+        column_.push_back(c);
     std::sort(column_.begin() + first, column_.end());
-    diagonal_[r] = static_cast<int>(
-        std::lower_bound(column_.begin() + first, column_.end(), static_cast<int>(r)) - column_.begin());
     row_start_[r + 1] = static_cast<int>(column_.size());
-    bandwidth_ = std::max({bandwidth_, column_.back() - static_cast<int>(r),
-                           static_cast<int>(r) - column_[static_cast<std::size_t>(first)]});
+    bandwidth_ = std::max(bandwidth_, column_.back() - row);
   }
   chunk_rows_ = std::max(bandwidth_, 256);
 }
@@ -147,27 +154,39 @@ void BlockMatrix::set_to_mass(const std::vector<double>& mass) {
   });
 }
 
+// Row r of the upper triangle gives y_r += A_rj x_j and, as the block (j, r), y_j += A_rj^T x_r.
 void BlockMatrix::multiply(const VecX& x, VecX& y) const {
   constexpr std::ptrdiff_t ahead = 9 * 128;  // doubles: the processor's own prefetch stops at every page
   const int* start = pattern_->row_start().data();
   const int* column = pattern_->column().data();
-  for_chunks(rows(), [&](int begin, int end) {
+  const int chunk_rows = pattern_->chunk_rows(), chunks = pattern_->chunks();
+  const auto first_row = [&](int chunk) { return std::min(chunk * chunk_rows, rows()); };
+  even_then_odd(chunks, rows() < serial_below, [&](int chunk) {
+    const int begin = first_row(chunk), end = first_row(chunk + 1);
+    if (chunk % 2 == 0) y.segment(3 * begin, 3 * (first_row(chunk + 2) - begin)).setZero();
     const double* a = block(start[begin]);
     for (int r = begin; r < end; ++r) {
-      Four sum = {0, 0, 0, 0}, sum1 = {0, 0, 0, 0}, sum2 = {0, 0, 0, 0};  // lane 3 is never used
-      for (int s = start[r]; s < start[r + 1]; ++s, a += 9) {
+      const double* xr = x.data() + 3 * static_cast<std::ptrdiff_t>(r);
+      const Four masked = {xr[0], xr[1], xr[2], 0};
+      Four sum = load(a) * xr[0], sum1 = load(a + 3) * xr[1],
+           sum2 = load(a + 6) * xr[2];  // lane 3 is never used
+      a += 9;
+      for (int s = start[r] + 1; s < start[r + 1]; ++s, a += 9) {
         __builtin_prefetch(a + ahead);
         __builtin_prefetch(a + ahead + 8);
-        const double* xj = x.data() + 3 * static_cast<std::ptrdiff_t>(column[s]);
-        sum += load(a) * xj[0];
-        sum1 += load(a + 3) * xj[1];
-        sum2 += load(a + 6) * xj[2];
+        const auto j = 3 * static_cast<std::ptrdiff_t>(column[s]);
+        const double* xj = x.data() + j;
+        const Four c0 = load(a), c1 = load(a + 3), c2 = load(a + 6);
+        sum += c0 * xj[0];
+        sum1 += c1 * xj[1];
+        sum2 += c2 * xj[2];
+        add_sums(c0 * masked, c1 * masked, c2 * masked, y.data() + j);
       }
       sum += sum1 + sum2;
       double* out = y.data() + 3 * static_cast<std::ptrdiff_t>(r);
-      out[0] = sum[0];
-      out[1] = sum[1];
-      out[2] = sum[2];
+      out[0] += sum[0];
+      out[1] += sum[1];
+      out[2] += sum[2];
     }
   });
 }

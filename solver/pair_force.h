@@ -9,7 +9,7 @@
 //                E(l) [N/m]
 // With d = x_i - x_j, l = |d|, n = d/l:
 //   f_i = -t n,  f_j = t n
-//   K   = max(dt/dl, 0) n n^T + max(t/l, 0) (I - n n^T)     of block (i,i) and (j,j); -K of (i,j) and (j,i)
+//   K   = max(dt/dl, 0) n n^T + max(t/l, 0) (I - n n^T)     of block (i,i) and (j,j); -K of (i,j)
 // The two eigenvalues of the exact stiffness are dt/dl and t/l (twice), so clamping them at zero is its exact
 // positive semidefinite part: it drops the transverse term under compression, as Choi & Ko 2002 do.
 // Coincident particles: no direction, so no force; K = dt/dl I when t = 0 there (a weld), else 0.
@@ -51,13 +51,10 @@ class ChunkSchedule {
       for (int e = 0; e < count; ++e) f(e);
       return;
     }
-    const int chunks = static_cast<int>(start_.size()) - 1;
-    for (int parity = 0; parity < 2; ++parity) {
-      parallel_for((chunks + 1 - parity) / 2, serial_, [&](int k) {
-        const auto chunk = static_cast<std::size_t>(2 * k + parity);
-        for (int e = start_[chunk]; e < start_[chunk + 1]; ++e) f(e);
-      });
-    }
+    even_then_odd(static_cast<int>(start_.size()) - 1, serial_, [&](int k) {
+      const auto chunk = static_cast<std::size_t>(k);
+      for (int e = start_[chunk]; e < start_[chunk + 1]; ++e) f(e);
+    });
   }
 
  private:
@@ -66,21 +63,19 @@ class ChunkSchedule {
 };
 
 struct PairSlots {
-  int ii = -1, jj = -1, ij = -1, ji = -1;
+  int ii = -1, jj = -1, ij = -1;  // ij also stands for ji
 };
 
-// Adds s K to (i,i) and (j,j), -s K to (i,j) and (j,i); K symmetric.
+// Adds s K to (i,i) and (j,j), -s K to (i,j); K symmetric.
 inline void add_pair_block(BlockMatrix& A, const PairSlots& slots, const Mat3& sK) {
   double* ii = A.block(slots.ii);
   double* jj = A.block(slots.jj);
   double* ij = A.block(slots.ij);
-  double* ji = A.block(slots.ji);
   const double* k = sK.data();
   for (int e = 0; e < 9; ++e) {
     ii[e] += k[e];
     jj[e] += k[e];
     ij[e] -= k[e];
-    ji[e] -= k[e];
   }
 }
 
@@ -93,7 +88,7 @@ void bind_pairs(const BlockPattern& pattern, std::vector<Element>& elements, Chu
                    [&](const Element& a, const Element& b) { return rows(a) < rows(b); });
   for (Element& e : elements) {
     const int i = row(e.i), j = row(e.j);
-    e.slots = {pattern.diagonal(i), pattern.diagonal(j), pattern.slot(i, j), pattern.slot(j, i)};
+    e.slots = {pattern.diagonal(i), pattern.diagonal(j), pattern.slot(std::min(i, j), std::max(i, j))};
   }
   schedule.bind(pattern, static_cast<int>(elements.size()),
                 [&](int e) { return rows(elements[static_cast<std::size_t>(e)]).first; });

@@ -11,10 +11,6 @@
 #include "mesh/generate.h"
 #include "mesh/obj.h"
 
-#ifndef DRAPE_SHARED_DIR
-#define DRAPE_SHARED_DIR ""
-#endif
-
 using namespace drape;
 namespace fs = std::filesystem;
 using Catch::Contains;

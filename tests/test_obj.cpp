@@ -25,10 +25,6 @@
 #include <tiny_obj_loader.h>
 #pragma GCC diagnostic pop
 
-#ifndef DRAPE_SHARED_DIR
-#define DRAPE_SHARED_DIR ""
-#endif
-
 using namespace drape;
 namespace fs = std::filesystem;
 using Catch::Contains;
