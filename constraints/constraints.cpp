@@ -69,8 +69,7 @@ void Constraints::prepare(int particles, const std::vector<double>& masses) {
   for (auto& found : found_) found.reserve(chunk_size);
 }
 
-void Constraints::begin_step(const VecX& x, const VecX& v, const VecX& guess,
-                             const std::vector<double>& masses, double h) {
+void Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double h) {
   const int n = static_cast<int>(x.size() / 3);
   prepare(n, masses);
   h_ = h;
@@ -82,7 +81,6 @@ void Constraints::begin_step(const VecX& x, const VecX& v, const VecX& guess,
   trial_.clear();
   x_ = x;
   v_ = v;
-  predicted_ = v + guess;
   parallel_for(chunk_count(n), n < serial_below, [&](int k) {
     auto& found = found_[static_cast<std::size_t>(k)];
     double& deepest = deepest_[static_cast<std::size_t>(k)];
@@ -111,7 +109,7 @@ void Constraints::take_found() {
 
 void Constraints::look_for_contact(int particle, std::vector<Contact>& found, double& deepest) {
   const Vec3 x = x_.segment<3>(3 * particle);
-  const Vec3 path = h_ * predicted_.segment<3>(3 * particle);
+  const Vec3 path = h_ * v_.segment<3>(3 * particle);
   const double travel = path.norm();
   const int old = committed_of_[static_cast<std::size_t>(particle)];
   const Contact* before = old < 0 ? nullptr : &committed_[static_cast<std::size_t>(old)];

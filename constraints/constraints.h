@@ -47,9 +47,8 @@ class Constraints {
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }
   const std::vector<int>& pinned() const { return pinned_; }
 
-  // x [m], v and guess [m/s] (the change of velocity to expect), masses [kg], h [s].
-  void begin_step(const VecX& x, const VecX& v, const VecX& guess, const std::vector<double>& masses,
-                  double h);
+  // x [m], v [m/s], masses [kg], h [s].
+  void begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double h);
   void filter(const VecX& v, Filter& filter) const;
   const std::vector<ContactFriction>& friction();
   const VecX& correction() const { return correction_; }  // y [m]; empty without obstacles
@@ -83,7 +82,7 @@ class Constraints {
   // Scratch of the step under way.
   double h_ = 0;
   std::vector<double> masses_;  // kg
-  VecX x_, v_, predicted_, correction_;
+  VecX x_, v_, correction_;
   std::vector<char> held_;       // pinned, or without mass
   std::vector<int> contact_of_;  // particle -> place in trial_, -1: none
   std::vector<double>

@@ -87,7 +87,7 @@ bool ImplicitEuler::attempt(State& state, double h, StepReport& report) {
   guess(h);
   {
     const Stopwatch watch(report.collide_ms);
-    constraints_.begin_step(state.x, state.v, guess_, system_.masses(), h);
+    constraints_.begin_step(state.x, state.v, system_.masses(), h);
   }
   x_ = state.x;
   v_ = state.v;

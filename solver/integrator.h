@@ -17,7 +17,7 @@ struct StepOptions {
   double tolerance = 1e-6;  // of the linear solve, see LinearOptions
   int max_linear_iterations =
       0;  // 0: chosen by size, and reaching it is a failure; given: the solve stops there and says so
-  int max_contact_solves = 4;  // how often a step may be solved again because a contact changed
+  int max_contact_solves = 8;  // how often a step may be solved again because a contact changed
   int max_rescues = 20;  // further Newton iterations when a full one would raise the incremental potential
   int max_halvings = 6;  // how often a failed step may be halved before it is given up
 };

@@ -147,6 +147,25 @@ TEST_CASE("a falling particle lands on the offset surface, at any speed", "[cont
   }
 }
 
+TEST_CASE("what hovers over a body, held up by the cloth, is not caught", "[contact]") {
+  Chain chain(8, 0.5, 0.05, 200, {0, -1, 0});
+  chain.system.add(Gravity{});
+  chain.constraints.pin(0);
+  ImplicitEuler stepper(chain.system, chain.constraints, make_linear_solver("mpcg"), {.tolerance = 1e-10});
+  for (int k = 0; k < 400; ++k) stepper.advance(chain.state, 0.01);
+  REQUIRE(max_speed(chain.state) < 1e-6);
+  const double lowest = chain.state.x[3 * 8 + 1];
+  // Half as far over the plane's margin as it would fall in one step, were it free.
+  const Obstacle floor{.shape = Plane{{0, lowest - 0.5e-3 - 2e-3, 0}, {0, 1, 0}}, .margin = 2e-3};
+  chain.constraints.add(floor);
+  for (int k = 0; k < 20; ++k) {
+    const StepReport report = stepper.advance(chain.state, 0.01);
+    CHECK(report.contacts == 0);
+    CHECK(report.linear_solves <= 2);  // a loose one, and one to the tolerance: no contact changed
+  }
+  CHECK(max_speed(chain.state) < 1e-6);
+}
+
 TEST_CASE("nothing tunnels through thin things", "[contact]") {
   const TriangleMesh sheet = grid(5, 5, 1, 1);  // an open surface: thick by its margin only
   const std::vector<Shape> thin = {Box{{0, 0, 0}, {1, 1e-3, 1}}, Capsule{{-1, 0, 0}, {1, 0, 0}, 1e-3},
