@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct LinearOptions {
   double tolerance = 1e-6;  // of the residual, relative to the larger of |S (b - A z)| and scale
   int max_iterations = 0;   // 0: 1000 + 20 sqrt(rows)
   double scale = 0;         // N s, an impulse that is known to act even where forces cancel in b: h |m g|
+  std::vector<double>* history = nullptr;  // when given: gets the relative residual of every iteration, from 0
 };
 
 struct LinearReport {
@@ -32,6 +34,10 @@ struct LinearReport {
   double residual = 0;          // relative, as in LinearOptions::tolerance
   double residual_impulse = 0;  // N s, |S (b - A dv)|
   StopReason reason = StopReason::converged;
+  double setup_ms = 0;  // projection, preconditioner or factor; 0 of it where it was reused
+  double solve_ms = 0;  // all else
+  int analyses = 0;     // how often the pattern was looked at anew: 0 while it stands
+  std::string note;     // what the user should know: a shifted factor, slow kernels of a library
 };
 
 class LinearSolver {
