@@ -1,31 +1,12 @@
 #include "solver/implicit_euler.h"
 
-#include <chrono>
 #include <cmath>
 
 #include "mesh/obj.h"
 #include "mesh/parallel.h"
+#include "solver/stopwatch.h"
 
 namespace drape {
-namespace {
-
-// Adds the time it lives to a number of milliseconds.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& ms) : ms_(ms), start_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() {
-    ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-  }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& ms_;
-  std::chrono::steady_clock::time_point start_;
-};
-
-}  // namespace
-
 ImplicitEuler::ImplicitEuler(System& system, Constraints& constraints, std::unique_ptr<LinearSolver> solver,
                              const StepOptions& options)
     : system_(system), constraints_(constraints), solver_(std::move(solver)), options_(options) {}

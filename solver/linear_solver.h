@@ -26,7 +26,8 @@ struct LinearOptions {
   double tolerance = 1e-6;  // of the residual, relative to the larger of |S (b - A z)| and scale
   int max_iterations = 0;   // 0: 1000 + 20 sqrt(rows)
   double scale = 0;         // N s, an impulse that is known to act even where forces cancel in b: h |m g|
-  std::vector<double>* history = nullptr;  // when given: gets the relative residual of every iteration, from 0
+  std::vector<double>* history =
+      nullptr;  // when given: gets the relative residual of every iteration, from 0
 };
 
 struct LinearReport {

@@ -1,0 +1,22 @@
+// Adds the time it lives to a number of milliseconds. Internal to the library (not installed).
+#pragma once
+
+#include <chrono>
+
+namespace drape {
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& ms) : ms_(ms), start_(std::chrono::steady_clock::now()) {}
+  ~Stopwatch() {
+    ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& ms_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+}  // namespace drape
