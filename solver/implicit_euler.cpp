@@ -7,6 +7,7 @@
 #include "solver/stopwatch.h"
 
 namespace drape {
+
 ImplicitEuler::ImplicitEuler(System& system, Constraints& constraints, std::unique_ptr<LinearSolver> solver,
                              const StepOptions& options)
     : system_(system), constraints_(constraints), solver_(std::move(solver)), options_(options) {}

@@ -39,7 +39,7 @@ class Cholmod final : public LinearSolver {
       analysed_ = A.pattern().serial();
     }
     cholmod_factorize(&matrix, factor_, &common_);
-    if (common_.status != CHOLMOD_OK) return {0, 0, 0, StopReason::indefinite};
+    if (common_.status != CHOLMOD_OK) return stopped(StopReason::indefinite);
     cholmod_dense right = {};
     right.nrow = right.d = right.nzmax = static_cast<std::size_t>(b.size());
     right.ncol = 1;

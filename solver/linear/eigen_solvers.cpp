@@ -21,7 +21,7 @@ class EigenLdlt final : public LinearSolver {
       analysed_ = A.pattern().serial();
     }
     factor_.factorize(system_.matrix());
-    if (factor_.info() != Eigen::Success) return {0, 0, 0, StopReason::indefinite};
+    if (factor_.info() != Eigen::Success) return stopped(StopReason::indefinite);
     dv = factor_.solve(system_.right_side());
     return finished(A, b, filter, options, dv, system_.reference(), scratch_);
   }
@@ -46,7 +46,7 @@ class EigenCg final : public LinearSolver {
     } else {
       cg_.setTolerance(options.tolerance * system_.reference() / right);
       cg_.compute(system_.matrix());
-      if (cg_.info() != Eigen::Success) return {0, 0, 0, StopReason::indefinite};
+      if (cg_.info() != Eigen::Success) return stopped(StopReason::indefinite);
       filter.apply(dv);
       dv = cg_.solveWithGuess(system_.right_side(), dv).eval();
     }

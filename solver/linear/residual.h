@@ -40,6 +40,13 @@ inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filte
   return std::max(std::sqrt(dot(r, r)), options.scale);
 }
 
+// The report of a solver that could not begin.
+inline LinearReport stopped(StopReason reason) {
+  LinearReport report;
+  report.reason = reason;
+  return report;
+}
+
 // The report of a direct solver, or of any that has no residual of its own; the constraints are met to the
 // last bit.
 inline LinearReport finished(const BlockMatrix& A, const VecX& b, const Filter& filter,
