@@ -41,7 +41,7 @@ void check_mesh(const std::filesystem::path& file) {
   const TriangleMesh mesh = read_obj(file);
   const MeshReport report = examine(mesh);
   Names messages;
-  add_messages(mesh, report, file.string(), messages);
+  add_messages(report, file.string(), messages);
   print_report(file.string(), report);
   for (const VertexGroup& group : mesh.groups)
     std::printf("  group %s: %s\n", group.name.c_str(),

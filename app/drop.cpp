@@ -169,9 +169,12 @@ class DropScene {
     const Extent cloth = extent_of(mesh);
     // Contact holds vertices; the straight edges between them must clear a curved body, the longer the edges
     // the farther.
-    const double margin = options_.margin ? quantity(parse_toml_value(*options_.margin, "--margin"),
-                                                     dimension::length, Range::any)
-                                          : std::max(Obstacle().margin, examine(mesh).median_edge / 5);
+    double margin = std::max(Obstacle().margin, examine(mesh).median_edge / 5);
+    if (options_.margin) {
+      Node given = Node::of_table("--margin");
+      given.members["margin"] = parse_toml_value(*options_.margin, "--margin");
+      Table(given, "--margin").read("margin", margin, dimension::length);
+    }
     const Vec3 under(cloth.centre()[0], cloth.lower[1], cloth.centre()[2]);
     double bottom = under[1] - fall;
     Node list = Node::of_list({}, "drape drop");

@@ -23,6 +23,8 @@ void read_step(Table& table, StepOptions& step) {
   table.read("newton_iterations", step.newton_iterations, 1);
   table.read("newton_tolerance", step.newton_tolerance, dimension::number, Range::positive);
   table.read("tolerance", step.tolerance, dimension::number, Range::positive);
+  if (!(step.tolerance < 1))
+    table.fail("tolerance", "expected a part of the residual, less than 1, such as 1e-6");
   table.read("max_linear_iterations", step.max_linear_iterations, 0);
   table.read("max_contact_solves", step.max_contact_solves, 1);
   table.read("max_halvings", step.max_halvings, 0);
@@ -44,6 +46,9 @@ SimulationOptions read_simulation(const Table* given) {
   table.read("stop_when_settled", options.stop_when_settled);
   table.read("settle_speed", options.settle_speed, dimension::speed, Range::positive);
   table.finish();
+  if (options.frame_rate * options.time_step > 10)
+    table.fail("frame_rate",
+               "is more than ten frames a step of " + rounded(options.time_step, 4) + " s; check the units");
   if (options.duration / options.time_step > 1e9)
     table.fail(
         table.has("time_step") ? "time_step" : "duration",

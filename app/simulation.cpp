@@ -1,8 +1,8 @@
 #include "app/simulation.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "app/warnings.h"
 #include "mesh/obj.h"
 #include "solver/fabric.h"
 
@@ -10,21 +10,15 @@ namespace drape {
 namespace {
 
 // One mesh at a time: read, placed, looked over.
-TriangleMesh load(const std::filesystem::path& path, const Placement& placement, MeshReport& report,
-                  Names& messages) {
+TriangleMesh load(const std::filesystem::path& path, const std::string& where, const Placement& placement,
+                  MeshReport& report, Names& messages) {
+  const bool in_a_file = where.find(':') != where.npos;
+  if (in_a_file && !std::filesystem::exists(path))
+    throw InputError(where + ": mesh: " + path.string() + ": no such file");
   TriangleMesh mesh = placed(read_obj(path), placement, path.string());
   report = examine(mesh);
-  add_messages(mesh, report, path.string(), messages);
+  add_messages(report, path.string(), messages);
   return mesh;
-}
-
-void add_limp_message(const Cloth& cloth, const Fabric& fabric, Names& messages) {
-  const double curvature = limp_below(cloth.mesh, fabric);
-  if (!(curvature > 2 * limp_curvature(fabric.bend, fabric.area_density))) return;
-  messages.push_back("warning: cloth " + cloth.name +
-                     ": the buckling clamp makes it limp below a curvature of " + rounded(curvature, 2) +
-                     " 1/m (a radius of " + rounded(100 / curvature, 2) +
-                     " cm): gentler folds have no bending stiffness; raise buckling_clamp, or leave it out");
 }
 
 void add_cloths(const Scene& scene, Simulation& simulation) {
@@ -33,10 +27,9 @@ void add_cloths(const Scene& scene, Simulation& simulation) {
     Cloth cloth;
     cloth.name = entry.name;
     cloth.first_particle = static_cast<int>(all_masses.size());
-    cloth.mesh = load(entry.mesh, entry.placement, cloth.report, simulation.messages);
+    cloth.mesh = load(entry.mesh, entry.where, entry.placement, cloth.report, simulation.messages);
     const std::vector<double> own = masses(cloth.mesh, entry.fabric);
     all_masses.insert(all_masses.end(), own.begin(), own.end());
-    add_limp_message(cloth, entry.fabric, simulation.messages);
     simulation.cloths.push_back(std::move(cloth));
   }
   simulation.system = std::make_unique<System>(std::move(all_masses));
@@ -66,7 +59,7 @@ void add_pins(const Scene& scene, Simulation& simulation) {
 
 MeshBody load_body(const ObstacleEntry& entry, Body& body, Names& messages) {
   const std::string name = entry.mesh.string();
-  const TriangleMesh mesh = load(entry.mesh, entry.placement, body.report, messages);
+  const TriangleMesh mesh = load(entry.mesh, entry.where, entry.placement, body.report, messages);
   const auto surface = std::make_shared<const SurfaceDistance>(mesh);
   if (!surface->closed())
     messages.push_back(
@@ -93,40 +86,6 @@ void add_obstacles(const Scene& scene, Simulation& simulation) {
   }
 }
 
-std::string body_name(const Obstacle& obstacle, const std::string& name_given) {
-  const std::string kind(name(obstacle.shape));
-  return name_given == kind ? "the " + kind : kind + " " + name_given;
-}
-
-// Which of a cloth's vertices start inside which body, and how deep.
-void add_inside_messages(const Scene& scene, Simulation& simulation) {
-  constexpr double negligible = 1e-9;  // m
-  const std::vector<double> depth = simulation.constraints->penetration(simulation.state.x);
-  const std::vector<Obstacle>& obstacles = simulation.constraints->obstacles();
-  for (const Cloth& cloth : simulation.cloths) {
-    for (std::size_t k = 0; k < obstacles.size(); ++k) {
-      int inside = 0, deepest = -1;
-      double deepest_depth = negligible;
-      for (int i = 0; i < cloth.mesh.vertex_count(); ++i) {
-        if (!(depth[static_cast<std::size_t>(cloth.first_particle + i)] > negligible)) continue;
-        const double d =
-            -closest(obstacles[k].shape, cloth.mesh.positions[static_cast<std::size_t>(i)]).distance;
-        if (!(d > negligible)) continue;
-        ++inside;
-        if (d > deepest_depth) deepest = i, deepest_depth = d;
-      }
-      if (inside == 0) continue;
-      const std::string all = inside == 1 ? "it" : "they";
-      simulation.messages.push_back(
-          "warning: " + counted(inside, "vertex") + " of " + cloth.name +
-          (inside == 1 ? " starts" : " start") + " inside " +
-          body_name(obstacles[k], scene.obstacles[k].name) + ", the deepest (vertex " +
-          std::to_string(deepest) + ") by " + rounded(1000 * deepest_depth, 3) + " mm; " + all +
-          " will be brought out at " + rounded(scene.simulation.contact.recovery_speed, 3) + " m/s");
-    }
-  }
-}
-
 }  // namespace
 
 const Cloth& Simulation::cloth_of(int particle) const {
@@ -144,15 +103,13 @@ TriangleMesh placed(TriangleMesh mesh, const Placement& placement, const std::st
   return mesh;
 }
 
-void add_messages(const TriangleMesh& mesh, const MeshReport& report, const std::string& name,
-                  Names& messages) {
-  if (mesh.document)
-    for (const std::string& warning : mesh.document->warnings) messages.push_back("warning: " + warning);
+void add_messages(const MeshReport& report, const std::string& name, Names& messages) {
   for (const Defect& defect : report.defects) {
     const std::string line = format(defect);
     const std::size_t colon = line.find(": ") + 2;
     if (defect.severity == Severity::refusal) throw InputError(name + ": " + line.substr(colon));
-    messages.push_back(line.substr(0, colon) + name + ": " + line.substr(colon));
+    const bool says_where = line.compare(colon, name.size() + 1, name + ":") == 0;  // what the reader noted
+    messages.push_back(line.substr(0, colon) + (says_where ? "" : name + ": ") + line.substr(colon));
   }
 }
 
@@ -162,7 +119,7 @@ Simulation make_simulation(const Scene& scene) {
   add_cloths(scene, simulation);
   add_pins(scene, simulation);
   add_obstacles(scene, simulation);
-  add_inside_messages(scene, simulation);
+  add_warnings(scene, simulation);
   simulation.integrator =
       make_integrator(scene.simulation.integrator, *simulation.system, *simulation.constraints,
                       make_linear_solver(scene.simulation.linear_solver), scene.simulation.step);

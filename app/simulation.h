@@ -46,7 +46,6 @@ TriangleMesh placed(TriangleMesh mesh, const Placement& placement, const std::st
 
 // The defects of a mesh as messages with its name: "warning: sheet.obj: ...". Throws InputError when it is
 // refused.
-void add_messages(const TriangleMesh& mesh, const MeshReport& report, const std::string& name,
-                  Names& messages);
+void add_messages(const MeshReport& report, const std::string& name, Names& messages);
 
 }  // namespace drape

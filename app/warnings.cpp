@@ -1,0 +1,110 @@
+#include "app/warnings.h"
+
+#include <cmath>
+
+namespace drape {
+namespace {
+
+void warn_if_limp(const Cloth& cloth, const Fabric& fabric, Names& messages) {
+  const double curvature = limp_below(cloth.mesh, fabric);
+  if (!(curvature > 2 * limp_curvature(fabric.bend, fabric.area_density))) return;
+  messages.push_back("warning: cloth " + cloth.name +
+                     ": the buckling clamp makes it limp below a curvature of " + rounded(curvature, 2) +
+                     " 1/m (a radius of " + rounded(100 / curvature, 2) +
+                     " cm): gentler folds have no bending stiffness; raise buckling_clamp, or leave it out");
+}
+
+std::string body_name(const Obstacle& obstacle, const std::string& name_given) {
+  const std::string kind(name(obstacle.shape));
+  return name_given == kind ? "the " + kind : kind + " " + name_given;
+}
+
+// Which of a cloth's vertices start inside which body, and how deep.
+void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
+  constexpr double negligible = 1e-9;  // m
+  const std::vector<double> depth = simulation.constraints->penetration(simulation.state.x);
+  const std::vector<Obstacle>& obstacles = simulation.constraints->obstacles();
+  for (const Cloth& cloth : simulation.cloths) {
+    for (std::size_t k = 0; k < obstacles.size(); ++k) {
+      int inside = 0, deepest = -1;
+      double deepest_depth = negligible;
+      for (int i = 0; i < cloth.mesh.vertex_count(); ++i) {
+        const auto particle = static_cast<std::size_t>(cloth.first_particle + i);
+        if (!(depth[particle] > negligible) || simulation.system->masses()[particle] == 0) continue;
+        const double d =
+            -closest(obstacles[k].shape, cloth.mesh.positions[static_cast<std::size_t>(i)]).distance;
+        if (!(d > negligible)) continue;
+        ++inside;
+        if (d > deepest_depth) deepest = i, deepest_depth = d;
+      }
+      if (inside == 0) continue;
+      const std::string all = inside == 1 ? "it" : "they";
+      simulation.messages.push_back(
+          "warning: " + counted(inside, "vertex") + " of " + cloth.name +
+          (inside == 1 ? " starts" : " start") + " inside " +
+          body_name(obstacles[k], scene.obstacles[k].name) + ", the deepest (vertex " +
+          std::to_string(deepest) + ") by " + rounded(1000 * deepest_depth, 3) + " mm; " + all +
+          " will be brought out at " + rounded(scene.simulation.contact.recovery_speed, 3) + " m/s");
+    }
+  }
+}
+
+
+// Woven and knitted cloth weighs 10 to 1000 g/m^2.
+void warn_if_heavy(const ClothEntry& entry, Names& messages) {
+  constexpr double heaviest = 10;  // kg/m^2
+  if (entry.fabric.area_density <= heaviest) return;
+  messages.push_back("warning: cloth " + entry.name + ": an area density of " +
+                     rounded(entry.fabric.area_density, 3) +
+                     " kg/m^2 is heavier than any cloth: was it meant in g/m^2?");
+}
+
+// Half the least extent of a body: how round it is at best. 0 where it does not matter.
+double roundness(const Obstacle& obstacle, const Body& body) {
+  if (const auto* sphere = std::get_if<Sphere>(&obstacle.shape)) return sphere->radius;
+  if (const auto* capsule = std::get_if<Capsule>(&obstacle.shape)) return capsule->radius;
+  if (std::holds_alternative<MeshBody>(obstacle.shape))
+    return 0.5 * (body.report.upper - body.report.lower).minCoeff();
+  return 0;
+}
+
+// Contact holds vertices: an edge as long as a body is wide lets it through.
+void warn_if_coarse(const Scene& scene, Simulation& simulation) {
+  const std::vector<Obstacle>& obstacles = simulation.constraints->obstacles();
+  for (const Cloth& cloth : simulation.cloths) {
+    for (std::size_t k = 0; k < obstacles.size(); ++k) {
+      const double radius = roundness(obstacles[k], simulation.bodies[k]);
+      if (radius == 0 || cloth.report.median_edge <= radius) continue;
+      simulation.messages.push_back(
+          "warning: cloth " + cloth.name + " is too coarse for " +
+          body_name(obstacles[k], scene.obstacles[k].name) + ": its edges (median " +
+          rounded(cloth.report.median_edge, 2) + " m) are longer than the body's radius (" +
+          rounded(radius, 2) + " m), and contact is found at vertices only: the body may come through; subdivide the mesh");
+    }
+  }
+}
+
+void warn_of_time(const SimulationOptions& options, Names& messages) {
+  constexpr double longest = 0.1;  // s: a fall of 5 cm within one step
+  if (options.time_step > longest)
+    messages.push_back("warning: a time step of " + rounded(options.time_step, 3) +
+                       " s is long: motion is lost in it; 10 ms is usual");
+}
+
+}  // namespace
+
+void add_warnings(const Scene& scene, Simulation& simulation) {
+  for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
+    warn_if_heavy(scene.cloths[k], simulation.messages);
+    warn_if_limp(simulation.cloths[k], scene.cloths[k].fabric, simulation.messages);
+  }
+  warn_of_vertices_inside(scene, simulation);
+  warn_if_coarse(scene, simulation);
+  warn_of_time(scene.simulation, simulation.messages);
+  if (simulation.constraints->obstacles().empty() && simulation.constraints->pinned().empty() &&
+      !scene.simulation.gravity.isZero(0))
+    simulation.messages.push_back(
+        "warning: nothing holds the cloth up, neither pins nor a body: it will fall for ever; add an obstacle (drop: --floor or --onto) or pins");
+}
+
+}  // namespace drape
