@@ -96,7 +96,7 @@ std::string expected(const Dimension& dimension) {
 
 double parse_quantity(std::string_view text, const Dimension& dimension) {
   text = trimmed(text);
-  if (text.starts_with('+')) text.remove_prefix(1);
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error == std::errc::invalid_argument)

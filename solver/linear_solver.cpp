@@ -3,10 +3,12 @@
 #include <string>
 
 #include "mesh/obj.h"
-#include "solver/linear/mpcg.h"
+#include "solver/linear/preconditioner.h"
 
 namespace drape {
 
+std::unique_ptr<LinearSolver> make_pcg(std::string name, bool prefiltered,
+                                       std::unique_ptr<Preconditioner> preconditioner);
 std::unique_ptr<LinearSolver> make_eigen_ldlt();
 std::unique_ptr<LinearSolver> make_eigen_cg();
 #ifdef DRAPE_HAVE_CHOLMOD
@@ -23,7 +25,15 @@ struct Entry {
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> all = {
       {{"mpcg", "modified conjugate gradient of Baraff & Witkin, 3x3 block-Jacobi (default)"},
-       [] { return std::unique_ptr<LinearSolver>(std::make_unique<Mpcg>()); }},
+       [] { return make_pcg("mpcg", false, make_block_jacobi()); }},
+      {{"mpcg+block-ic0", "the same with incomplete Cholesky on 3x3 blocks"},
+       [] { return make_pcg("mpcg+block-ic0", false, make_block_ic0()); }},
+      {{"ppcg", "prefiltered conjugate gradient of Tamstorf et al., 3x3 block-Jacobi"},
+       [] { return make_pcg("ppcg", true, make_block_jacobi()); }},
+      {{"ppcg+block-ic0", "the same with incomplete Cholesky on 3x3 blocks"},
+       [] { return make_pcg("ppcg+block-ic0", true, make_block_ic0()); }},
+      {{"ppcg+multigrid", "the same with smoothed aggregation: for large meshes"},
+       [] { return make_pcg("ppcg+multigrid", true, make_multigrid()); }},
 #ifdef DRAPE_HAVE_CHOLMOD
       {{"cholmod", "sparse LL^T of SuiteSparse"}, make_cholmod},
 #endif

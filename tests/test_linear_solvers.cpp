@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 
-#include "solver/linear/mpcg.h"
 #include "tests/tables.h"
 
 using namespace drape;
@@ -115,9 +114,10 @@ TEST_CASE("every linear solver gives the dense solution of the projected system"
 
 TEST_CASE("a solve that stops early says so, with the true residual", "[solvers]") {
   Problem p(200, 3, true);
-  Mpcg solver;
+  const auto solver = make_linear_solver("mpcg");
   VecX dv = VecX::Zero(p.b.size());
-  const LinearReport report = solver.solve(p.A, p.b, p.filter, {.tolerance = 1e-12, .max_iterations = 5}, dv);
+  const LinearReport report =
+      solver->solve(p.A, p.b, p.filter, {.tolerance = 1e-12, .max_iterations = 5}, dv);
   CHECK(report.reason == StopReason::iteration_limit);
   CHECK(report.iterations == 5);
   VecX r = p.b - p.dense() * dv;
@@ -133,7 +133,7 @@ TEST_CASE("indefinite and non-finite systems are reported, not looped on", "[sol
     const auto solver = make_linear_solver(name);
     VecX dv = VecX::Zero(p.b.size());
     p.A.at(p.pattern->diagonal(7)) -= 1e4 * Mat3::Identity();
-    if (name == "mpcg" || name == "cholmod")
+    if (name.find("eigen") == name.npos)  // LDL^T finds a solution all the same
       CHECK(solver->solve(p.A, p.b, p.filter, {}, dv).reason != StopReason::converged);
     Problem q(20, 4, false);
     q.b[5] = std::nan("");

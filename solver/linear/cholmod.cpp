@@ -5,16 +5,43 @@
 //                                                              [Chen, Davis, Hager & Rajamanickam 2008,
 //                                                              CHOLMOD]
 #include <cholmod.h>
+#include <dlfcn.h>
 
 #include "solver/linear/projected.h"
 #include "solver/linear/residual.h"
+#include "solver/stopwatch.h"
 
 namespace drape {
 namespace {
 
+// What the BLAS underneath is, where that makes it slow. OpenBLAS may take a new processor for an old one,
+// and the reference BLAS is slow on any.
+std::string blas_note() {
+  using CoreName = char* (*)();
+  const auto core_name = reinterpret_cast<CoreName>(dlsym(RTLD_DEFAULT, "openblas_get_corename"));
+  if (!core_name)
+    return "BLAS is not OpenBLAS: several times slower; install libopenblas0-pthread (as Debian calls it)";
+#if defined(__x86_64__)
+  const std::string core = core_name();
+  const bool old_kernels = core == "Prescott" || core == "Core2" || core == "Penryn" || core == "Nehalem";
+  if (old_kernels && __builtin_cpu_supports("avx2"))
+    return "OpenBLAS runs its " + core +
+           " kernels: set OPENBLAS_CORETYPE=" + (__builtin_cpu_supports("avx512f") ? "SkylakeX" : "Haswell");
+#endif
+  return {};
+}
+
+// One thread: its sums would depend on how many there are.
+void calm_blas() {
+  using SetThreads = void (*)(int);
+  if (const auto set_threads = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads")))
+    set_threads(1);
+}
+
 class Cholmod final : public LinearSolver {
  public:
   Cholmod() {
+    calm_blas();
     cholmod_start(&common_);
     common_.print = 0;
     common_.supernodal = CHOLMOD_AUTO;
@@ -31,28 +58,43 @@ class Cholmod final : public LinearSolver {
 
   LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
                      VecX& dv) override {
-    system_.project(A, b, filter, options);
-    cholmod_sparse matrix = view(system_.matrix());
-    if (analysed_ != A.pattern().serial()) {
-      cholmod_free_factor(&factor_, &common_);
-      factor_ = cholmod_analyze(&matrix, &common_);
-      analysed_ = A.pattern().serial();
+    LinearReport report;
+    report.note = blas_note();
+    {
+      const Stopwatch watch(report.setup_ms);
+      system_.project(A, b, filter, options);
+      factorise(A.pattern().serial(), report);
     }
-    cholmod_factorize(&matrix, factor_, &common_);
-    if (common_.status != CHOLMOD_OK) return stopped(StopReason::indefinite);
-    cholmod_dense right = {};
-    right.nrow = right.d = right.nzmax = static_cast<std::size_t>(b.size());
-    right.ncol = 1;
-    right.x = const_cast<double*>(system_.right_side().data());
-    right.xtype = CHOLMOD_REAL;
-    right.dtype = CHOLMOD_DOUBLE;
-    cholmod_dense* solution = cholmod_solve(CHOLMOD_A, factor_, &right, &common_);
-    dv = Eigen::Map<const VecX>(static_cast<const double*>(solution->x), b.size());
-    cholmod_free_dense(&solution, &common_);
-    return finished(A, b, filter, options, dv, system_.reference(), scratch_);
+    if (report.reason != StopReason::converged) return report;
+    {
+      const Stopwatch watch(report.solve_ms);
+      cholmod_dense right = {};
+      right.nrow = right.d = right.nzmax = static_cast<std::size_t>(b.size());
+      right.ncol = 1;
+      right.x = const_cast<double*>(system_.right_side().data());
+      right.xtype = CHOLMOD_REAL;
+      right.dtype = CHOLMOD_DOUBLE;
+      cholmod_dense* solution = cholmod_solve(CHOLMOD_A, factor_, &right, &common_);
+      dv = Eigen::Map<const VecX>(static_cast<const double*>(solution->x), b.size());
+      cholmod_free_dense(&solution, &common_);
+      finish(A, b, filter, options, system_.reference(), dv, scratch_, report);
+    }
+    return report;
   }
 
  private:
+  void factorise(std::uint64_t pattern, LinearReport& report) {
+    cholmod_sparse matrix = view(system_.matrix());
+    if (analysed_ != pattern) {
+      cholmod_free_factor(&factor_, &common_);
+      factor_ = cholmod_analyze(&matrix, &common_);
+      analysed_ = pattern;
+      report.analyses = 1;
+    }
+    cholmod_factorize(&matrix, factor_, &common_);
+    if (common_.status != CHOLMOD_OK) report.reason = StopReason::indefinite;
+  }
+
   static cholmod_sparse view(const ProjectedSystem::Matrix& m) {
     cholmod_sparse s = {};
     s.nrow = s.ncol = static_cast<std::size_t>(m.rows());

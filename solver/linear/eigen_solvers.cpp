@@ -6,6 +6,7 @@
 
 #include "solver/linear/projected.h"
 #include "solver/linear/residual.h"
+#include "solver/stopwatch.h"
 
 namespace drape {
 namespace {
@@ -15,15 +16,25 @@ class EigenLdlt final : public LinearSolver {
   std::string_view name() const override { return "eigen-ldlt"; }
   LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
                      VecX& dv) override {
-    system_.project(A, b, filter, options);
-    if (analysed_ != A.pattern().serial()) {
-      factor_.analyzePattern(system_.matrix());
-      analysed_ = A.pattern().serial();
+    LinearReport report;
+    {
+      const Stopwatch watch(report.setup_ms);
+      system_.project(A, b, filter, options);
+      if (analysed_ != A.pattern().serial()) {
+        factor_.analyzePattern(system_.matrix());
+        analysed_ = A.pattern().serial();
+        report.analyses = 1;
+      }
+      factor_.factorize(system_.matrix());
+      if (factor_.info() != Eigen::Success) report.reason = StopReason::indefinite;
     }
-    factor_.factorize(system_.matrix());
-    if (factor_.info() != Eigen::Success) return stopped(StopReason::indefinite);
-    dv = factor_.solve(system_.right_side());
-    return finished(A, b, filter, options, dv, system_.reference(), scratch_);
+    if (report.reason != StopReason::converged) return report;
+    {
+      const Stopwatch watch(report.solve_ms);
+      dv = factor_.solve(system_.right_side());
+      finish(A, b, filter, options, system_.reference(), dv, scratch_, report);
+    }
+    return report;
   }
 
  private:
@@ -38,20 +49,31 @@ class EigenCg final : public LinearSolver {
   std::string_view name() const override { return "eigen-cg"; }
   LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
                      VecX& dv) override {
-    system_.project(A, b, filter, options);
-    cg_.setMaxIterations(iteration_limit(options, A.rows()));
-    const double right = system_.right_side().norm();
-    if (right == 0) {
-      dv.setZero();
-    } else {
-      cg_.setTolerance(options.tolerance * system_.reference() / right);
-      cg_.compute(system_.matrix());
-      if (cg_.info() != Eigen::Success) return stopped(StopReason::indefinite);
-      filter.apply(dv);
-      dv = cg_.solveWithGuess(system_.right_side(), dv).eval();
+    LinearReport report;
+    double right = 0;
+    {
+      const Stopwatch watch(report.setup_ms);
+      system_.project(A, b, filter, options);
+      right = system_.right_side().norm();
+      if (right > 0) {
+        cg_.setMaxIterations(iteration_limit(options, A.rows()));
+        cg_.setTolerance(options.tolerance * system_.reference() / right);
+        cg_.compute(system_.matrix());
+        if (cg_.info() != Eigen::Success) report.reason = StopReason::indefinite;
+      }
     }
-    LinearReport report = finished(A, b, filter, options, dv, system_.reference(), scratch_);
-    report.iterations = right == 0 ? 0 : static_cast<int>(cg_.iterations());
+    if (report.reason != StopReason::converged) return report;
+    {
+      const Stopwatch watch(report.solve_ms);
+      if (right == 0) {
+        dv.setZero();
+      } else {
+        filter.apply(dv);
+        dv = cg_.solveWithGuess(system_.right_side(), dv).eval();
+        report.iterations = static_cast<int>(cg_.iterations());
+      }
+      finish(A, b, filter, options, system_.reference(), dv, scratch_, report);
+    }
     return report;
   }
 

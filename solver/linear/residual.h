@@ -40,28 +40,18 @@ inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filte
   return std::max(std::sqrt(dot(r, r)), options.scale);
 }
 
-// The report of a solver that could not begin.
-inline LinearReport stopped(StopReason reason) {
-  LinearReport report;
-  report.reason = reason;
-  return report;
-}
-
-// The report of a direct solver, or of any that has no residual of its own; the constraints are met to the
-// last bit.
-inline LinearReport finished(const BlockMatrix& A, const VecX& b, const Filter& filter,
-                             const LinearOptions& options, VecX& dv, double reference, VecX& scratch) {
+// Ends the report of a solver that has no residual of its own; the constraints are met to the last bit.
+inline void finish(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
+                   double reference, VecX& dv, VecX& scratch, LinearReport& report) {
   scratch.resize(dv.size());
   filter.impose(dv);
   residual(A, b, filter, dv, scratch);
-  LinearReport report;
   report.residual_impulse = std::sqrt(dot(scratch, scratch));
   report.residual = reference > 0 ? report.residual_impulse / reference : report.residual_impulse;
   if (!std::isfinite(report.residual))
     report.reason = StopReason::not_finite;
-  else if (report.residual > std::max(options.tolerance, 1e-12))
+  else if (report.residual > std::max(1.01 * options.tolerance, 1e-12))
     report.reason = StopReason::iteration_limit;
-  return report;
 }
 
 }  // namespace drape

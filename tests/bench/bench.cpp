@@ -5,43 +5,19 @@
 
 #include <malloc.h>
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "mesh/parallel.h"
-#include "solver/drape.h"
+#include "tests/bench/bench.h"
 
 namespace {
 
 using namespace drape;
-
-double now_ms() {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
-}
-
-// Median milliseconds of `repeats` calls, after one that is not counted.
-double timed(int repeats, const std::function<void()>& f) {
-  f();
-  std::vector<double> ms;
-  for (int k = 0; k < repeats; ++k) {
-    const double start = now_ms();
-    f();
-    ms.push_back(now_ms() - start);
-  }
-  return median(ms);
-}
+using namespace drape::bench;
 
 // Bytes the process holds in its heap.
 double heap_bytes() {
@@ -62,25 +38,6 @@ double triad_bandwidth(std::size_t bytes) {
   return 24.0 * n / ms * 1e-6;
 }
 
-struct Sheet {
-  TriangleMesh mesh;
-  System system;
-  Constraints constraints;
-  State state;
-
-  explicit Sheet(int side)
-      : mesh(grid(side, side, 1, 1)), system(lumped_mass(mesh, 0.2)), state(at_rest(mesh)) {
-    Fabric fabric;
-    fabric.area_density = 0.2;
-    fabric.stretch = 1000;
-    fabric.bend = 1e-5;
-    system.add(noh_jung(mesh, fabric));
-    system.add(Gravity{});
-    constraints.pin({0, side - 1});
-    mesh = {};  // the solver does not need it
-  }
-};
-
 struct Row {
   int vertices;
   double assemble, solve, rest, newton, iterations, per_iteration, product, product_share, bytes_per_vertex;
@@ -88,7 +45,7 @@ struct Row {
 
 Row measure_sheet(int side, int steps, double tolerance) {
   const double before = heap_bytes();
-  Sheet sheet(side);
+  Sheet sheet(side, 1000);
   ImplicitEuler stepper(sheet.system, sheet.constraints, make_linear_solver("mpcg"),
                         {.tolerance = tolerance});
   std::vector<double> assemble, solve, rest, iterations, newton, per_iteration;
@@ -150,31 +107,6 @@ void bench_sheets(const std::vector<Size>& sizes) {
   set_threads(most);
 }
 
-// The same system, after some steps, by every solver of the build.
-void bench_solvers(int side) {
-  set_threads(1);
-  Sheet sheet(side);
-  ImplicitEuler stepper(sheet.system, sheet.constraints, make_linear_solver("mpcg"));
-  for (int k = 0; k < 20; ++k) stepper.advance(sheet.state, 0.01);
-  std::printf("\nOne step of the same sheet from the same state, %d vertices, one thread\n", side * side);
-  std::printf("%12s %12s %10s %12s %10s\n", "solver", "solve ms", "x mpcg", "iterations", "residual");
-  double mpcg_ms = 0;
-  for (const LinearSolverInfo& info : linear_solvers()) {
-    ImplicitEuler other(sheet.system, sheet.constraints, make_linear_solver(info.name));
-    std::vector<double> ms;
-    StepReport r;
-    for (int k = 0; k < 4; ++k) {
-      State state = sheet.state;
-      r = other.advance(state, 0.01);
-      if (k > 0) ms.push_back(r.solve_ms);  // the first one analyses the pattern
-    }
-    if (info.name == "mpcg") mpcg_ms = median(ms);
-    std::printf("%12s %12.2f %10.2f %12d %10.1e\n", std::string(info.name).c_str(), median(ms),
-                median(ms) / mpcg_ms, r.linear_iterations, r.residual);
-    std::fflush(stdout);
-  }
-}
-
 void bench_ball() {
   set_threads(1);
   TriangleMesh mesh = grid(31, 31, 1, 1);
@@ -226,8 +158,6 @@ int main(int argc, char** argv) {
   }
   bench_sheets({{32, 60}, {100, 30}, {200, 9}, {400, 3, 1e-3}});
   set_threads(1);
-  bench_solvers(32);
-  bench_solvers(100);
   bench_ball();
   bench_obj();
   rusage usage{};

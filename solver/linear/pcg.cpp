@@ -1,0 +1,154 @@
+// The preconditioned conjugate gradient under a filter, in its two readings:
+//   mpcg  Baraff & Witkin's modified CG: dv itself is the unknown; residual and search directions are filtered.
+//         Start dv_0 = S guess + z and symmetric convergence test of Ascher & Boxerman.
+//                                              [Baraff & Witkin 1998, 5.3; Ascher & Boxerman 2003]
+//   ppcg  the prefiltered system (S A S + I - S) y = S (b - A z), dv = y + z, y_0 = S guess: plain CG, which
+//         takes any preconditioner that was built for the projected matrix.  [Tamstorf, Jones & McCormick 2015]
+// In exact arithmetic both take the same steps; so the loop stands here once, and they differ in what they begin
+// from and in what is added at the end.
+#include <cmath>
+
+#include "solver/linear/preconditioner.h"
+#include "solver/linear/residual.h"
+#include "solver/stopwatch.h"
+
+namespace drape {
+namespace {
+
+class Pcg final : public LinearSolver {
+ public:
+  Pcg(std::string name, bool prefiltered, std::unique_ptr<Preconditioner> preconditioner)
+      : name_(std::move(name)), prefiltered_(prefiltered), preconditioner_(std::move(preconditioner)) {}
+
+  std::string_view name() const override { return name_; }
+
+  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
+                     VecX& dv) override {
+    LinearReport report;
+    resize(b.size());
+    prepare(A, filter, report);
+    {
+      const Stopwatch watch(report.solve_ms);
+      const double reference = reference_impulse(A, b, filter, options, z_, r_);  // leaves S (b - A z) in r
+      if (prefiltered_) {
+        right_ = r_;
+        filter.apply(dv);
+        iterate(A, right_, filter, options, reference, dv, report);
+        dv += z_;
+      } else {
+        filter.impose(dv);
+        iterate(A, b, filter, options, reference, dv, report);
+      }
+      conclude(A, b, filter, options, reference, dv, report);
+    }
+    return report;
+  }
+
+ private:
+  void resize(Eigen::Index n) {
+    for (VecX* vector : {&r_, &d_, &q_, &s_, &z_}) vector->resize(n);
+    if (prefiltered_) right_.resize(n);
+  }
+
+  void prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) {
+    const Stopwatch watch(report.setup_ms);
+    if (!preconditioner_->prepare(A, filter, report)) report.reason = StopReason::indefinite;
+  }
+
+  // Solves S (right - A x) = 0 in the free directions from x on.
+  void iterate(const BlockMatrix& A, const VecX& right, const Filter& filter, const LinearOptions& options,
+               double reference, VecX& x, LinearReport& report) {
+    const int rows = A.rows(), limit = iteration_limit(options, rows);
+    const double target = options.tolerance * reference;
+    const auto note = [&](double rr) {
+      if (options.history) options.history->push_back(reference > 0 ? std::sqrt(rr) / reference : 0);
+    };
+    residual(A, right, filter, x, r_);
+    double rr = dot(r_, r_);
+    note(rr);
+    int restarts = 0, since_ready = 0;
+    while (report.reason == StopReason::converged) {
+      d_.setZero();
+      double rho = 1;
+      while (rr > target * target && report.iterations < limit && !preconditioner_->outdated(since_ready)) {
+        preconditioner_->apply(r_, s_);
+        filter.apply(s_);
+        const double rho_new = dot(r_, s_);
+        if (!(rho_new > 0)) {
+          report.reason = std::isfinite(rho_new) ? StopReason::indefinite : StopReason::not_finite;
+          break;
+        }
+        const double beta = rho_new / rho;
+        rho = rho_new;
+        for_chunks(rows, [&](int begin, int end) {
+          double* d = d_.data();
+          const double* s = s_.data();
+          for (int i = 3 * begin; i < 3 * end; ++i) d[i] = s[i] + beta * d[i];
+        });
+        A.multiply(d_, q_);
+        filter.apply(q_);
+        const double curvature = dot(d_, q_);
+        if (!(curvature > 0)) {
+          report.reason = std::isfinite(curvature) ? StopReason::indefinite : StopReason::not_finite;
+          break;
+        }
+        rr = advance(rho / curvature, rows, x);
+        ++report.iterations;
+        ++since_ready;
+        note(rr);
+      }
+      if (report.reason != StopReason::converged || !std::isfinite(rr)) break;
+      // The recurrence drifts from the true residual by round-off: go on from the true one when that matters.
+      residual(A, right, filter, x, r_);
+      rr = dot(r_, r_);
+      if (rr <= 1.02 * target * target || report.iterations >= limit) break;
+      if (preconditioner_->outdated(since_ready)) {
+        preconditioner_->learn(since_ready);
+        since_ready = 0;
+        prepare(A, filter, report);
+      } else if (++restarts > 3) {
+        break;
+      }
+    }
+    preconditioner_->learn(since_ready);
+  }
+
+  // x += alpha d, r -= alpha q; returns r.r
+  double advance(double alpha, int rows, VecX& solution) {
+    return sum_chunks(rows, [&](int begin, int end) {
+      double *x = solution.data(), *r = r_.data();
+      const double *d = d_.data(), *q = q_.data();
+      for (int i = 3 * begin; i < 3 * end; ++i) {
+        x[i] += alpha * d[i];
+        r[i] -= alpha * q[i];
+      }
+      return dot_in_order(r + 3 * begin, r + 3 * begin, 3 * (end - begin));
+    });
+  }
+
+  void conclude(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
+                double reference, VecX& dv, LinearReport& report) {
+    filter.impose(dv);  // to the last bit
+    residual(A, b, filter, dv, r_);
+    report.residual_impulse = std::sqrt(dot(r_, r_));
+    report.residual = reference > 0 ? report.residual_impulse / reference : 0;
+    if (!std::isfinite(report.residual_impulse)) report.reason = StopReason::not_finite;
+    if (report.reason == StopReason::converged &&
+        report.residual_impulse > 1.01 * options.tolerance * reference)
+      report.reason = StopReason::iteration_limit;
+  }
+
+  std::string name_;
+  bool prefiltered_;
+  std::unique_ptr<Preconditioner> preconditioner_;
+  VecX r_, d_, q_, s_, z_, right_;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_pcg(std::string name, bool prefiltered,
+                                       std::unique_ptr<Preconditioner> preconditioner) {
+  return std::make_unique<Pcg>(std::move(name), prefiltered, std::move(preconditioner));
+}
+
+}  // namespace drape

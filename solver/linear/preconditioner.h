@@ -1,0 +1,36 @@
+// An approximate inverse of the projected matrix S A S + I - S, for the conjugate gradient.
+//   s = P r,  P symmetric positive definite.  In row order; r [N s], s [m/s].
+//   What it returns outside the range of S does not matter: the iteration filters it.
+#pragma once
+
+#include <memory>
+
+#include "solver/linear_solver.h"
+
+namespace drape {
+
+class Preconditioner {
+ public:
+  virtual ~Preconditioner() = default;
+  virtual std::string_view name() const = 0;
+  // Made ready for this matrix and filter; says in the report's note what was not as usual. False: A is not
+  // positive definite.
+  virtual bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) = 0;
+  virtual void apply(const VecX& r, VecX& s) = 0;
+  // One that is kept over several systems says here that it no longer suits this one: after so many
+  // iterations it is made ready anew, and the iteration goes on from where it is.
+  virtual bool outdated(int /*iterations*/) const { return false; }
+  virtual void learn(int /*iterations*/) {}  // how many the solve took since it was made ready
+};
+
+// The inverses of the 3x3 diagonal blocks.                                    [Baraff & Witkin 1998, 5.3]
+std::unique_ptr<Preconditioner> make_block_jacobi();
+// Incomplete Cholesky on the pattern's blocks, no fill.                       [Meijerink & van der Vorst 1977]
+std::unique_ptr<Preconditioner> make_block_ic0();
+// Smoothed aggregation over whole vertices, a V-cycle.    [Vanek, Mandel & Brezina 1996; Tamstorf et al. 2015]
+std::unique_ptr<Preconditioner> make_multigrid();
+
+// "block-jacobi", "block-ic0", "multigrid"; null for any other name.
+std::unique_ptr<Preconditioner> make_preconditioner(std::string_view name);
+
+}  // namespace drape

@@ -1,0 +1,51 @@
+// The blocks of the projected matrix S A S + I - S, one by one, for preconditioners that make their own copy.
+#pragma once
+
+#include <Eigen/LU>
+#include <vector>
+
+#include "constraints/filter.h"
+#include "solver/block_matrix.h"
+
+namespace drape {
+
+class ProjectedBlocks {
+ public:
+  ProjectedBlocks(const BlockMatrix& A, const Filter& filter) : A_(A), filter_(filter) {
+    entry_.assign(static_cast<std::size_t>(A.rows()), -1);
+    for (std::size_t e = 0; e < filter.entries().size(); ++e)
+      entry_[static_cast<std::size_t>(filter.entries()[e].particle)] = static_cast<int>(e);
+  }
+
+  bool free(int row) const { return entry_[static_cast<std::size_t>(row)] < 0; }
+  Mat3 S(int row) const { return free(row) ? Mat3(Mat3::Identity()) : entry(row).S; }
+  // Nothing of this row may move.
+  bool locked(int row) const { return !free(row) && entry(row).S.isZero(0); }
+
+  // The block (row, column) that stands in the slot.
+  Mat3 block(int slot, int row, int column) const {
+    Mat3 b = A_.at(slot);
+    if (free(row) && free(column)) return b;
+    if (!free(row)) b = entry(row).S * b;
+    if (!free(column)) b = b * entry(column).S;
+    if (row == column) b += Mat3::Identity() - entry(row).S;
+    return b;
+  }
+
+ private:
+  const FilterEntry& entry(int row) const {
+    return filter_.entries()[static_cast<std::size_t>(entry_[static_cast<std::size_t>(row)])];
+  }
+
+  const BlockMatrix& A_;
+  const Filter& filter_;
+  std::vector<int> entry_;  // row -> entry of the filter, -1: free
+};
+
+// Symmetric and positive definite, to the bit and by its leading minors.
+inline bool positive_definite(const Mat3& b) {
+  const double minor = b(0, 0) * b(1, 1) - b(0, 1) * b(1, 0);
+  return b(0, 0) > 0 && minor > 0 && b.determinant() > 0;
+}
+
+}  // namespace drape
