@@ -93,8 +93,8 @@ std::string text_at(double x, double y, const std::string& anchor, const std::st
 }
 
 std::string line(double x1, double y1, double x2, double y2, double opacity) {
-  return "<line x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) + "\" y2=\"" + number(y2) +
-         "\" stroke=\"currentColor\" stroke-opacity=\"" + rounded(opacity, 2) + "\"/>\n";
+  return "<line x1=\"" + number(x1) + "\" y1=\"" + number(y1) + "\" x2=\"" + number(x2) + "\" y2=\"" +
+         number(y2) + "\" stroke=\"currentColor\" stroke-opacity=\"" + rounded(opacity, 2) + "\"/>\n";
 }
 
 // Circle, square, triangle, diamond, in turn.
@@ -105,12 +105,14 @@ std::string marker(std::size_t series, double x, double y, const std::string& co
     case 0:
       return "<circle r=\"3.5\" cx=\"" + number(x) + "\" cy=\"" + number(y) + fill;
     case 1:
-      return "<polygon points=\"" + point(x - 3.5, y - 3.5) + point(x + 3.5, y - 3.5) + point(x + 3.5, y + 3.5) +
-             point(x - 3.5, y + 3.5) + fill;
+      return "<polygon points=\"" + point(x - 3.5, y - 3.5) + point(x + 3.5, y - 3.5) +
+             point(x + 3.5, y + 3.5) + point(x - 3.5, y + 3.5) + fill;
     case 2:
-      return "<polygon points=\"" + point(x, y - 4.5) + point(x + 4.5, y + 3.5) + point(x - 4.5, y + 3.5) + fill;
+      return "<polygon points=\"" + point(x, y - 4.5) + point(x + 4.5, y + 3.5) + point(x - 4.5, y + 3.5) +
+             fill;
     default:
-      return "<polygon points=\"" + point(x, y - 5) + point(x + 5, y) + point(x, y + 5) + point(x - 5, y) + fill;
+      return "<polygon points=\"" + point(x, y - 5) + point(x + 5, y) + point(x, y + 5) + point(x - 5, y) +
+             fill;
   }
 }
 
@@ -195,7 +197,8 @@ std::string svg(const Plot& plot) {
       y(plot.log_y, low_y, high_y, top + inner_height, -inner_height);
   std::string text = "<svg role=\"img\" viewBox=\"0 0 " + number(width) + " " + number(height) +
                      "\" font-size=\"13\" fill=\"currentColor\">\n<title>" + escaped(plot.title) +
-                     "</title>\n<desc>" + escaped(plot.y_label + " against " + plot.x_label + " of " + names) +
+                     "</title>\n<desc>" +
+                     escaped(plot.y_label + " against " + plot.x_label + " of " + names) +
                      "; the numbers stand in the tables</desc>\n";
   text += text_at(left, 18, "start", plot.title, " font-weight=\"bold\"") + axes(plot, x, y);
   for (std::size_t k = 0; k < plot.series.size(); ++k)

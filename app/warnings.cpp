@@ -49,7 +49,6 @@ void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
   }
 }
 
-
 // Woven and knitted cloth weighs 10 to 1000 g/m^2.
 void warn_if_heavy(const ClothEntry& entry, Names& messages) {
   constexpr double heaviest = 10;  // kg/m^2
@@ -79,7 +78,8 @@ void warn_if_coarse(const Scene& scene, Simulation& simulation) {
           "warning: cloth " + cloth.name + " is too coarse for " +
           body_name(obstacles[k], scene.obstacles[k].name) + ": its edges (median " +
           rounded(cloth.report.median_edge, 2) + " m) are longer than the body's radius (" +
-          rounded(radius, 2) + " m), and contact is found at vertices only: the body may come through; subdivide the mesh");
+          rounded(radius, 2) +
+          " m), and contact is found at vertices only: the body may come through; subdivide the mesh");
     }
   }
 }
@@ -104,7 +104,8 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
   if (simulation.constraints->obstacles().empty() && simulation.constraints->pinned().empty() &&
       !scene.simulation.gravity.isZero(0))
     simulation.messages.push_back(
-        "warning: nothing holds the cloth up, neither pins nor a body: it will fall for ever; add an obstacle (drop: --floor or --onto) or pins");
+        "warning: nothing holds the cloth up, neither pins nor a body: it will fall for ever; add an "
+        "obstacle (drop: --floor or --onto) or pins");
 }
 
 }  // namespace drape

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "app/compare/files.h"
 #include "app/compare/html.h"
 #include "app/compare/hung_sheet.h"
 #include "app/compare/integrators.h"
@@ -53,8 +54,8 @@ struct Desk {
   }
 
   int run(const std::string& words, const std::string& before = "") {
-    const std::string line = "cd '" + path.string() + "' && " + before + " '" DRAPE_PROGRAM "' compare " + words +
-                             " >.out 2>.err </dev/null";
+    const std::string line = "cd '" + path.string() + "' && " + before + " '" DRAPE_PROGRAM "' compare " +
+                             words + " >.out 2>.err </dev/null";
     const int status = std::system(line.c_str());
     out = content(path / ".out");
     err = content(path / ".err");
@@ -68,10 +69,9 @@ struct Desk {
 // A hung sheet whose steps are recorded.
 struct Recorded {
   explicit Recorded(const Scene& scene, Simulation made) : simulation(std::move(made)) {
-    simulation.integrator =
-        make_integrator("implicit-euler", *simulation.system, *simulation.constraints,
-                        std::make_unique<RecordingSolver>(make_linear_solver("mpcg"), recording),
-                        scene.simulation.step);
+    simulation.integrator = make_integrator(
+        "implicit-euler", *simulation.system, *simulation.constraints,
+        std::make_unique<RecordingSolver>(make_linear_solver("mpcg"), recording), scene.simulation.step);
   }
   Recording recording;
   Simulation simulation;
@@ -110,7 +110,8 @@ TEST_CASE("the recorded system is the one that the step solved", "[compare]") {
   to_particles(system.A.pattern(), system.solution, dv);
   CHECK((run.simulation.state.v - before.v - dv).lpNorm<Eigen::Infinity>() < 1e-14);
   CHECK(system.filter.entries().size() == 2);
-  CHECK(true_residual(system, system.solution) == Approx(report.residual * reference_impulse(system)).epsilon(1e-6));
+  CHECK(true_residual(system, system.solution) ==
+        Approx(report.residual * reference_impulse(system)).epsilon(1e-6));
   CHECK(constraint_violation(system, system.solution) == 0);
 
   dv = system.guess;  // and it can be solved again, to the last bit
@@ -133,8 +134,9 @@ TEST_CASE("recording does not change the path", "[compare]") {
 
 TEST_CASE("all solvers of the build agree: pins, contact, both", "[compare]") {
   Desk desk;
-  const Names commands = {"--sizes 400 --steps 10", "'" + on_ball + "' --at 1,15", scenes + "flag.toml --at 1,20",
-        "'" + on_ball + "' --at 15 --set cloth.0.pins='[{vertices=[0,5]}]'"};
+  const Names commands = {"--sizes 400 --steps 10", "'" + on_ball + "' --at 1,15",
+                          scenes + "flag.toml --at 1,20",
+                          "'" + on_ball + "' --at 15 --set cloth.0.pins='[{vertices=[0,5]}]'"};
   for (const std::string& words : commands) {
     INFO(words);
     CHECK(desk.run(words + " --repeats 1 --out o") == 0);
@@ -153,8 +155,10 @@ TEST_CASE("all solvers of the build agree: pins, contact, both", "[compare]") {
 TEST_CASE("a loosened solver is caught, with the step and the vertex", "[compare]") {
   Desk desk;
   CHECK(desk.run("--sizes 400 --steps 6 --repeats 1 --solvers mpcg,eigen-ldlt,mpcg@1e-2 --out o") == 1);
-  CHECK_THAT(desk.out, Contains("mpcg: agree\neigen-ldlt: agree\nmpcg@1e-2: differ: sheet of 400 vertices, step 6, vertex ") &&
-                           Contains(" of cloth 'sheet', by ") && Contains("asked 1e-06"));
+  CHECK_THAT(
+      desk.out,
+      Contains("mpcg: agree\neigen-ldlt: agree\nmpcg@1e-2: differ: sheet of 400 vertices, step 6, vertex ") &&
+          Contains(" of cloth 'sheet', by ") && Contains("asked 1e-06"));
   for (const JsonValue& row : desk.json()["rows"]) {
     const bool loose = row["solver"] == "mpcg@1e-2";
     CHECK(row["agrees"] == !loose);
@@ -188,7 +192,8 @@ TEST_CASE("a solve that meets the tolerance differs by no more than is allowed",
 
 TEST_CASE("integrators: what differs by linear algebra, what by time integration", "[compare]") {
   Desk desk;
-  REQUIRE(desk.run("'" + on_ball + "' --at 1 --steps 5 --solvers mpcg,eigen-ldlt --integrators implicit-euler --out o") == 0);
+  REQUIRE(desk.run("'" + on_ball +
+                   "' --at 1 --steps 5 --solvers mpcg,eigen-ldlt --integrators implicit-euler --out o") == 0);
   const JsonValue json = desk.json();
   REQUIRE(json["runs"].size() == 4);
   std::multiset<std::string> causes;
@@ -199,7 +204,8 @@ TEST_CASE("integrators: what differs by linear algebra, what by time integration
     CHECK(run["same_run_distance"].is_number() == (run["solver"] == "eigen-ldlt"));
     CHECK(run["reference"] == (run["time_step"] == 0.0025));
   }
-  CHECK(causes == std::multiset<std::string>{"linear algebra only", "reference", "time integration", "time integration"});
+  CHECK(causes == std::multiset<std::string>{"linear algebra only", "reference", "time integration",
+                                             "time integration"});
   CHECK(json["runs"][0]["max_distance"].get<double>() > json["runs"][1]["max_distance"].get<double>());
   CHECK_THAT(desk.out, Contains("the reference: implicit-euler at 0.0025 s with mpcg"));
   CHECK(count(content(desk.path / "o/compare.html"), "<svg") == 2);
@@ -229,9 +235,9 @@ TEST_CASE("compare.json, compare.csv and compare.html hold it all", "[compare]")
   CHECK(names == std::set<std::string>{"compare.csv", "compare.html", "compare.json"});
 
   const JsonValue json = desk.json();
-  for (const char* key : {"drape_version", "scene", "integrator", "linear_solver", "time_step", "tolerance", "threads",
-                          "steps", "at", "repeats", "sizes", "solvers", "agree", "verdicts", "failure", "rows", "growth",
-                          "run_duration", "runs"}) {
+  for (const char* key : {"drape_version", "scene", "integrator", "linear_solver", "time_step", "tolerance",
+                          "threads", "steps", "at", "repeats", "sizes", "solvers", "agree", "verdicts",
+                          "failure", "rows", "growth", "run_duration", "runs"}) {
     INFO(key);
     CHECK(json.contains(key));
   }
@@ -244,8 +250,8 @@ TEST_CASE("compare.json, compare.csv and compare.html hold it all", "[compare]")
   std::getline(csv, line);
   const Names header = cells(line);
   for (const char* key : {"vertices", "step", "solver", "iterations", "residual", "reported_residual",
-                          "constraint_violation", "setup_ms", "solve_ms", "first_ms", "peak_memory_bytes", "difference",
-                          "allowed", "cloth", "vertex", "stopped", "verdict"})
+                          "constraint_violation", "setup_ms", "solve_ms", "first_ms", "peak_memory_bytes",
+                          "difference", "allowed", "cloth", "vertex", "stopped", "verdict"})
     CHECK(std::find(header.begin(), header.end(), key) != header.end());
   for (const JsonValue& row : json["rows"]) {
     REQUIRE(std::getline(csv, line));
@@ -261,11 +267,42 @@ TEST_CASE("compare.json, compare.csv and compare.html hold it all", "[compare]")
   }
 
   const std::string html = content(desk.path / "o/compare.html");
-  for (const char* outside : {"http", "src=", "<script", "<link", "@import", "url("}) CHECK(count(html, outside) == 0);
+  for (const char* outside : {"http", "src=", "<script", "<link", "@import", "url("})
+    CHECK(count(html, outside) == 0);
   CHECK(count(html, "<svg") == 4);  // time, iterations, convergence of two sizes
   CHECK(count(html, "<title>") == 5);
   CHECK(count(html, "<table>") == count(html, "</table>"));
   CHECK_THAT(html, Contains("mpcg@1e-1: differ: sheet of 100 vertices"));
+}
+
+TEST_CASE("a long history is thinned out for the plot, not in compare.json", "[compare]") {
+  Comparison comparison;
+  comparison.tolerance = 1e-6;
+  SolverRow row;
+  row.vertices = 9, row.step = 1, row.solver = "long", row.agrees = true, row.report.iterations = 4999;
+  for (int k = 0; k < 5000; ++k) row.history.push_back(std::exp(-0.01 * k));
+  comparison.rows = {row};
+  const std::vector<Plot> plots = plots_of(comparison);
+  REQUIRE(plots.size() == 1);
+  CHECK(plots[0].series[0].x.size() < 300);
+  CHECK(plots[0].series[0].x.back() == 4999);
+  CHECK(plots[0].series[0].y.back() == row.history.back());
+  CHECK(JsonValue::parse(compare_json(comparison))["rows"][0]["history"].size() == 5000);
+}
+
+TEST_CASE("the growth is fitted", "[compare]") {
+  Comparison comparison;
+  comparison.at = {3};
+  comparison.solvers = {"direct", "alone"};
+  for (const int n : {1000, 4000, 16000}) {
+    SolverRow row;
+    row.vertices = n, row.step = 3, row.solver = "direct", row.solve_ms = 1e-3 * std::pow(n, 1.5);
+    comparison.rows.push_back(row);
+  }
+  const std::vector<Growth> growth = growth_of(comparison);
+  REQUIRE(growth.size() == 1);
+  CHECK(growth[0].time == Approx(1.5));
+  CHECK_FALSE(growth[0].iterations);
 }
 
 TEST_CASE("a plot leaves out what an axis cannot show", "[compare]") {
@@ -349,7 +386,8 @@ TEST_CASE("a path that fails, an interrupt, a full disk", "[compare]") {
 
 TEST_CASE("a scene decides how the sheets of --sizes are solved", "[compare]") {
   Desk desk;
-  CHECK(desk.run("'" + on_ball + "' --sizes 100 --steps 2 --solvers mpcg --linear-solver eigen-ldlt --out o") == 0);
+  CHECK(desk.run("'" + on_ball +
+                 "' --sizes 100 --steps 2 --solvers mpcg --linear-solver eigen-ldlt --out o") == 0);
   CHECK(desk.json()["linear_solver"] == "eigen-ldlt");
   CHECK(desk.json()["tolerance"] == 1e-4);
   CHECK(desk.json()["rows"][0]["vertices"] == 100);

@@ -36,11 +36,12 @@ void choose_steps(const Scene& scene, CompareOptions& options) {
     const double whole = scene.simulation.duration / scene.simulation.time_step;
     options.steps = static_cast<int>(std::clamp(std::round(whole), 1.0, static_cast<double>(usual)));
   }
-  if (options.at.empty()) options.at = options.sizes.empty() ? spread(options.steps) : std::vector<int>{options.steps};
+  if (options.at.empty())
+    options.at = options.sizes.empty() ? spread(options.steps) : std::vector<int>{options.steps};
 }
 
-// Follows one run with the reference solver and hands the systems of the chosen steps to the bench. False when
-// the user interrupts; a failed step ends it and is noted.
+// Follows one run with the reference solver and hands the systems of the chosen steps to the bench. False
+// when the user interrupts; a failed step ends it and is noted.
 class Path {
  public:
   Path(const Scene& scene, Simulation& simulation, const CommonOptions& common)
@@ -62,8 +63,8 @@ class Path {
         throw InputError("integrator '" + scene_.simulation.integrator +
                          "' solves no linear system in step " + std::to_string(k) +
                          ": there is nothing to give to the solvers; choose another with --integrator");
-      say(common_, "comparing at step " + std::to_string(k) + " of " + std::to_string(options.at.back()) + ", " +
-                       counted(simulation_.state.particles(), "vertex"));
+      say(common_, "comparing at step " + std::to_string(k) + " of " + std::to_string(options.at.back()) +
+                       ", " + counted(simulation_.state.particles(), "vertex"));
       std::vector<SolverRow> rows = bench.compare(*recording_.last, k, simulation_);
       if (rows.empty()) return false;
       for (SolverRow& row : rows) comparison.rows.push_back(std::move(row));
@@ -77,8 +78,9 @@ class Path {
     const StepReport report = simulation_.integrator->advance(simulation_.state, h);
     simulation_.state.time = k * h;
     if (report.done && simulation_.state.x.allFinite()) return true;
-    comparison.failure = "step " + std::to_string(k) + " of the run with " + scene_.simulation.linear_solver +
-                         " failed: " + (report.done ? "a position is not a finite number" : report.failure.what);
+    comparison.failure =
+        "step " + std::to_string(k) + " of the run with " + scene_.simulation.linear_solver +
+        " failed: " + (report.done ? "a position is not a finite number" : report.failure.what);
     return false;
   }
 
@@ -94,7 +96,8 @@ bool compare_scene(const Scene& scene, Simulation& simulation, const CompareOpti
   SolverBench bench(options.solvers, comparison.tolerance, options.repeats);
   if (!Path(scene, simulation, common).follow(options, bench, comparison)) return false;
   if (options.integrators.empty()) return true;
-  return compare_integrators(scene, options, options.steps * scene.simulation.time_step, common.quiet, comparison);
+  return compare_integrators(scene, options, options.steps * scene.simulation.time_step, common.quiet,
+                             comparison);
 }
 
 bool compare_sizes(const Scene& scene, const CompareOptions& options, const CommonOptions& common,
@@ -113,7 +116,8 @@ bool compare_sizes(const Scene& scene, const CompareOptions& options, const Comm
 }
 
 // The scene that is compared: with sizes the hung sheet, solved as the given scene says.
-Scene scene_of(const std::filesystem::path& path, const CompareOptions& options, const CommonOptions& common) {
+Scene scene_of(const std::filesystem::path& path, const CompareOptions& options,
+               const CommonOptions& common) {
   if (path.empty() && options.sizes.empty())
     throw InputError("SCENE is required (or --sizes for a generated sheet); see drape compare --help");
   if (options.sizes.empty()) return read_scene(path, common.settings);

@@ -38,7 +38,8 @@ std::string_view name(DiffersBy cause) {
 }
 
 bool Comparison::agree() const {
-  return failure.empty() && std::all_of(rows.begin(), rows.end(), [](const SolverRow& r) { return r.agrees; });
+  return failure.empty() &&
+         std::all_of(rows.begin(), rows.end(), [](const SolverRow& r) { return r.agrees; });
 }
 
 std::vector<Growth> growth_of(const Comparison& comparison) {

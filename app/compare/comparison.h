@@ -44,7 +44,8 @@ struct SolverRow {
   double total_ms() const { return setup_ms + solve_ms; }
   bool first_solve = false;          // of all that this solver did
   std::optional<double> peak_bytes;  // of the first solve; empty there: could not be measured
-  bool finite = true;
+  bool finite = true;                // all of dv
+  std::string failure;               // what the solver threw; empty: nothing
   bool most_accurate = false;
   double difference = 0;          // m/s, largest of a vertex, from the most accurate
   std::optional<double> allowed;  // m/s, the most that the tolerance can explain at this vertex

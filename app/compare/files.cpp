@@ -28,6 +28,7 @@ Json::Members members_of(const SolverRow& row) {
           {"solve_ms", row.solve_ms},
           {"total_ms", row.total_ms()},
           {"first_ms", row.first_ms},
+          {"first_setup_ms", report.setup_ms},
           {"analyses", report.analyses},
           {"peak_memory_bytes", optional_json(row.peak_bytes)},
           {"difference", row.difference},
@@ -86,8 +87,9 @@ std::string compare_json(const Comparison& c) {
   }
   for (const IntegratorRow& run : c.runs) runs.push_back(json_of(run));
   for (const Growth& g : c.growth)
-    growth.emplace_back(Json::Members{
-        {"solver", g.solver}, {"time_exponent", g.time}, {"iterations_exponent", optional_json(g.iterations)}});
+    growth.emplace_back(Json::Members{{"solver", g.solver},
+                                      {"time_exponent", g.time},
+                                      {"iterations_exponent", optional_json(g.iterations)}});
   return json_text(Json::Members{{"drape_version", DRAPE_VERSION},
                                  {"scene", c.scene},
                                  {"integrator", c.integrator},

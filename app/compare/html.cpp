@@ -30,10 +30,15 @@ Series convergence(const SolverRow& row) {
 // Of the iterative solvers: a direct one has no curve.
 Plot convergence_plot(const Comparison& comparison, int vertices, int step) {
   Plot plot{"Convergence at step " + std::to_string(step) + ", " + std::to_string(vertices) + " vertices",
-            "iterations", "relative residual", false, true, {}};
+            "iterations",
+            "relative residual",
+            false,
+            true,
+            {}};
   double most = 1;
   for (const SolverRow& row : comparison.rows)
-    if (row.vertices == vertices && row.step == step && (row.report.iterations > 0 || row.history.size() > 1)) {
+    if (row.vertices == vertices && row.step == step &&
+        (row.report.iterations > 0 || row.history.size() > 1)) {
       plot.series.push_back(convergence(row));
       most = std::max(most, plot.series.back().x.back());
     }
@@ -44,7 +49,8 @@ Plot convergence_plot(const Comparison& comparison, int vertices, int step) {
 
 // Something of the last compared step against the vertices of every size.
 template <class Value>
-Plot size_plot(const Comparison& comparison, const std::string& title, const std::string& label, Value value) {
+Plot size_plot(const Comparison& comparison, const std::string& title, const std::string& label,
+               Value value) {
   Plot plot{title, "vertices", label, true, true, {}};
   for (const std::string& solver : comparison.solvers) {
     Series series{solver, {}, {}};
@@ -61,7 +67,11 @@ Plot size_plot(const Comparison& comparison, const std::string& title, const std
 
 Plot work_precision(const Comparison& comparison) {
   Plot plot{"Work and precision: " + rounded(comparison.run_duration, 4) + " s of the scene",
-            "wall time, s", "largest distance from the reference, m", true, true, {}};
+            "wall time, s",
+            "largest distance from the reference, m",
+            true,
+            true,
+            {}};
   Series others{"other linear solvers", {}, {}, false};
   for (const IntegratorRow& row : comparison.runs) {
     if (!row.max_distance || row.reference) continue;
@@ -72,8 +82,7 @@ Plot work_precision(const Comparison& comparison) {
     }
     auto series = std::find_if(plot.series.begin(), plot.series.end(),
                                [&](const Series& s) { return s.name == row.integrator; });
-    if (series == plot.series.end())
-      series = plot.series.insert(series, Series{row.integrator, {}, {}});
+    if (series == plot.series.end()) series = plot.series.insert(series, Series{row.integrator, {}, {}});
     series->x.push_back(row.wall_ms / 1000);
     series->y.push_back(*row.max_distance);
   }
@@ -82,7 +91,8 @@ Plot work_precision(const Comparison& comparison) {
 }
 
 std::string html_of(const ReportTable& table) {
-  std::string text = "<div class=\"wide\"><table>\n<caption>" + escaped(table.title) + "</caption>\n<thead><tr>";
+  std::string text =
+      "<div class=\"wide\"><table>\n<caption>" + escaped(table.title) + "</caption>\n<thead><tr>";
   for (const std::string& cell : table.header) text += "<th scope=\"col\">" + escaped(cell) + "</th>";
   text += "</tr></thead>\n<tbody>\n";
   for (const Names& row : table.rows) {
@@ -135,8 +145,8 @@ std::string compare_html(const Comparison& comparison) {
   std::string text =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
       "content=\"width=device-width\">\n<title>drape compare: " +
-      escaped(comparison.scene) + "</title>\n<style>\n" + style + "</style>\n</head>\n<body>\n<h1>drape compare: " +
-      escaped(comparison.scene) + "</h1>\n";
+      escaped(comparison.scene) + "</title>\n<style>\n" + style +
+      "</style>\n</head>\n<body>\n<h1>drape compare: " + escaped(comparison.scene) + "</h1>\n";
   for (const std::string& line : headline(comparison)) text += "<p>" + escaped(line) + "</p>\n";
   text += "<h2>Verdicts</h2>\n<ul>\n";
   for (const std::string& line : verdicts(comparison)) text += "<li>" + escaped(line) + "</li>\n";

@@ -19,7 +19,9 @@ Scene hung_sheet_scene(const std::vector<Setting>& settings) {
   return read_scene(root, settings, ".", "hung sheet, 1 m x 1 m");
 }
 
-int sheet_side(int vertices) { return static_cast<int>(std::lround(std::sqrt(static_cast<double>(vertices)))); }
+int sheet_side(int vertices) {
+  return static_cast<int>(std::lround(std::sqrt(static_cast<double>(vertices))));
+}
 
 Simulation make_hung_sheet(const Scene& scene, int side) {
   const ClothEntry& entry = scene.cloths.front();

@@ -19,7 +19,8 @@ Names parts_of(const std::string& option, const std::string& text) {
     std::string part = text.substr(begin, end - begin);
     part.erase(0, part.find_first_not_of(' '));
     part.erase(part.find_last_not_of(' ') + 1);
-    if (part.empty()) throw InputError(option + " " + text + ": expected names or numbers with commas between");
+    if (part.empty())
+      throw InputError(option + " " + text + ": expected names or numbers with commas between");
     if (std::find(parts.begin(), parts.end(), part) != parts.end())
       throw InputError(option + " " + text + ": '" + part + "' is there twice");
     parts.push_back(part);
@@ -37,8 +38,7 @@ double number(const std::string& option, const std::string& text, const std::str
 }
 
 int whole(const std::string& option, const std::string& text, int least, int most) {
-  const std::string expected =
-      "a whole number from " + std::to_string(least) + " to " + std::to_string(most);
+  const std::string expected = "a whole number from " + std::to_string(least) + " to " + std::to_string(most);
   const double value = number(option, text, expected);
   if (value != std::floor(value) || value < least || value > most)
     throw InputError(option + " " + text + ": expected " + expected);
@@ -66,7 +66,8 @@ SolverChoice solver(const std::string& text) {
     const std::string given = text.substr(choice.name.size() + 1);
     double tolerance = 0;
     const auto [end, error] = std::from_chars(given.data(), given.data() + given.size(), tolerance);
-    if (error != std::errc() || end != given.data() + given.size() || !(tolerance > 0) || !(tolerance < 1e300))
+    if (error != std::errc() || end != given.data() + given.size() || !(tolerance > 0) ||
+        !(tolerance < 1e300))
       throw InputError("--solvers " + text + ": expected " + expected);
     choice.tolerance = tolerance;
   }

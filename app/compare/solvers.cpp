@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <utility>
 
 #include "app/interrupt.h"
 #include "app/measure.h"
@@ -29,22 +29,34 @@ int worst_row(const VecX& difference) {
 }
 
 // |g| of A g = S u with u at one row; empty when that cannot be solved.
-std::optional<double> influence(const std::string& solver, const LinearSystem& system, int row, const Vec3& u) {
+std::optional<double> influence(LinearSolver& solver, const LinearSystem& system, int row, const Vec3& u) {
   Filter filter;
   for (const FilterEntry& e : system.filter.entries()) filter.constrain(e.particle, e.S, Vec3::Zero());
   VecX right = VecX::Zero(system.b.size()), g = right;
   right.segment<3>(3 * row) = u;
-  LinearOptions options;
-  options.tolerance = 1e-6;
   filter.apply(right);
   if (right.isZero(0)) return 0.0;  // nothing may move there
-  const LinearReport report = make_linear_solver(solver)->solve(system.A, right, filter, options, g);
+  const LinearReport report = solver.solve(system.A, right, filter, LinearOptions{}, g);
   if (!g.allFinite() || !(report.residual < 1e-2)) return {};
   return g.norm();
 }
 
-std::string first_words(const SolverRow& row, const std::string& where) {
-  return "differ: " + where + "step " + std::to_string(row.step);
+// What a row differs by, in words; `asked`: the relative residual that would have done.
+std::string difference_text(const SolverRow& row, const std::string& where, double asked, bool held) {
+  std::string text = "differ: " + where + "step " + std::to_string(row.step);
+  const std::string reason(name(row.report.reason));
+  if (!row.failure.empty()) return text + ", failed: " + row.failure;
+  if (!row.finite) return text + ", not finite numbers (" + reason + ")";
+  if (row.difference > 0)
+    text += ", vertex " + std::to_string(row.vertex) + " of cloth '" + row.cloth + "', by " +
+            rounded(row.difference, 2) + " m/s (allowed " +
+            (row.allowed ? rounded(*row.allowed, 2) + " m/s" : "not known") + ")";
+  if (!(row.residual <= asked)) {
+    text += "; residual " + rounded(row.residual, 2) + ", asked " + rounded(asked, 2);
+    if (row.report.reason != StopReason::converged) text += " (" + reason + ")";
+  }
+  if (!held) text += "; a constraint is missed by " + rounded(row.violation, 2) + " m/s";
+  return text;
 }
 
 }  // namespace
@@ -74,31 +86,23 @@ SolverBench::SolverBench(const std::vector<SolverChoice>& choices, double tolera
     entries_.push_back({choice, make_linear_solver(choice.name), true, {}});
 }
 
-SolverRow SolverBench::measure(Entry& entry, const LinearSystem& system, double reference) const {
-  SolverRow row;
-  row.solver = entry.choice.text;
-  LinearOptions options = system.options;
-  // The last solve of a step may have been asked for less, when contacts were still being looked for.
-  options.tolerance = row.tolerance = entry.choice.tolerance.value_or(tolerance_);
+// The first call at this step: its result counts.
+void SolverBench::solve_first(Entry& entry, const LinearSystem& system, LinearOptions options,
+                              SolverRow& row) const {
+  std::optional<PeakMemory> memory;
+  if (entry.fresh) memory.emplace();
   options.history = &row.history;
   entry.dv = system.guess;
   {
-    std::optional<PeakMemory> memory;
-    if (entry.fresh) memory.emplace();
-    {
-      const Stopwatch watch(row.first_ms);
-      row.report = entry.solver->solve(system.A, system.b, system.filter, options, entry.dv);
-    }
-    row.first_solve = entry.fresh;
-    if (memory) row.peak_bytes = memory->bytes();
-    entry.fresh = false;
+    const Stopwatch watch(row.first_ms);
+    row.report = entry.solver->solve(system.A, system.b, system.filter, options, entry.dv);
   }
-  row.finite = entry.dv.allFinite();
-  const double impulse = true_residual(system, entry.dv);
-  row.residual = reference > 0 ? impulse / reference : impulse;
-  row.violation = constraint_violation(system, entry.dv);
+  row.first_solve = std::exchange(entry.fresh, false);
+  if (memory) row.peak_bytes = memory->bytes();
+}
 
-  options.history = nullptr;
+void SolverBench::time_repeats(Entry& entry, const LinearSystem& system, const LinearOptions& options,
+                               SolverRow& row) const {
   std::vector<double> setup, solve;
   for (int k = 0; k < repeats_ && !interrupted(); ++k) {
     VecX dv = system.guess;
@@ -113,10 +117,30 @@ SolverRow SolverBench::measure(Entry& entry, const LinearSystem& system, double 
   }
   row.setup_ms = distribution(setup).median;
   row.solve_ms = distribution(solve).median;
+}
+
+SolverRow SolverBench::measure(Entry& entry, const LinearSystem& system, double reference) const {
+  SolverRow row;
+  row.solver = entry.choice.text;
+  LinearOptions options = system.options;
+  // The last solve of a step may have been asked for less, when contacts were still being looked for.
+  options.tolerance = row.tolerance = entry.choice.tolerance.value_or(tolerance_);
+  try {
+    solve_first(entry, system, options, row);
+    row.finite = entry.dv.allFinite();
+    if (row.finite) time_repeats(entry, system, options, row);
+  } catch (const std::exception& error) {  // such as not enough memory: the other solvers go on
+    row.finite = false;
+    row.failure = one_line(error.what());
+  }
+  const double impulse = true_residual(system, entry.dv);
+  row.residual = reference > 0 ? impulse / reference : impulse;
+  row.violation = constraint_violation(system, entry.dv);
   return row;
 }
 
-std::vector<SolverRow> SolverBench::compare(const LinearSystem& system, int step, const Simulation& simulation) {
+std::vector<SolverRow> SolverBench::compare(const LinearSystem& system, int step,
+                                            const Simulation& simulation) {
   const double reference = drape::reference_impulse(system);
   std::vector<SolverRow> rows;
   for (Entry& entry : entries_) {
@@ -127,53 +151,48 @@ std::vector<SolverRow> SolverBench::compare(const LinearSystem& system, int step
     rows.back().time = simulation.state.time;
     rows.back().constrained = static_cast<int>(system.filter.entries().size());
   }
-  const auto worse = [](const SolverRow& a, const SolverRow& b) {
+  const auto better = [](const SolverRow& a, const SolverRow& b) {
     return a.finite != b.finite ? a.finite : a.residual < b.residual;
   };
-  const auto best = static_cast<std::size_t>(std::min_element(rows.begin(), rows.end(), worse) - rows.begin());
-  rows[best].most_accurate = true;
+  const auto best =
+      static_cast<std::size_t>(std::min_element(rows.begin(), rows.end(), better) - rows.begin());
+  rows[best].most_accurate = rows[best].finite;
+  const std::unique_ptr<LinearSolver> judge = make_linear_solver(entries_[best].choice.name);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (interrupted()) return {};
-    judge(rows[k], entries_[k], rows[best], entries_[best], system, reference, simulation);
+    if (rows[k].finite && k != best)
+      find_difference(rows[k], entries_[best].dv - entries_[k].dv, rows[best], system, reference, simulation,
+                      *judge);
+    pass_verdict(rows[k], rows[best].finite ? entries_[best].dv.lpNorm<Eigen::Infinity>() : 0);
   }
   return rows;
 }
 
-void SolverBench::judge(SolverRow& row, const Entry& entry, const SolverRow& best, const Entry& best_entry,
-                        const LinearSystem& system, double reference, const Simulation& simulation) const {
-  if (!row.finite) {
-    row.verdict = first_words(row, where_) + ", not finite numbers (" + std::string(name(row.report.reason)) + ")";
-    return;
-  }
-  const double asked = std::max(tolerance_, finest_tolerance);
-  const VecX difference = best_entry.dv - entry.dv;
+// Where the row is farthest from the most accurate one, and how far its tolerance lets it be there.
+void SolverBench::find_difference(SolverRow& row, const VecX& difference, const SolverRow& best,
+                                  const LinearSystem& system, double reference, const Simulation& simulation,
+                                  LinearSolver& judge) const {
   const int worst = worst_row(difference);
   const Vec3 u = difference.segment<3>(3 * worst);
+  if (u.isZero(0)) return;
   row.difference = u.norm();
   const int particle = system.A.pattern().particle_of()[static_cast<std::size_t>(worst)];
   const Cloth& cloth = simulation.cloth_of(particle);
   row.vertex = particle - cloth.first_particle;
   row.cloth = cloth.name;
-  const double largest = best_entry.dv.lpNorm<Eigen::Infinity>();
-  if (row.difference > 0) {
-    const std::optional<double> g = influence(best_entry.choice.name, system, worst, u / row.difference);
-    if (g) row.allowed = *g * reference * (residual_slack * asked + best.residual) + 1e-12 * largest;
-  }
-  const bool solved = row.residual <= residual_slack * asked;
-  const bool held = row.violation <= 1e-12 * (largest + 1);
-  const bool explained = row.difference == 0 || !row.allowed || row.difference <= *row.allowed;
-  row.agrees = solved && held && explained;
-  row.verdict = "agree";
-  if (row.agrees) return;
-  row.verdict = first_words(row, where_);
-  if (row.difference > 0)
-    row.verdict += ", vertex " + std::to_string(row.vertex) + " of cloth '" + row.cloth + "', by " +
-                   rounded(row.difference, 2) + " m/s (allowed " +
-                   (row.allowed ? rounded(*row.allowed, 2) + " m/s" : "not known") + ")";
-  if (!solved) row.verdict += "; residual " + rounded(row.residual, 2) + ", asked " + rounded(asked, 2);
-  if (!solved && row.report.reason != StopReason::converged)
-    row.verdict += " (" + std::string(name(row.report.reason)) + ")";
-  if (!held) row.verdict += "; a constraint is missed by " + rounded(row.violation, 2) + " m/s";
+  const double asked = residual_slack * std::max(tolerance_, finest_tolerance);
+  const std::optional<double> g = influence(judge, system, worst, u / row.difference);
+  const double roundoff = finest_tolerance * system.solution.lpNorm<Eigen::Infinity>();
+  if (g) row.allowed = *g * reference * (asked + best.residual) + roundoff;
+}
+
+// largest: of the most accurate dv [m/s].
+void SolverBench::pass_verdict(SolverRow& row, double largest) const {
+  const double asked = std::max(tolerance_, finest_tolerance);
+  const bool held = row.violation <= finest_tolerance * (largest + 1);
+  const bool explained = !row.allowed || row.difference <= *row.allowed;
+  row.agrees = row.finite && row.residual <= residual_slack * asked && held && explained;
+  row.verdict = row.agrees ? "agree" : difference_text(row, where_, asked, held);
 }
 
 }  // namespace drape

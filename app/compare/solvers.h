@@ -14,12 +14,12 @@
 
 namespace drape {
 
-inline constexpr double residual_slack = 1.05;    // solvers stop by recurrences, which drift
+inline constexpr double residual_slack = 1.05;     // solvers stop by recurrences, which drift
 inline constexpr double finest_tolerance = 1e-12;  // what round-off lets a residual reach
 
-double true_residual(const LinearSystem& system, const VecX& dv);        // N s
+double true_residual(const LinearSystem& system, const VecX& dv);         // N s
 double constraint_violation(const LinearSystem& system, const VecX& dv);  // m/s
-double reference_impulse(const LinearSystem& system);                     // N s, what a residual is relative to
+double reference_impulse(const LinearSystem& system);  // N s, what a residual is relative to
 
 class SolverBench {
  public:
@@ -39,8 +39,13 @@ class SolverBench {
     VecX dv;
   };
   SolverRow measure(Entry& entry, const LinearSystem& system, double reference) const;
-  void judge(SolverRow& row, const Entry& entry, const SolverRow& best, const Entry& best_entry,
-             const LinearSystem& system, double reference, const Simulation& simulation) const;
+  void solve_first(Entry& entry, const LinearSystem& system, LinearOptions options, SolverRow& row) const;
+  void time_repeats(Entry& entry, const LinearSystem& system, const LinearOptions& options,
+                    SolverRow& row) const;
+  void find_difference(SolverRow& row, const VecX& difference, const SolverRow& best,
+                       const LinearSystem& system, double reference, const Simulation& simulation,
+                       LinearSolver& judge) const;
+  void pass_verdict(SolverRow& row, double largest) const;
 
   std::vector<Entry> entries_;
   double tolerance_;

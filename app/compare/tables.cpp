@@ -35,13 +35,15 @@ Names row_of(const SolverRow& row) {
 }
 
 // The rows of one step at one size stand together.
-ReportTable table_of(std::vector<SolverRow>::const_iterator first, std::vector<SolverRow>::const_iterator last) {
+ReportTable table_of(std::vector<SolverRow>::const_iterator first,
+                     std::vector<SolverRow>::const_iterator last) {
   ReportTable table;
   table.title = "step " + std::to_string(first->step) + " (" + rounded(first->time, 4) + " s), " +
-                counted(first->vertices, "vertex") + ", " + std::to_string(first->constrained) + " constrained";
-  table.header = {"solver",   "iterations", "residual",   "constraints m/s", "set-up ms",
-                  "solve ms", "first ms",   "analyses",   "peak MB",         "difference m/s",
-                  "allowed m/s", "stopped",  "verdict"};
+                counted(first->vertices, "vertex") + ", " + std::to_string(first->constrained) +
+                " constrained";
+  table.header = {"solver",      "iterations", "residual", "constraints m/s", "set-up ms",
+                  "solve ms",    "first ms",   "analyses", "peak MB",         "difference m/s",
+                  "allowed m/s", "stopped",    "verdict"};
   for (auto row = first; row != last; ++row) {
     table.rows.push_back(row_of(*row));
     if (!row->report.note.empty()) table.notes.push_back(row->solver + ": " + row->report.note);
@@ -52,8 +54,8 @@ ReportTable table_of(std::vector<SolverRow>::const_iterator first, std::vector<S
 ReportTable table_of_runs(const Comparison& comparison) {
   ReportTable table;
   table.title = "integrators, " + rounded(comparison.run_duration, 4) + " s from the same start";
-  table.header = {"integrator",     "time step s", "solver",         "steps",      "wall ms",
-                  "iterations",     "distance m",  "rms m",          "same run m", "drift J",
+  table.header = {"integrator",     "time step s", "solver",    "steps",      "wall ms",
+                  "iterations",     "distance m",  "rms m",     "same run m", "drift J",
                   "energy error J", "state",       "differs by"};
   for (const IntegratorRow& row : comparison.runs) {
     table.rows.push_back({row.integrator, rounded(row.time_step, 4), row.solver, std::to_string(row.steps),
@@ -70,8 +72,11 @@ ReportTable table_of_runs(const Comparison& comparison) {
       table.notes.push_back(who + ": " + counted(row.steps_cut, "step") + " taken in pieces, " +
                             std::to_string(row.steps_not_converged) + " not converged");
   }
-  table.notes.push_back("distance, rms: of the vertices at the end, from the reference; same run: the largest from the run that differs "
-                        "by the linear solver alone (" + comparison.reference_solver + ")");
+  table.notes.push_back(
+      "distance, rms: of the vertices at the end, from the reference; same run: the largest from the run "
+      "that differs "
+      "by the linear solver alone (" +
+      comparison.reference_solver + ")");
   return table;
 }
 
@@ -107,12 +112,13 @@ std::string aligned(const ReportTable& table) {
 }  // namespace
 
 Names headline(const Comparison& c) {
-  Names lines = {c.scene + ": " + c.integrator + ", " + rounded(c.time_step, 4) + " s a step; the path is of " +
-                 c.reference_solver + ", tolerance " + rounded(c.tolerance, 3) + "; " +
-                 counted(c.threads, "thread")};
-  lines.push_back("times: median of " + counted(c.repeats, "repeat") +
-                  " on the same system, the first call apart; *: the most accurate, the others' difference is "
-                  "from it");
+  Names lines = {c.scene + ": " + c.integrator + ", " + rounded(c.time_step, 4) +
+                 " s a step; the path is of " + c.reference_solver + ", tolerance " +
+                 rounded(c.tolerance, 3) + "; " + counted(c.threads, "thread")};
+  lines.push_back(
+      "times: median of " + counted(c.repeats, "repeat") +
+      " on the same system, the first call apart; *: the most accurate, the others' difference is "
+      "from it");
   if (!c.failure.empty()) lines.push_back("failed: " + c.failure);
   return lines;
 }
