@@ -290,6 +290,39 @@ TEST_CASE("a long history is thinned out for the plot, not in compare.json", "[c
   CHECK(JsonValue::parse(compare_json(comparison))["rows"][0]["history"].size() == 5000);
 }
 
+TEST_CASE("the script plots several compare.json", "[compare]") {
+  const std::string python = "/usr/bin/python3 ",
+                    script = python + "'" DRAPE_SOURCE_DIR "/tests/compare/plot_compare.py' ";
+  if (std::system((python + "-c 'import matplotlib' 2>/dev/null").c_str()) != 0) {
+    WARN("skipped: there is no matplotlib");
+    return;
+  }
+  Desk desk;
+  const auto plot = [&](const std::string& words) {
+    const int status =
+        std::system(("cd '" + desk.path.string() + "' && " + script + words + " >.out 2>.err").c_str());
+    desk.err = content(desk.path / ".err");
+    return WEXITSTATUS(status);
+  };
+  REQUIRE(desk.run("--sizes 16,36 --steps 2 --solvers mpcg --out o") == 0);
+  REQUIRE(desk.run("'" + on_ball + "' --steps 2 --solvers mpcg --integrators implicit-euler --out p") == 0);
+  JsonValue with_history = desk.json();
+  with_history["rows"][0]["history"] = {1, 0.1, 0.01};
+  std::ofstream(desk.path / "o/compare.json") << with_history;
+  CHECK(plot("o/compare.json p/compare.json --out plots --format svg") == 0);
+  INFO(desk.err);
+  for (const char* name : {"time-against-vertices.svg", "convergence-o-16-step-2.svg", "work-precision.svg"})
+    CHECK(fs::exists(desk.path / "plots" / name));
+
+  std::ofstream(desk.path / "other.json") << "{}";
+  for (const char* wrong : {"none.json", "other.json", ".out", "o"}) {
+    INFO(wrong);
+    CHECK(plot(wrong) == 2);
+    CHECK_THAT(desk.err, StartsWith("error: ") && Contains(wrong));
+    CHECK(count(desk.err, "\n") == 1);
+  }
+}
+
 TEST_CASE("the growth is fitted", "[compare]") {
   Comparison comparison;
   comparison.at = {3};
