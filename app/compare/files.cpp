@@ -69,7 +69,7 @@ std::string csv_cell(const Json& json) {
   if (const bool* b = std::get_if<bool>(&json.value)) return *b ? "1" : "0";
   if (const long* i = std::get_if<long>(&json.value)) return std::to_string(*i);
   if (const double* x = std::get_if<double>(&json.value)) return shortest(*x);
-  const std::string text = one_line(std::get<std::string>(json.value));
+  std::string text = one_line(std::get<std::string>(json.value));
   if (text.find_first_of(",\"") == text.npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);

@@ -11,6 +11,10 @@
 namespace drape {
 namespace {
 
+[[noreturn]] void refuse(const std::string& option, const std::string& given, const std::string& why) {
+  throw InputError(option + " " + given + ": " + why);
+}
+
 // "a,b" -> a, b, without blanks around; an empty part is a mistake.
 Names parts_of(const std::string& option, const std::string& text) {
   Names parts;
@@ -19,10 +23,9 @@ Names parts_of(const std::string& option, const std::string& text) {
     std::string part = text.substr(begin, end - begin);
     part.erase(0, part.find_first_not_of(' '));
     part.erase(part.find_last_not_of(' ') + 1);
-    if (part.empty())
-      throw InputError(option + " " + text + ": expected names or numbers with commas between");
+    if (part.empty()) refuse(option, text, "expected names or numbers with commas between");
     if (std::find(parts.begin(), parts.end(), part) != parts.end())
-      throw InputError(option + " " + text + ": '" + part + "' is there twice");
+      refuse(option, text, "'" + part + "' is there twice");
     parts.push_back(part);
     begin = end + 1;
   }
@@ -33,7 +36,7 @@ double number(const std::string& option, const std::string& text, const std::str
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    throw InputError(option + " " + text + ": expected " + expected);
+    refuse(option, text, "expected " + expected);
   return value;
 }
 
@@ -41,7 +44,7 @@ int whole(const std::string& option, const std::string& text, int least, int mos
   const std::string expected = "a whole number from " + std::to_string(least) + " to " + std::to_string(most);
   const double value = number(option, text, expected);
   if (value != std::floor(value) || value < least || value > most)
-    throw InputError(option + " " + text + ": expected " + expected);
+    refuse(option, text, "expected " + expected);
   return static_cast<int>(value);
 }
 
@@ -68,7 +71,7 @@ SolverChoice solver(const std::string& text) {
     const auto [end, error] = std::from_chars(given.data(), given.data() + given.size(), tolerance);
     if (error != std::errc() || end != given.data() + given.size() || !(tolerance > 0) ||
         !(tolerance < 1e300))
-      throw InputError("--solvers " + text + ": expected " + expected);
+      refuse("--solvers", text, "expected " + expected);
     choice.tolerance = tolerance;
   }
   return choice;
@@ -89,10 +92,10 @@ Names integrator_names(const std::string& text) {
   if (text.empty()) return {};
   Names known;
   for (const IntegratorInfo& info : integrators()) known.emplace_back(info.name);
-  const Names names = parts_of("--integrators", text);
+  Names names = parts_of("--integrators", text);
   for (const std::string& name : names)
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw InputError("--integrators " + name + ": there is no such integrator; " + suggestion(name, known));
+      refuse("--integrators", name, "there is no such integrator; " + suggestion(name, known));
   return names;
 }
 
@@ -103,9 +106,9 @@ std::vector<double> time_steps(const std::string& text) {
     try {
       steps.push_back(parse_quantity(part, dimension::time));
     } catch (const InputError& error) {
-      throw InputError("--time-steps " + part + ": " + error.what());
+      refuse("--time-steps", part, error.what());
     }
-    if (!(steps.back() > 0)) throw InputError("--time-steps " + part + ": a time step is greater than zero");
+    if (!(steps.back() > 0)) refuse("--time-steps", part, "a time step is greater than zero");
   }
   std::sort(steps.rbegin(), steps.rend());
   return steps;
@@ -122,7 +125,7 @@ std::vector<int> sizes(const std::string& text) {
     if (part.ends_with('k') || part.ends_with('K')) factor = 1e3, digits.pop_back();
     if (part.ends_with('M')) factor = 1e6, digits.pop_back();
     const double count = factor * number("--sizes", digits, expected);
-    if (!(count >= 16) || !(count <= 4e6)) throw InputError("--sizes " + part + ": expected " + expected);
+    if (!(count >= 16) || !(count <= 4e6)) refuse("--sizes", part, "expected " + expected);
     counts.push_back(static_cast<int>(std::lround(count)));
   }
   std::sort(counts.begin(), counts.end());

@@ -35,7 +35,7 @@ class RecordingSolver final : public LinearSolver {
     if (!recording_.on) return solver_->solve(A, b, filter, options, dv);
     recording_.last = LinearSystem{A, b, filter, options, dv, {}};
     recording_.last->options.history = nullptr;
-    const LinearReport report = solver_->solve(A, b, filter, options, dv);
+    LinearReport report = solver_->solve(A, b, filter, options, dv);
     recording_.last->solution = dv;
     return report;
   }
