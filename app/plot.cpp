@@ -11,14 +11,18 @@
 namespace drape {
 namespace {
 
-constexpr double left = 70, top = 34, inner_width = 430, inner_height = 290, width = 700, height = 380;
+constexpr double left = 80, top = 34, inner_width = 430, inner_height = 290, width = 710, height = 380;
 
 // Okabe & Ito's colours, those that are legible on white and on black.
 constexpr std::array<const char*, 7> colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                 "#e69f00", "#56b4e9", "#999999"};
 
-std::string colour_of(const Series& series, std::size_t k) {
-  return series.dashed ? "currentColor" : colours[k % colours.size()];
+std::size_t look_of(const Series& series, std::size_t place) {
+  return series.look < 0 ? place : static_cast<std::size_t>(series.look);
+}
+
+std::string colour_of(const Series& series, std::size_t place) {
+  return series.dashed ? "currentColor" : colours[look_of(series, place) % colours.size()];
 }
 
 struct Tick {
@@ -140,7 +144,8 @@ std::string drawn(const Plot& plot, std::size_t k, const Axis& x, const Axis& y)
   for (std::size_t i = 0; i < series.x.size(); ++i) {
     if (!visible(plot, series.x[i], series.y[i])) continue;
     points += number(x(series.x[i])) + "," + number(y(series.y[i])) + " ";
-    if (series.markers) marks += marker(k, x(series.x[i]), y(series.y[i]), colour) + "\n";
+    if (series.every > 0 && i % static_cast<std::size_t>(series.every) == 0)
+      marks += marker(look_of(series, k), x(series.x[i]), y(series.y[i]), colour) + "\n";
   }
   std::string text;
   if (series.line)
@@ -157,7 +162,7 @@ std::string legend_entry(const Series& series, std::size_t k) {
     text = "<line x1=\"" + number(x) + "\" y1=\"" + number(y) + "\" x2=\"" + number(x + 24) + "\" y2=\"" +
            number(y) + "\" stroke-width=\"1.8\" stroke=\"" + colour + "\"" +
            (series.dashed ? " stroke-dasharray=\"5 4\"" : "") + "/>\n";
-  if (series.markers) text += marker(k, x + 12, y, colour) + "\n";
+  if (series.every > 0) text += marker(look_of(series, k), x + 12, y, colour) + "\n";
   return text + text_at(x + 30, y + 4, "start", series.name);
 }
 

@@ -13,8 +13,9 @@ struct Series {
   std::string name;
   std::vector<double> x, y;  // what cannot be shown (not finite, or <= 0 on a logarithmic axis) is left out
   bool line = true;
-  bool markers = true;
+  int every = 1;        // how many points to a marker; 0: none
   bool dashed = false;  // in the colour of the text: a limit, not a measurement
+  int look = -1;        // which colour and marker; -1: by its place among the series
 };
 
 struct Plot {

@@ -8,10 +8,17 @@
 namespace drape {
 namespace {
 
+// A solver looks the same in every plot.
+int look_of(const Comparison& comparison, const std::string& solver) {
+  const Names& all = comparison.solvers;
+  return static_cast<int>(std::find(all.begin(), all.end(), solver) - all.begin());
+}
+
 // Residuals against iterations; a long history is thinned out, its ends kept.
 Series convergence(const SolverRow& row) {
   constexpr std::size_t most = 200;
-  Series series{row.solver, {}, {}, true, false, false};
+  Series series;
+  series.name = row.solver;
   const std::size_t count = row.history.size(), stride = std::max<std::size_t>(1, count / most);
   for (std::size_t k = 0; k < count; ++k) {
     if (k % stride != 0 && k + 1 != count) continue;
@@ -20,10 +27,10 @@ Series convergence(const SolverRow& row) {
   }
   if (count < 2) {  // it gave no history: where it ended
     series.line = false;
-    series.markers = true;
     series.x = {static_cast<double>(row.report.iterations)};
     series.y = {row.residual};
   }
+  series.every = std::max(1, static_cast<int>(series.x.size() / 8));
   return series;
 }
 
@@ -40,10 +47,11 @@ Plot convergence_plot(const Comparison& comparison, int vertices, int step) {
     if (row.vertices == vertices && row.step == step &&
         (row.report.iterations > 0 || row.history.size() > 1)) {
       plot.series.push_back(convergence(row));
+      plot.series.back().look = look_of(comparison, row.solver);
       most = std::max(most, plot.series.back().x.back());
     }
   const double asked = comparison.tolerance;
-  plot.series.push_back({"tolerance asked", {0, most}, {asked, asked}, true, false, true});
+  plot.series.push_back({"tolerance asked", {0, most}, {asked, asked}, true, 0, true});
   return plot;
 }
 
@@ -54,6 +62,7 @@ Plot size_plot(const Comparison& comparison, const std::string& title, const std
   Plot plot{title, "vertices", label, true, true, {}};
   for (const std::string& solver : comparison.solvers) {
     Series series{solver, {}, {}};
+    series.look = look_of(comparison, solver);
     for (const SolverRow& row : comparison.rows) {
       if (row.solver != solver || row.step != comparison.at.back()) continue;
       series.x.push_back(row.vertices);
