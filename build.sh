@@ -11,7 +11,7 @@ usage: ./build.sh WORD
   test            the same, then build and run every test
   build           install what is missing and build the program, build/release/drape
   bench           build and run the benchmarks
-  compare         run the comparisons of tests/compare
+  compare         compare solvers and integrators on gallery scenes and generated sheets, into out/compare
   lint            check the formatting, then clang-tidy
   format          format the sources in place; format --check only looks
   sanitize        build with the address and undefined-behaviour sanitizers and run the tests, but for the slow ones
@@ -191,21 +191,22 @@ bench() {
   build/release/drape_bench "$@"
 }
 
+# A difference between solvers is shown at the end; the other comparisons go on.
 compare() {
-  local -a scripts
-  mapfile -t scripts < <(find tests/compare -maxdepth 1 -type f -perm -u+x | sort)
-  if [[ ${#scripts[@]} -eq 0 ]]; then
-    say "there are no comparisons in tests/compare yet; './build.sh bench' times our linear solvers beside Eigen's"
-    return 0
-  fi
-  build
-  local script
+  local out=out/compare python=/usr/bin/python3 name
   local -a failed=()
-  for script in "${scripts[@]}"; do
-    say "$script"
-    "$script" || failed+=("$script")
+  build
+  get python3-matplotlib || warn "going on without the plots"
+  for name in flag sheet-on-ball; do
+    say "comparing solvers and integrators on $name into $out/$name"
+    build/release/drape compare "data/scenes/$name.toml" --integrators implicit-euler --out "$out/$name" || failed+=("$name")
   done
-  [[ ${#failed[@]} -eq 0 ]] || die "these comparisons failed: ${failed[*]}"
+  say "comparing solvers on generated sheets into $out/sizes"
+  build/release/drape compare --sizes 1k,4k --out "$out/sizes" || failed+=(sizes)
+  if installed python3-matplotlib; then
+    "$python" tests/compare/plot_compare.py "$out"/*/compare.json --out "$out/plots" || failed+=(plots)
+  fi
+  [[ ${#failed[@]} -eq 0 ]] || die "these comparisons failed or differ, see above: ${failed[*]}"
 }
 
 install_into() {

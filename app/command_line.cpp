@@ -8,6 +8,7 @@
 #include <new>
 
 #include "app/commands.h"
+#include "app/compare/compare.h"
 #include "app/words.h"
 #include "mesh/obj.h"
 
@@ -37,21 +38,17 @@ struct RunWords {
   }
 };
 
-void add_run_options(CLI::App& command, RunWords& words) {
-  command.add_option("--out", words.out, "output folder (out/NAME)")->type_name("DIR");
+// Those that every command with a scene has.
+void add_scene_options(CLI::App& command, RunWords& words) {
   const auto override_of = [&](const std::string& option, const std::string& path, const char* help,
                                const char* type) {
     command.add_option(option, words.overrides[path], help)->type_name(type);
   };
   override_of("--threads", "simulation.threads", "how many threads (as many as processors)", "N");
-  override_of("--duration", "simulation.duration", "time to simulate, such as 2 or \"500 ms\"", "TIME");
   override_of("--time-step", "simulation.time_step", "length of a step, such as 0.01 or \"5 ms\"", "TIME");
   override_of("--integrator", "simulation.integrator", "see 'drape list'", "NAME");
   override_of("--linear-solver", "simulation.linear_solver", "see 'drape list'", "NAME");
   override_of("--tolerance", "simulation.tolerance", "relative residual of the linear solve", "X");
-  command.add_option("--frames", words.frames, "how frames are written: pc2, obj or none")
-      ->check(CLI::IsMember({"pc2", "obj", "none"}))
-      ->type_name("KIND");
   command
       .add_option("--set", words.settings,
                   "changes a value of the scene, such as cloth.0.bend=\"5 uN.m\"; as often as needed")
@@ -60,6 +57,18 @@ void add_run_options(CLI::App& command, RunWords& words) {
       ->allow_extra_args(false);
   command.add_option("more", words.more_settings, "further PATH=VALUE, after --set")->group("");
   command.add_flag("--quiet", words.quiet, "nothing but errors");
+}
+
+void add_run_options(CLI::App& command, RunWords& words) {
+  command.add_option("--out", words.out, "output folder (out/NAME)")->type_name("DIR");
+  command
+      .add_option("--duration", words.overrides["simulation.duration"],
+                  "time to simulate, such as 2 or \"500 ms\"")
+      ->type_name("TIME");
+  command.add_option("--frames", words.frames, "how frames are written: pc2, obj or none")
+      ->check(CLI::IsMember({"pc2", "obj", "none"}))
+      ->type_name("KIND");
+  add_scene_options(command, words);
 }
 
 void add_simulate(CLI::App& app, int& exit_code) {
@@ -113,6 +122,44 @@ void add_drop(CLI::App& app, const std::string& label, int& exit_code) {
   });
 }
 
+void add_compare(CLI::App& app, int& exit_code) {
+  CLI::App* const command =
+      app.add_subcommand("compare",
+                         "gives the same systems to several linear solvers, and a scene to several "
+                         "integrators");
+  struct Words {
+    std::string scene;
+    CompareWords compare;
+    RunWords run;
+  };
+  auto words = std::make_shared<Words>();
+  command->add_option("SCENE", words->scene, "scene file (TOML); not needed with --sizes");
+  const auto option = [&](const char* name, std::string& value, const char* type, const char* help) {
+    command->add_option(name, value, help)->type_name(type);
+  };
+  CompareWords& compare_words = words->compare;
+  option(
+      "--solvers", compare_words.solvers, "NAME[@TOLERANCE],...",
+      "linear solvers, see 'drape list' (all); NAME@TOLERANCE stops at its own, but is judged by the common");
+  option("--steps", compare_words.steps, "N", "how many steps are run (50, with --sizes 30)");
+  option("--at", compare_words.at, "N,...", "steps that are compared (first, middle, last)");
+  option("--repeats", compare_words.repeats, "N", "timed solves of each system, after the first (3)");
+  option("--integrators", compare_words.integrators, "NAME,...",
+         "runs of these from the same start, see 'drape list'");
+  option("--time-steps", compare_words.time_steps, "TIME,...",
+         "of the integrators' runs (the scene's, 1/2 and 1/4 of it)");
+  option("--sizes", compare_words.sizes, "N,...",
+         "a generated hung sheet of so many vertices instead: 1k,10k,40k");
+  command->add_option("--out", words->run.out, "output folder (out/compare/NAME)")->type_name("DIR");
+  add_scene_options(*command, words->run);
+  command->footer(
+      "The scene's linear solver (--linear-solver) decides the path. Exit code: 0 all solvers agree; 1 a "
+      "verdict "
+      "is 'differ',\nor the run failed; 2 bad input; 130 interrupted, and nothing is written.");
+  command->callback(
+      [=, &exit_code] { exit_code = compare(words->scene, words->compare, words->run.common(*command)); });
+}
+
 void add_check_and_list(CLI::App& app, int& exit_code) {
   CLI::App* const check =
       app.add_subcommand("check", "validates a scene or examines a mesh; changes nothing");
@@ -139,6 +186,7 @@ int parse_and_run(int argc, char** argv) {
   app.require_subcommand(1);
   add_simulate(app, exit_code);
   add_drop(app, label, exit_code);
+  add_compare(app, exit_code);
   add_check_and_list(app, exit_code);
   if (argc > 1 && argv[1][0] != '-') check_command(app, argv[1]);
   try {

@@ -15,19 +15,6 @@ std::vector<Vec3> positions_of(const Cloth& cloth, const State& state) {
   return unstacked(state.x.segment(3 * cloth.first_particle, 3 * cloth.mesh.vertex_count()));
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder))
-    throw InputError(folder.string() + ": cannot be made an output folder: " +
-                     (error ? error.message() : "it is a file") + "; choose another with --out");
-  try {
-    AtomicFile(folder / "try").write("try");  // not kept
-  } catch (const InputError&) {
-    throw InputError(folder.string() + ": the output folder cannot be written; choose another with --out");
-  }
-}
-
 // Results are named after the cloth and must not replace what they are made from.
 void spare_inputs(const fs::path& folder, const Scene& scene) {
   const auto spare = [&](const fs::path& input) {
@@ -45,11 +32,24 @@ void spare_inputs(const fs::path& folder, const Scene& scene) {
 
 }  // namespace
 
+void make_output_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder))
+    throw InputError(folder.string() + ": cannot be made an output folder: " +
+                     (error ? error.message() : "it is a file") + "; choose another with --out");
+  try {
+    AtomicFile(folder / "try").write("try");  // not kept
+  } catch (const InputError&) {
+    throw InputError(folder.string() + ": the output folder cannot be written; choose another with --out");
+  }
+}
+
 Output::Output(fs::path folder, const Scene& scene, const Simulation& simulation, Frames frames)
     : folder_(std::move(folder)), simulation_(simulation), frames_(frames) {
   spare_inputs(folder_, scene);
-  make_folder(folder_);
-  if (frames_ == Frames::obj) make_folder(folder_ / "frames");
+  make_output_folder(folder_);
+  if (frames_ == Frames::obj) make_output_folder(folder_ / "frames");
   if (frames_ == Frames::pc2)
     for (const Cloth& cloth : simulation.cloths)
       caches_.emplace_back(folder_ / (cloth.name + ".pc2"), cloth.mesh.vertex_count());

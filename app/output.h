@@ -13,6 +13,9 @@
 
 namespace drape {
 
+// Throws InputError when the folder cannot be made or written.
+void make_output_folder(const std::filesystem::path& folder);
+
 enum class Frames { pc2, obj, none };
 
 class Output {

@@ -1,28 +1,26 @@
 #include "app/run_json.h"
 
-#include <nlohmann/json.hpp>
-
+#include "app/json.h"
 #include "app/measure.h"
 
 namespace drape {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json cloths_json(const std::vector<ClothCounts>& cloths) {
-  Json list = Json::array();
+  Json::List list;
   for (const ClothCounts& c : cloths)
-    list.push_back({{"name", c.name},
-                    {"particles", c.particles},
-                    {"triangles", c.triangles},
-                    {"edges", c.edges},
-                    {"diagonals", c.diagonals}});
+    list.push_back(Json::Members{{"name", c.name},
+                                 {"particles", c.particles},
+                                 {"triangles", c.triangles},
+                                 {"edges", c.edges},
+                                 {"diagonals", c.diagonals}});
   return list;
 }
 
 Json failure_json(const Failure& f) {
-  return {{"step", f.step}, {"time", f.time},   {"what", f.what},
-          {"term", f.term}, {"cloth", f.cloth}, {"vertex", f.vertex < 0 ? Json() : Json(f.vertex)}};
+  return Json::Members{{"step", f.step},   {"time", f.time},
+                       {"what", f.what},   {"term", f.term},
+                       {"cloth", f.cloth}, {"vertex", f.vertex < 0 ? Json() : Json(f.vertex)}};
 }
 
 }  // namespace
@@ -30,7 +28,7 @@ Json failure_json(const Failure& f) {
 std::string run_json(const RunRecord& record) {
   const Distribution step_ms = distribution(record.step_ms),
                      iterations = distribution(record.linear_iterations);
-  Json json = {
+  Json::Members json = {
       {"drape_version", DRAPE_VERSION},
       {"scene", record.scene},
       {"cloths", cloths_json(record.cloths)},
@@ -42,13 +40,13 @@ std::string run_json(const RunRecord& record) {
       {"steps", record.steps},
       {"simulated_seconds", record.simulated_seconds},
       {"wall_seconds", record.wall_seconds},
-      {"ms_per_step", {{"median", step_ms.median}, {"p95", step_ms.p95}, {"max", step_ms.max}}},
-      {"phases_ms",
-       {{"assemble", record.assemble_ms},
-        {"solve", record.solve_ms},
-        {"collide", record.collide_ms},
-        {"write", record.write_ms}}},
-      {"linear_iterations", {{"mean", iterations.mean}, {"max", static_cast<long>(iterations.max)}}},
+      {"ms_per_step", Json::Members{{"median", step_ms.median}, {"p95", step_ms.p95}, {"max", step_ms.max}}},
+      {"phases_ms", Json::Members{{"assemble", record.assemble_ms},
+                                  {"solve", record.solve_ms},
+                                  {"collide", record.collide_ms},
+                                  {"write", record.write_ms}}},
+      {"linear_iterations",
+       Json::Members{{"mean", iterations.mean}, {"max", static_cast<long>(iterations.max)}}},
       {"state", record.state()},
       {"interrupted", record.interrupted},
       {"max_speed", record.max_speed},
@@ -62,8 +60,8 @@ std::string run_json(const RunRecord& record) {
       {"state_hash", record.state_hash},
       {"warnings", record.warnings},
   };
-  if (record.failure) json["failure"] = failure_json(*record.failure);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  if (record.failure) json.emplace_back("failure", failure_json(*record.failure));
+  return json_text(json);
 }
 
 }  // namespace drape

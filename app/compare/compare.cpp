@@ -1,0 +1,182 @@
+#include "app/compare/compare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "app/compare/files.h"
+#include "app/compare/hung_sheet.h"
+#include "app/compare/integrators.h"
+#include "app/compare/solvers.h"
+#include "app/compare/tables.h"
+#include "app/interrupt.h"
+#include "mesh/obj.h"
+#include "mesh/threads.h"
+
+namespace drape {
+namespace {
+
+void say(const CommonOptions& common, const std::string& line) {
+  if (!common.quiet) std::fprintf(stderr, "%s\n", one_line(line).c_str());
+}
+
+// The first, the middle and the last.
+std::vector<int> spread(int steps) {
+  std::vector<int> at = {1, (steps + 1) / 2, steps};
+  at.erase(std::unique(at.begin(), at.end()), at.end());
+  return at;
+}
+
+// Which steps are taken and compared.
+void choose_steps(const Scene& scene, CompareOptions& options) {
+  constexpr int usual = 50, usual_of_a_sheet = 30;
+  if (options.steps == 0 && !options.at.empty()) options.steps = options.at.back();
+  if (options.steps == 0 && !options.sizes.empty()) options.steps = usual_of_a_sheet;
+  if (options.steps == 0) {
+    const double whole = scene.simulation.duration / scene.simulation.time_step;
+    options.steps = static_cast<int>(std::clamp(std::round(whole), 1.0, static_cast<double>(usual)));
+  }
+  if (options.at.empty())
+    options.at = options.sizes.empty() ? spread(options.steps) : std::vector<int>{options.steps};
+}
+
+// Follows one run with the reference solver and hands the systems of the chosen steps to the bench. False
+// when the user interrupts; a failed step ends it and is noted.
+class Path {
+ public:
+  Path(const Scene& scene, Simulation& simulation, const CommonOptions& common)
+      : scene_(scene), simulation_(simulation), common_(common) {
+    const SimulationOptions& wanted = scene.simulation;
+    simulation.integrator = make_integrator(
+        wanted.integrator, *simulation.system, *simulation.constraints,
+        std::make_unique<RecordingSolver>(make_linear_solver(wanted.linear_solver), recording_), wanted.step);
+  }
+
+  bool follow(const CompareOptions& options, SolverBench& bench, Comparison& comparison) {
+    for (int k = 1; k <= options.at.back(); ++k) {
+      if (interrupted()) return false;
+      recording_.on = std::find(options.at.begin(), options.at.end(), k) != options.at.end();
+      recording_.last.reset();
+      if (!advance(k, comparison)) return !interrupted();
+      if (!recording_.on) continue;
+      if (!recording_.last)
+        throw InputError("integrator '" + scene_.simulation.integrator +
+                         "' solves no linear system in step " + std::to_string(k) +
+                         ": there is nothing to give to the solvers; choose another with --integrator");
+      say(common_, "comparing at step " + std::to_string(k) + " of " + std::to_string(options.at.back()) +
+                       ", " + counted(simulation_.state.particles(), "vertex"));
+      std::vector<SolverRow> rows = bench.compare(*recording_.last, k, simulation_);
+      if (rows.empty()) return false;
+      for (SolverRow& row : rows) comparison.rows.push_back(std::move(row));
+    }
+    return true;
+  }
+
+ private:
+  bool advance(int k, Comparison& comparison) {
+    const double h = scene_.simulation.time_step;
+    const StepReport report = simulation_.integrator->advance(simulation_.state, h);
+    simulation_.state.time = k * h;
+    if (report.done && simulation_.state.x.allFinite()) return true;
+    comparison.failure =
+        "step " + std::to_string(k) + " of the run with " + scene_.simulation.linear_solver +
+        " failed: " + (report.done ? "a position is not a finite number" : report.failure.what);
+    return false;
+  }
+
+  const Scene& scene_;
+  Simulation& simulation_;
+  const CommonOptions& common_;
+  Recording recording_;
+};
+
+bool compare_scene(const Scene& scene, Simulation& simulation, const CompareOptions& options,
+                   const CommonOptions& common, Comparison& comparison) {
+  for (const std::string& message : simulation.messages) say(common, message);
+  SolverBench bench(options.solvers, comparison.tolerance, options.repeats);
+  if (!Path(scene, simulation, common).follow(options, bench, comparison)) return false;
+  if (options.integrators.empty()) return true;
+  return compare_integrators(scene, options, options.steps * scene.simulation.time_step, common.quiet,
+                             comparison);
+}
+
+bool compare_sizes(const Scene& scene, const CompareOptions& options, const CommonOptions& common,
+                   Comparison& comparison) {
+  for (const int vertices : options.sizes) {
+    const int side = sheet_side(vertices);
+    comparison.sizes.push_back(side * side);
+    Simulation simulation = make_hung_sheet(scene, side);
+    SolverBench bench(options.solvers, comparison.tolerance, options.repeats,
+                      "sheet of " + std::to_string(side * side) + " vertices, ");
+    if (!Path(scene, simulation, common).follow(options, bench, comparison)) return false;
+    if (!comparison.failure.empty()) break;
+  }
+  comparison.growth = growth_of(comparison);
+  return true;
+}
+
+// The scene that is compared: with sizes the hung sheet, solved as the given scene says.
+Scene scene_of(const std::filesystem::path& path, const CompareOptions& options,
+               const CommonOptions& common) {
+  if (path.empty() && options.sizes.empty())
+    throw InputError("SCENE is required (or --sizes for a generated sheet); see drape compare --help");
+  if (options.sizes.empty()) return read_scene(path, common.settings);
+  if (path.empty()) return hung_sheet_scene(common.settings);
+  const Scene given = read_scene(path, common.settings);
+  Scene sheet = hung_sheet_scene({});
+  sheet.label += ", solved as " + given.label + " says";
+  sheet.simulation.integrator = given.simulation.integrator;
+  sheet.simulation.linear_solver = given.simulation.linear_solver;
+  sheet.simulation.step = given.simulation.step;
+  sheet.simulation.threads = given.simulation.threads;
+  return sheet;
+}
+
+Comparison begun(const Scene& scene, const CompareOptions& options) {
+  Comparison comparison;
+  comparison.scene = scene.label;
+  comparison.integrator = scene.simulation.integrator;
+  comparison.reference_solver = scene.simulation.linear_solver;
+  comparison.time_step = scene.simulation.time_step;
+  comparison.tolerance = scene.simulation.step.tolerance;
+  comparison.steps = options.steps;
+  comparison.at = options.at;
+  comparison.repeats = options.repeats;
+  comparison.threads = threads();
+  for (const SolverChoice& solver : options.solvers) comparison.solvers.push_back(solver.text);
+  return comparison;
+}
+
+}  // namespace
+
+int compare(const std::filesystem::path& path, const CompareWords& words, const CommonOptions& common) {
+  CompareOptions options = compare_options(words);
+  const Scene scene = scene_of(path, options, common);
+  choose_steps(scene, options);
+  if (scene.simulation.threads > 0) set_threads(scene.simulation.threads);
+  Simulation simulation;
+  if (options.sizes.empty()) simulation = make_simulation(scene);
+  const std::filesystem::path name = options.sizes.empty() ? path.stem() : "sizes";
+  CompareFiles files(common.out.empty() ? std::filesystem::path("out") / "compare" / name : common.out);
+  catch_interrupts();
+
+  Comparison comparison = begun(scene, options);
+  const bool ended = options.sizes.empty() ? compare_scene(scene, simulation, options, common, comparison)
+                                           : compare_sizes(scene, options, common, comparison);
+  if (!ended) {
+    say(common, "interrupted: nothing is written");
+    return 130;
+  }
+  files.write(comparison);
+  if (!common.quiet) {
+    std::fputs(text_of(comparison).c_str(), stdout);
+    for (const auto& file : files.written()) std::printf("wrote %s\n", file.c_str());
+  }
+  if (common.quiet)
+    for (const SolverRow& row : comparison.rows)
+      if (!row.agrees) std::fprintf(stderr, "error: %s: %s\n", row.solver.c_str(), row.verdict.c_str());
+  if (!comparison.failure.empty()) std::fprintf(stderr, "error: %s\n", one_line(comparison.failure).c_str());
+  return comparison.agree() ? 0 : 1;
+}
+
+}  // namespace drape

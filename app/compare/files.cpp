@@ -1,0 +1,146 @@
+#include "app/compare/files.h"
+
+#include "app/atomic_file.h"
+#include "app/compare/html.h"
+#include "app/compare/tables.h"
+#include "app/json.h"
+#include "app/output.h"
+
+namespace drape {
+namespace {
+
+Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+// One row, keys as in compare.csv.
+Json::Members members_of(const SolverRow& row) {
+  const LinearReport& report = row.report;
+  return {{"vertices", row.vertices},
+          {"step", row.step},
+          {"time", row.time},
+          {"constrained", row.constrained},
+          {"solver", row.solver},
+          {"tolerance", row.tolerance},
+          {"iterations", report.iterations},
+          {"residual", row.residual},
+          {"reported_residual", report.residual},
+          {"constraint_violation", row.violation},
+          {"setup_ms", row.setup_ms},
+          {"solve_ms", row.solve_ms},
+          {"total_ms", row.total_ms()},
+          {"first_ms", row.first_ms},
+          {"first_setup_ms", report.setup_ms},
+          {"analyses", report.analyses},
+          {"peak_memory_bytes", optional_json(row.peak_bytes)},
+          {"difference", row.difference},
+          {"allowed", optional_json(row.allowed)},
+          {"cloth", row.cloth},
+          {"vertex", row.vertex < 0 ? Json() : Json(row.vertex)},
+          {"most_accurate", row.most_accurate},
+          {"stopped", name(report.reason)},
+          {"agrees", row.agrees},
+          {"verdict", row.verdict},
+          {"note", report.note}};
+}
+
+Json json_of(const IntegratorRow& row) {
+  return Json::Members{{"integrator", row.integrator},
+                       {"time_step", row.time_step},
+                       {"solver", row.solver},
+                       {"done", row.failure.empty()},
+                       {"failure", row.failure},
+                       {"end", row.end},
+                       {"steps", row.steps},
+                       {"steps_cut", row.steps_cut},
+                       {"steps_not_converged", row.steps_not_converged},
+                       {"linear_iterations", row.linear_iterations},
+                       {"wall_ms", row.wall_ms},
+                       {"max_distance", optional_json(row.max_distance)},
+                       {"rms_distance", optional_json(row.rms_distance)},
+                       {"energy_drift", row.energy_drift},
+                       {"energy_error", optional_json(row.energy_error)},
+                       {"same_run_distance", optional_json(row.same_run_distance)},
+                       {"reference", row.reference},
+                       {"differs_by", name(row.differs_by)}};
+}
+
+// As RFC 4180: quoted when it must be.
+std::string csv_cell(const Json& json) {
+  if (std::holds_alternative<std::monostate>(json.value)) return "";
+  if (const bool* b = std::get_if<bool>(&json.value)) return *b ? "1" : "0";
+  if (const long* i = std::get_if<long>(&json.value)) return std::to_string(*i);
+  if (const double* x = std::get_if<double>(&json.value)) return shortest(*x);
+  std::string text = one_line(std::get<std::string>(json.value));
+  if (text.find_first_of(",\"") == text.npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
+std::string compare_json(const Comparison& c) {
+  Json::List rows, runs, growth;
+  for (const SolverRow& row : c.rows) {
+    Json::Members members = members_of(row);
+    members.emplace_back("history", row.history);
+    rows.emplace_back(std::move(members));
+  }
+  for (const IntegratorRow& run : c.runs) runs.push_back(json_of(run));
+  for (const Growth& g : c.growth)
+    growth.emplace_back(Json::Members{{"solver", g.solver},
+                                      {"time_exponent", g.time},
+                                      {"iterations_exponent", optional_json(g.iterations)}});
+  return json_text(Json::Members{{"drape_version", DRAPE_VERSION},
+                                 {"scene", c.scene},
+                                 {"integrator", c.integrator},
+                                 {"linear_solver", c.reference_solver},
+                                 {"time_step", c.time_step},
+                                 {"tolerance", c.tolerance},
+                                 {"threads", c.threads},
+                                 {"steps", c.steps},
+                                 {"at", c.at},
+                                 {"repeats", c.repeats},
+                                 {"sizes", c.sizes},
+                                 {"solvers", c.solvers},
+                                 {"agree", c.agree()},
+                                 {"verdicts", verdicts(c)},
+                                 {"failure", c.failure.empty() ? Json() : Json(c.failure)},
+                                 {"rows", std::move(rows)},
+                                 {"growth", std::move(growth)},
+                                 {"run_duration", c.runs.empty() ? Json() : Json(c.run_duration)},
+                                 {"runs", std::move(runs)}});
+}
+
+std::string compare_csv(const Comparison& comparison) {
+  std::string text;
+  for (const auto& [key, value] : members_of(SolverRow())) text += (text.empty() ? "" : ",") + key;
+  text += "\n";
+  for (const SolverRow& row : comparison.rows) {
+    std::string line;
+    for (const auto& [key, value] : members_of(row)) line += csv_cell(value) + ",";
+    line.back() = '\n';
+    text += line;
+  }
+  return text;
+}
+
+CompareFiles::CompareFiles(std::filesystem::path folder) : folder_(std::move(folder)) {
+  make_output_folder(folder_);
+}
+
+void CompareFiles::write(const Comparison& comparison) {
+  std::vector<AtomicFile> files;
+  const auto add = [&](const char* name, const std::string& text) {
+    files.emplace_back(folder_ / name).write(text);
+    files.back().close();
+  };
+  add("compare.json", compare_json(comparison));
+  add("compare.csv", compare_csv(comparison));
+  add("compare.html", compare_html(comparison));
+  for (AtomicFile& file : files) {
+    file.keep();
+    written_.push_back(file.path());
+  }
+}
+
+}  // namespace drape

@@ -1,0 +1,169 @@
+#include "app/compare/html.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/compare/tables.h"
+
+namespace drape {
+namespace {
+
+// A solver looks the same in every plot.
+int look_of(const Comparison& comparison, const std::string& solver) {
+  const Names& all = comparison.solvers;
+  return static_cast<int>(std::find(all.begin(), all.end(), solver) - all.begin());
+}
+
+// Residuals against iterations; a long history is thinned out, its ends kept.
+Series convergence(const SolverRow& row) {
+  constexpr std::size_t most = 200;
+  Series series;
+  series.name = row.solver;
+  const std::size_t count = row.history.size(), stride = std::max<std::size_t>(1, count / most);
+  for (std::size_t k = 0; k < count; ++k) {
+    if (k % stride != 0 && k + 1 != count) continue;
+    series.x.push_back(static_cast<double>(k));
+    series.y.push_back(row.history[k]);
+  }
+  if (count < 2) {  // it gave no history: where it ended
+    series.line = false;
+    series.x = {static_cast<double>(row.report.iterations)};
+    series.y = {row.residual};
+  }
+  series.every = std::max(1, static_cast<int>(series.x.size() / 8));
+  return series;
+}
+
+// Of the iterative solvers: a direct one has no curve.
+Plot convergence_plot(const Comparison& comparison, int vertices, int step) {
+  Plot plot{"Convergence at step " + std::to_string(step) + ", " + std::to_string(vertices) + " vertices",
+            "iterations",
+            "relative residual",
+            false,
+            true,
+            {}};
+  double most = 1;
+  for (const SolverRow& row : comparison.rows)
+    if (row.vertices == vertices && row.step == step &&
+        (row.report.iterations > 0 || row.history.size() > 1)) {
+      plot.series.push_back(convergence(row));
+      plot.series.back().look = look_of(comparison, row.solver);
+      most = std::max(most, plot.series.back().x.back());
+    }
+  const double asked = comparison.tolerance;
+  plot.series.push_back({"tolerance asked", {0, most}, {asked, asked}, true, 0, true});
+  return plot;
+}
+
+// Something of the last compared step against the vertices of every size.
+template <class Value>
+Plot size_plot(const Comparison& comparison, const std::string& title, const std::string& label,
+               Value value) {
+  Plot plot{title, "vertices", label, true, true, {}};
+  for (const std::string& solver : comparison.solvers) {
+    Series series{solver, {}, {}};
+    series.look = look_of(comparison, solver);
+    for (const SolverRow& row : comparison.rows) {
+      if (row.solver != solver || row.step != comparison.at.back()) continue;
+      series.x.push_back(row.vertices);
+      series.y.push_back(value(row));
+    }
+    if (std::any_of(series.y.begin(), series.y.end(), [](double y) { return y > 0; }))
+      plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
+Plot work_precision(const Comparison& comparison) {
+  Plot plot{"Work and precision: " + rounded(comparison.run_duration, 4) + " s of the scene",
+            "wall time, s",
+            "largest distance from the reference, m",
+            true,
+            true,
+            {}};
+  Series others{"other linear solvers", {}, {}, false};
+  for (const IntegratorRow& row : comparison.runs) {
+    if (!row.max_distance || row.reference) continue;
+    if (row.differs_by == DiffersBy::linear_algebra) {
+      others.x.push_back(row.wall_ms / 1000);
+      others.y.push_back(*row.max_distance);
+      continue;
+    }
+    auto series = std::find_if(plot.series.begin(), plot.series.end(),
+                               [&](const Series& s) { return s.name == row.integrator; });
+    if (series == plot.series.end()) series = plot.series.insert(series, Series{row.integrator, {}, {}});
+    series->x.push_back(row.wall_ms / 1000);
+    series->y.push_back(*row.max_distance);
+  }
+  if (!others.x.empty()) plot.series.push_back(std::move(others));
+  return plot;
+}
+
+std::string html_of(const ReportTable& table) {
+  std::string text =
+      "<div class=\"wide\"><table>\n<caption>" + escaped(table.title) + "</caption>\n<thead><tr>";
+  for (const std::string& cell : table.header) text += "<th scope=\"col\">" + escaped(cell) + "</th>";
+  text += "</tr></thead>\n<tbody>\n";
+  for (const Names& row : table.rows) {
+    text += "<tr><th scope=\"row\">" + escaped(row.front()) + "</th>";
+    for (std::size_t c = 1; c < row.size(); ++c)
+      text += (row[c] == "differ" || row[c] == "failed" ? "<td class=\"bad\">" : "<td>") + escaped(row[c]) +
+              "</td>";
+    text += "</tr>\n";
+  }
+  text += "</tbody>\n</table></div>\n";
+  for (const std::string& note : table.notes) text += "<p class=\"note\">" + escaped(note) + "</p>\n";
+  return text;
+}
+
+constexpr const char* style = R"(:root { color-scheme: light dark }
+body { font: 15px/1.5 system-ui, sans-serif; margin: 2em auto; max-width: 92em; padding: 0 1em;
+       background: Canvas; color: CanvasText }
+h1 { font-size: 1.4em } h2 { font-size: 1.15em; margin-top: 2em }
+.wide { overflow-x: auto }
+table { border-collapse: collapse; margin: 1em 0 .3em; font-variant-numeric: tabular-nums; font-size: .87em }
+caption { text-align: left; font-weight: bold; padding: .3em 0; white-space: nowrap }
+th, td { padding: .15em .7em; text-align: right; white-space: nowrap; border-bottom: 1px solid #8884 }
+th:first-child { text-align: left; padding-left: 0 }
+.bad { font-weight: bold; text-decoration: underline }
+.note { margin: .1em 0; font-size: .87em }
+.plots { display: flex; flex-wrap: wrap; gap: 1.5em }
+svg { width: 44em; max-width: 100%; height: auto }
+)";
+
+}  // namespace
+
+std::vector<Plot> plots_of(const Comparison& comparison) {
+  std::vector<Plot> plots;
+  if (!comparison.sizes.empty() && !comparison.rows.empty()) {
+    plots.push_back(size_plot(comparison, "Time against vertices", "set-up and solve, ms",
+                              [](const SolverRow& row) { return row.total_ms(); }));
+    plots.push_back(size_plot(comparison, "Iterations against vertices", "iterations",
+                              [](const SolverRow& row) { return row.report.iterations; }));
+  }
+  for (std::size_t k = 0; k < comparison.rows.size(); ++k) {
+    const SolverRow& row = comparison.rows[k];
+    if (k == 0 || row.step != comparison.rows[k - 1].step || row.vertices != comparison.rows[k - 1].vertices)
+      plots.push_back(convergence_plot(comparison, row.vertices, row.step));
+  }
+  if (!comparison.runs.empty()) plots.push_back(work_precision(comparison));
+  return plots;
+}
+
+std::string compare_html(const Comparison& comparison) {
+  std::string text =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width\">\n<title>drape compare: " +
+      escaped(comparison.scene) + "</title>\n<style>\n" + style +
+      "</style>\n</head>\n<body>\n<h1>drape compare: " + escaped(comparison.scene) + "</h1>\n";
+  for (const std::string& line : headline(comparison)) text += "<p>" + escaped(line) + "</p>\n";
+  text += "<h2>Verdicts</h2>\n<ul>\n";
+  for (const std::string& line : verdicts(comparison)) text += "<li>" + escaped(line) + "</li>\n";
+  text += "</ul>\n<h2>Plots</h2>\n<div class=\"plots\">\n";
+  for (const Plot& plot : plots_of(comparison)) text += svg(plot);
+  text += "</div>\n<h2>Tables</h2>\n";
+  for (const ReportTable& table : tables_of(comparison)) text += html_of(table);
+  return text + "<p>drape " DRAPE_VERSION "</p>\n</body>\n</html>\n";
+}
+
+}  // namespace drape

@@ -1,0 +1,12 @@
+// compare.html: the tables and plots of a comparison in one file that needs nothing else, no network either.
+#pragma once
+
+#include "app/compare/comparison.h"
+#include "app/plot.h"
+
+namespace drape {
+
+std::vector<Plot> plots_of(const Comparison& comparison);
+std::string compare_html(const Comparison& comparison);
+
+}  // namespace drape

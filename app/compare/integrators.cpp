@@ -1,0 +1,154 @@
+#include "app/compare/integrators.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "app/interrupt.h"
+#include "app/simulation.h"
+#include "solver/stopwatch.h"
+
+namespace drape {
+namespace {
+
+double total_energy(const Simulation& s) {
+  return s.system->kinetic_energy(s.state.v) + s.system->elastic_energy(s.state.x) +
+         s.system->gravity_energy(s.state.x);
+}
+
+struct Run {
+  IntegratorRow row;
+  VecX x;  // m, at the end; empty when it did not get there
+  double end_energy = 0;
+};
+
+// One step; false when the run ends with it.
+bool step(Simulation& simulation, IntegratorRow& row, double h) {
+  StepReport report;
+  {
+    const Stopwatch watch(row.wall_ms);
+    report = simulation.integrator->advance(simulation.state, h);
+  }
+  if (report.done && !(simulation.state.x.allFinite() && simulation.state.v.allFinite())) {
+    report.done = false;
+    report.failure.what = "a position or velocity is not a finite number";
+  }
+  if (!report.done) {
+    row.failure = "step " + std::to_string(row.steps + 1) + ": " + one_line(report.failure.what);
+    return false;
+  }
+  ++row.steps;
+  row.steps_cut += report.substeps > 1 ? 1 : 0;
+  row.steps_not_converged += report.converged ? 0 : 1;
+  row.linear_iterations += report.linear_iterations;
+  return true;
+}
+
+Run run_one(const Scene& scene, const std::string& integrator, double h, const SolverChoice& solver,
+            double duration) {
+  Run run;
+  run.row.integrator = integrator;
+  run.row.solver = solver.text;
+  run.row.time_step = h;
+  try {
+    Simulation simulation = make_simulation(scene);
+    StepOptions options = scene.simulation.step;
+    if (solver.tolerance) options.tolerance = *solver.tolerance;
+    simulation.integrator = make_integrator(integrator, *simulation.system, *simulation.constraints,
+                                            make_linear_solver(solver.name), options);
+    const double start = total_energy(simulation);
+    const auto count = static_cast<long>(std::ceil(duration / h * (1 - 1e-9)));
+    for (long k = 0; k < count && !interrupted(); ++k) {
+      const double h_now = std::min(h, duration - static_cast<double>(k) * h);  // the last may be shorter
+      if (!step(simulation, run.row, h_now)) break;
+      simulation.state.time = std::min(duration, static_cast<double>(k + 1) * h);
+      run.row.end = simulation.state.time;
+    }
+    run.end_energy = total_energy(simulation);
+    run.row.energy_drift = run.end_energy - start;
+    if (run.row.failure.empty()) run.x = simulation.state.x;
+  } catch (const std::exception& error) {  // a row, and the others go on
+    run.row.failure = one_line(error.what());
+  }
+  return run;
+}
+
+struct Distance {
+  double max = 0, rms = 0;
+};
+
+Distance distance(const VecX& a, const VecX& b) {
+  Distance d;
+  for (Eigen::Index i = 0; i + 2 < a.size(); i += 3) {
+    const double squared = (a.segment<3>(i) - b.segment<3>(i)).squaredNorm();
+    d.max = std::max(d.max, squared);
+    d.rms += squared;
+  }
+  return {std::sqrt(d.max), std::sqrt(d.rms / std::max(1.0, static_cast<double>(a.size()) / 3))};
+}
+
+std::vector<double> time_steps(const Scene& scene, const CompareOptions& options) {
+  const double h = scene.simulation.time_step;
+  return options.time_steps.empty() ? std::vector<double>{h, h / 2, h / 4} : options.time_steps;
+}
+
+// The finest finished run with the reference solver, of the first integrator that has one.
+const Run* reference_of(const std::vector<Run>& runs, const CompareOptions& options,
+                        const std::string& solver) {
+  for (const std::string& integrator : options.integrators) {
+    const Run* finest = nullptr;
+    for (const Run& run : runs)
+      if (run.row.integrator == integrator && run.row.solver == solver && run.x.size() > 0 &&
+          (!finest || run.row.time_step < finest->row.time_step))
+        finest = &run;
+    if (finest) return finest;
+  }
+  return nullptr;
+}
+
+void measure_distances(std::vector<Run>& runs, const CompareOptions& options, const std::string& solver) {
+  const Run* const reference = reference_of(runs, options, solver);
+  for (Run& run : runs) {
+    run.row.reference = &run == reference;
+    if (run.row.reference) run.row.differs_by = DiffersBy::nothing;
+    if (run.row.solver != solver) run.row.differs_by = DiffersBy::linear_algebra;
+    if (run.x.size() == 0 || !reference) continue;
+    const Distance d = distance(run.x, reference->x);
+    run.row.max_distance = d.max;
+    run.row.rms_distance = d.rms;
+    run.row.energy_error = run.end_energy - reference->end_energy;
+    for (const Run& other : runs)
+      if (run.row.solver != solver && other.row.solver == solver && other.x.size() > 0 &&
+          other.row.integrator == run.row.integrator && other.row.time_step == run.row.time_step)
+        run.row.same_run_distance = distance(run.x, other.x).max;
+  }
+}
+
+}  // namespace
+
+bool compare_integrators(const Scene& scene, const CompareOptions& options, double duration, bool quiet,
+                         Comparison& comparison) {
+  const std::string& reference = scene.simulation.linear_solver;
+  const SolverChoice reference_choice{reference, reference, {}};
+  std::vector<Run> runs;
+  const auto add = [&](const std::string& integrator, double h, const SolverChoice& solver) {
+    if (!quiet)
+      std::fprintf(stderr, "running %s at %s s with %s\n", integrator.c_str(), rounded(h, 4).c_str(),
+                   solver.text.c_str());
+    runs.push_back(run_one(scene, integrator, h, solver, duration));
+    return !interrupted();
+  };
+  const std::vector<double> steps = time_steps(scene, options);
+  for (const std::string& integrator : options.integrators) {
+    for (const double h : steps)
+      if (!add(integrator, h, reference_choice)) return false;
+    for (const SolverChoice& solver : options.solvers)
+      if (solver.text != reference && !add(integrator, steps.front(), solver)) return false;
+  }
+  measure_distances(runs, options, reference);
+  comparison.run_duration = duration;
+  for (Run& run : runs) comparison.runs.push_back(std::move(run.row));
+  return true;
+}
+
+}  // namespace drape

@@ -1,0 +1,198 @@
+#include "app/compare/solvers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "app/interrupt.h"
+#include "app/measure.h"
+#include "app/peak_memory.h"
+#include "solver/stopwatch.h"
+
+namespace drape {
+namespace {
+
+VecX residual_of(const LinearSystem& system, const VecX& dv) {
+  VecX r(dv.size());
+  system.A.multiply(dv, r);
+  r = system.b - r;
+  system.filter.apply(r);
+  return r;
+}
+
+// The vertex where two solutions differ most.
+int worst_row(const VecX& difference) {
+  int worst = 0;
+  for (int i = 1; i < difference.size() / 3; ++i)
+    if (difference.segment<3>(3 * i).norm() > difference.segment<3>(3 * worst).norm()) worst = i;
+  return worst;
+}
+
+// |g| of A g = S u with u at one row; empty when that cannot be solved.
+std::optional<double> influence(LinearSolver& solver, const LinearSystem& system, int row, const Vec3& u) {
+  Filter filter;
+  for (const FilterEntry& e : system.filter.entries()) filter.constrain(e.particle, e.S, Vec3::Zero());
+  VecX right = VecX::Zero(system.b.size()), g = right;
+  right.segment<3>(3 * row) = u;
+  filter.apply(right);
+  if (right.isZero(0)) return 0.0;  // nothing may move there
+  const LinearReport report = solver.solve(system.A, right, filter, LinearOptions{}, g);
+  if (!g.allFinite() || !(report.residual < 1e-2)) return {};
+  return g.norm();
+}
+
+// What a row differs by, in words; `asked`: the relative residual that would have done.
+std::string difference_text(const SolverRow& row, const std::string& where, double asked, bool held) {
+  std::string text = "differ: " + where + "step " + std::to_string(row.step);
+  const std::string reason(name(row.report.reason));
+  if (!row.failure.empty()) return text + ", failed: " + row.failure;
+  if (!row.finite) return text + ", not finite numbers (" + reason + ")";
+  if (row.difference > 0)
+    text += ", vertex " + std::to_string(row.vertex) + " of cloth '" + row.cloth + "', by " +
+            rounded(row.difference, 2) + " m/s (allowed " +
+            (row.allowed ? rounded(*row.allowed, 2) + " m/s" : "not known") + ")";
+  if (!(row.residual <= asked)) {
+    text += "; residual " + rounded(row.residual, 2) + ", asked " + rounded(asked, 2);
+    if (row.report.reason != StopReason::converged) text += " (" + reason + ")";
+  }
+  if (!held) text += "; a constraint is missed by " + rounded(row.violation, 2) + " m/s";
+  return text;
+}
+
+}  // namespace
+
+double true_residual(const LinearSystem& system, const VecX& dv) { return residual_of(system, dv).norm(); }
+
+double reference_impulse(const LinearSystem& system) {
+  VecX z = VecX::Zero(system.b.size());
+  for (const FilterEntry& e : system.filter.entries()) z.segment<3>(3 * e.particle) = e.z;
+  return std::max(residual_of(system, z).norm(), system.options.scale);
+}
+
+double constraint_violation(const LinearSystem& system, const VecX& dv) {
+  double worst = 0;
+  for (const FilterEntry& e : system.filter.entries()) {
+    const Vec3 own = dv.segment<3>(3 * e.particle);
+    const double violation = (own - e.S * own - e.z).norm();
+    if (!(violation <= worst)) worst = violation;  // not a number counts as worst
+  }
+  return worst;
+}
+
+SolverBench::SolverBench(const std::vector<SolverChoice>& choices, double tolerance, int repeats,
+                         std::string where)
+    : tolerance_(tolerance), repeats_(repeats), where_(std::move(where)) {
+  for (const SolverChoice& choice : choices)
+    entries_.push_back({choice, make_linear_solver(choice.name), true, {}});
+}
+
+// The first call at this step: its result counts.
+void SolverBench::solve_first(Entry& entry, const LinearSystem& system, LinearOptions options,
+                              SolverRow& row) const {
+  std::optional<PeakMemory> memory;
+  if (entry.fresh) memory.emplace();
+  options.history = &row.history;
+  entry.dv = system.guess;
+  {
+    const Stopwatch watch(row.first_ms);
+    row.report = entry.solver->solve(system.A, system.b, system.filter, options, entry.dv);
+  }
+  row.first_solve = std::exchange(entry.fresh, false);
+  if (memory) row.peak_bytes = memory->bytes();
+}
+
+void SolverBench::time_repeats(Entry& entry, const LinearSystem& system, const LinearOptions& options,
+                               SolverRow& row) const {
+  std::vector<double> setup, solve;
+  for (int k = 0; k < repeats_ && !interrupted(); ++k) {
+    VecX dv = system.guess;
+    double ms = 0;
+    LinearReport report;
+    {
+      const Stopwatch watch(ms);
+      report = entry.solver->solve(system.A, system.b, system.filter, options, dv);
+    }
+    setup.push_back(std::min(ms, report.setup_ms));
+    solve.push_back(ms - setup.back());
+  }
+  row.setup_ms = distribution(setup).median;
+  row.solve_ms = distribution(solve).median;
+}
+
+SolverRow SolverBench::measure(Entry& entry, const LinearSystem& system, double reference) const {
+  SolverRow row;
+  row.solver = entry.choice.text;
+  LinearOptions options = system.options;
+  // The last solve of a step may have been asked for less, when contacts were still being looked for.
+  options.tolerance = row.tolerance = entry.choice.tolerance.value_or(tolerance_);
+  try {
+    solve_first(entry, system, options, row);
+    row.finite = entry.dv.allFinite();
+    if (row.finite) time_repeats(entry, system, options, row);
+  } catch (const std::exception& error) {  // such as not enough memory: the other solvers go on
+    row.finite = false;
+    row.failure = one_line(error.what());
+  }
+  const double impulse = true_residual(system, entry.dv);
+  row.residual = reference > 0 ? impulse / reference : impulse;
+  row.violation = constraint_violation(system, entry.dv);
+  return row;
+}
+
+std::vector<SolverRow> SolverBench::compare(const LinearSystem& system, int step,
+                                            const Simulation& simulation) {
+  const double reference = drape::reference_impulse(system);
+  std::vector<SolverRow> rows;
+  for (Entry& entry : entries_) {
+    if (interrupted()) return {};
+    rows.push_back(measure(entry, system, reference));
+    rows.back().vertices = simulation.state.particles();
+    rows.back().step = step;
+    rows.back().time = simulation.state.time;
+    rows.back().constrained = static_cast<int>(system.filter.entries().size());
+  }
+  const auto better = [](const SolverRow& a, const SolverRow& b) {
+    return a.finite != b.finite ? a.finite : a.residual < b.residual;
+  };
+  const auto best =
+      static_cast<std::size_t>(std::min_element(rows.begin(), rows.end(), better) - rows.begin());
+  rows[best].most_accurate = rows[best].finite;
+  const std::unique_ptr<LinearSolver> judge = make_linear_solver(entries_[best].choice.name);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (interrupted()) return {};
+    if (rows[k].finite && k != best)
+      find_difference(rows[k], entries_[best].dv - entries_[k].dv, rows[best], system, reference, simulation,
+                      *judge);
+    pass_verdict(rows[k], rows[best].finite ? entries_[best].dv.lpNorm<Eigen::Infinity>() : 0);
+  }
+  return rows;
+}
+
+// Where the row is farthest from the most accurate one, and how far its tolerance lets it be there.
+void SolverBench::find_difference(SolverRow& row, const VecX& difference, const SolverRow& best,
+                                  const LinearSystem& system, double reference, const Simulation& simulation,
+                                  LinearSolver& judge) const {
+  const int worst = worst_row(difference);
+  const Vec3 u = difference.segment<3>(3 * worst);
+  if (u.isZero(0)) return;
+  row.difference = u.norm();
+  const int particle = system.A.pattern().particle_of()[static_cast<std::size_t>(worst)];
+  const Cloth& cloth = simulation.cloth_of(particle);
+  row.vertex = particle - cloth.first_particle;
+  row.cloth = cloth.name;
+  const double asked = residual_slack * std::max(tolerance_, finest_tolerance);
+  const std::optional<double> g = influence(judge, system, worst, u / row.difference);
+  const double roundoff = finest_tolerance * system.solution.lpNorm<Eigen::Infinity>();
+  if (g) row.allowed = *g * reference * (asked + best.residual) + roundoff;
+}
+
+// largest: of the most accurate dv [m/s].
+void SolverBench::pass_verdict(SolverRow& row, double largest) const {
+  const double asked = std::max(tolerance_, finest_tolerance);
+  const bool held = row.violation <= finest_tolerance * (largest + 1);
+  const bool explained = !row.allowed || row.difference <= *row.allowed;
+  row.agrees = row.finite && row.residual <= residual_slack * asked && held && explained;
+  row.verdict = row.agrees ? "agree" : difference_text(row, where_, asked, held);
+}
+
+}  // namespace drape

@@ -1,0 +1,43 @@
+#include "app/peak_memory.h"
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
+namespace drape {
+namespace {
+
+// "VmRSS:    1234 kB" of /proc/self/status, in bytes.
+std::optional<double> status(const std::string& key) {
+  std::ifstream file("/proc/self/status");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with(key + ":")) return 1024 * std::stod(line.substr(key.size() + 1));
+  return {};
+}
+
+bool set_peak_back() {
+  std::ofstream file("/proc/self/clear_refs");
+  file << "5" << std::flush;
+  return file.good();
+}
+
+}  // namespace
+
+PeakMemory::PeakMemory() {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
+  if (set_peak_back()) before_ = status("VmRSS");
+}
+
+std::optional<double> PeakMemory::bytes() const {
+  const std::optional<double> peak = status("VmHWM");
+  if (!before_ || !peak) return {};
+  return std::max(0.0, *peak - *before_);
+}
+
+}  // namespace drape
