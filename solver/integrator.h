@@ -52,6 +52,9 @@ class Integrator {
   virtual StepReport advance(State& state, double h) = 0;  // h [s]
 };
 
+// Throws InputError unless h is a time step and the state is one of the system.
+void check_step(const System& system, const State& state, double h);
+
 // "implicit-euler". Throws InputError for a name that integrators() does not list.
 std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,
                                             std::unique_ptr<LinearSolver> solver,
