@@ -4,6 +4,7 @@
 
 #include "mesh/obj.h"
 #include "solver/bdf.h"
+#include "solver/explicit.h"
 
 namespace drape {
 
@@ -16,8 +17,11 @@ void check_step(const System& system, const State& state, double h) {
 }
 
 std::vector<IntegratorInfo> integrators() {
-  return {{"implicit-euler", "Baraff & Witkin's implicit step, 1 to n Newton iterations (default)"},
-          {"bdf2", "backward differences of order 2, 1 to n Newton iterations"}};
+  std::vector<IntegratorInfo> all = {
+      {"implicit-euler", "Baraff & Witkin's implicit step, 1 to n Newton iterations (default)"},
+      {"bdf2", "backward differences of order 2, 1 to n Newton iterations"}};
+  for (const Tableau& tableau : tableaux()) all.push_back({tableau.name, tableau.summary});
+  return all;
 }
 
 std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,
@@ -26,6 +30,8 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, System& syste
   if (name == "implicit-euler")
     return std::make_unique<Bdf>(system, constraints, std::move(solver), options, 1);
   if (name == "bdf2") return std::make_unique<Bdf>(system, constraints, std::move(solver), options, 2);
+  for (const Tableau& tableau : tableaux())
+    if (name == tableau.name) return std::make_unique<Explicit>(tableau, system, constraints, options);
   std::string names;
   for (const IntegratorInfo& info : integrators())
     names += (names.empty() ? "" : ", ") + std::string(info.name);

@@ -54,8 +54,10 @@ inline Motion drum() {
   m.system.add(Gravity{});
   m.start.x *= 1.1;
   for (int i = 0; i < 25; ++i) {
-    if (i % 5 == 0 || i % 5 == 4 || i < 5 || i >= 20) m.constraints.pin(i);
-    else m.start.x[3 * i + 1] += 0.01 * (i % 3);
+    if (i % 5 == 0 || i % 5 == 4 || i < 5 || i >= 20)
+      m.constraints.pin(i);
+    else
+      m.start.x[3 * i + 1] += 0.01 * (i % 3);
   }
   return m;
 }
@@ -99,9 +101,7 @@ inline State fine_reference(const Motion& m, int steps = 4000) {
   return s;
 }
 
-inline StepOptions precise() {
-  return {.newton_tolerance = 1e-12, .tolerance = 1e-12};
-}
+inline StepOptions precise() { return {.newton_tolerance = 1e-12, .tolerance = 1e-12}; }
 
 // The end of the motion in so many steps.
 inline State run(Motion& m, std::string_view name, int steps, StepOptions options = precise()) {

@@ -79,8 +79,8 @@ TEST_CASE("bdf2 keeps its order when steps change", "[integrators]") {
   std::vector<double> error;
   for (int steps : {400, 800, 1600}) {
     State s = motion.start;
-    auto stepper =
-        make_integrator("bdf2", motion.system, motion.constraints, make_linear_solver("eigen-ldlt"), precise());
+    auto stepper = make_integrator("bdf2", motion.system, motion.constraints,
+                                   make_linear_solver("eigen-ldlt"), precise());
     for (int n = 0; n < steps; ++n)  // one long, one short
       REQUIRE(stepper->advance(s, motion.duration / steps * (n % 2 ? 0.7 : 1.3)).done);
     error.push_back(distance(s, exact));
@@ -150,6 +150,65 @@ TEST_CASE("an oscillator loses what its scheme takes, and runs as late", "[integ
   CHECK(compared >= 6);
 }
 
+namespace {
+
+// A chain along x between two pins, stretched by a tenth, that shakes a little: does it still after so many
+// steps?
+bool stays_calm(std::string_view name, double h, double stiffness, double mass, int links) {
+  std::vector<PairForce<TensionSpring>::Element> elements;
+  for (int k = 0; k < links; ++k) elements.push_back({k, k + 1, {1, stiffness}});
+  System system(std::vector<double>(static_cast<std::size_t>(links) + 1, mass));
+  system.add(std::make_unique<PairForce<TensionSpring>>(std::move(elements)));
+  Constraints constraints;
+  constraints.pin({0, links});
+  State state{0, VecX::Zero(3 * (links + 1)), VecX::Zero(3 * (links + 1))};
+  for (int k = 0; k <= links; ++k) state.x[3 * k] = 1.1 * k;
+  const VecX rest = state.x;
+  for (int k = 1; k < links; ++k) state.x[3 * k] += 1e-8 * (k % 2 ? 1 : -1);
+  auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+  for (int n = 0; n < 1000; ++n)
+    if (!stepper->advance(state, h).done || (state.x - rest).norm() > 1e-3) return false;
+  return (state.x - rest).norm() < 1e-6;
+}
+
+}  // namespace
+
+TEST_CASE("the explicit schemes are stable up to their limits, to 2 %", "[integrators]") {
+  // validation.md 4.12; the stiffest vibration of n links between two pins.
+  const double k = 50, m = 0.02;
+  const int links = 20;
+  const double omega = 2 * std::sqrt(k / m) * std::sin(0.5 * M_PI * (links - 1) / links);
+  for (const auto& [name, limit] : {std::pair{"symplectic-euler", 2.0}, {"rk4", 2.8284}}) {
+    INFO(name);
+    CHECK(stays_calm(name, 0.98 * limit / omega, k, m, links));
+    CHECK_FALSE(stays_calm(name, 1.02 * limit / omega, k, m, links));
+  }
+  for (const char* name : {"explicit-euler", "midpoint"}) {
+    INFO(name);
+    CHECK_FALSE(stays_calm(name, 0.8 / omega, k, m, links));
+  }
+}
+
+TEST_CASE("an explicit step that leaves the numbers is a failure that says what to do", "[integrators]") {
+  for (const std::string& name : integrator_names()) {
+    if (!is_explicit(name)) continue;
+    Motion m = drum();
+    auto stepper = make_integrator(name, m.system, m.constraints, make_linear_solver("mpcg"));
+    State state = m.start, before = state;
+    StepReport report;
+    for (int n = 0; n < 3000 && report.done; ++n) {
+      before = state;
+      report = stepper->advance(state, 1);
+    }
+    INFO(name);
+    CHECK_FALSE(report.done);
+    CHECK_THAT(report.failure.what, Catch::Contains("shorter time step"));
+    CHECK(report.failure.particle >= 0);
+    CHECK(state.x == before.x);
+    CHECK(state.time == before.time);
+  }
+}
+
 TEST_CASE("order 1 is Baraff & Witkin's step", "[integrators]") {
   // (M + h D + h^2 K) dv = h (f - h K v), dense, K and D by differences of the force: taut springs, so that
   // nothing is clamped.
@@ -162,8 +221,10 @@ TEST_CASE("order 1 is Baraff & Witkin's step", "[integrators]") {
   for (Eigen::Index k = 0; k < n; ++k) {
     VecX e = VecX::Zero(n);
     e[k] = d;
-    K.col(k) = -(m.system.force(m.start.x + e, m.start.v) - m.system.force(m.start.x - e, m.start.v)) / (2 * d);
-    D.col(k) = -(m.system.force(m.start.x, m.start.v + e) - m.system.force(m.start.x, m.start.v - e)) / (2 * d);
+    K.col(k) =
+        -(m.system.force(m.start.x + e, m.start.v) - m.system.force(m.start.x - e, m.start.v)) / (2 * d);
+    D.col(k) =
+        -(m.system.force(m.start.x, m.start.v + e) - m.system.force(m.start.x, m.start.v - e)) / (2 * d);
   }
   Eigen::MatrixXd A = h * D + h * h * K;
   for (Eigen::Index k = 0; k < n; ++k) A(k, k) += m.system.masses()[static_cast<std::size_t>(k / 3)];

@@ -109,7 +109,8 @@ TEST_CASE("what lands does not bounce, whatever the integrator", "[integrators]"
   }
 }
 
-TEST_CASE("a particle on an incline sticks below the angle of friction and slides above it", "[integrators]") {
+TEST_CASE("a particle on an incline sticks below the angle of friction and slides above it",
+          "[integrators]") {
   const double mu = 0.3, g = 9.81;
   for (const std::string& name : integrator_names()) {
     for (const double slope : {0.2, 0.6}) {
@@ -159,7 +160,8 @@ TEST_CASE("every integrator gives the same bits with 1, 2 and 7 threads", "[inte
       all << state.x, state.v;
       if (first.size() == 0) first = all;
       INFO(name << ", " << t << " threads");
-      CHECK(std::memcmp(all.data(), first.data(), static_cast<std::size_t>(all.size()) * sizeof(double)) == 0);
+      CHECK(std::memcmp(all.data(), first.data(), static_cast<std::size_t>(all.size()) * sizeof(double)) ==
+            0);
     }
   }
 }
