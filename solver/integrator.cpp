@@ -5,6 +5,7 @@
 #include "mesh/obj.h"
 #include "solver/bdf.h"
 #include "solver/explicit.h"
+#include "solver/sundials_integrators.h"
 
 namespace drape {
 
@@ -21,6 +22,9 @@ std::vector<IntegratorInfo> integrators() {
       {"implicit-euler", "Baraff & Witkin's implicit step, 1 to n Newton iterations (default)"},
       {"bdf2", "backward differences of order 2, 1 to n Newton iterations"}};
   for (const Tableau& tableau : tableaux()) all.push_back({tableau.name, tableau.summary});
+#ifdef DRAPE_HAVE_SUNDIALS
+  all.push_back({"newton-kinsol", "the equation of implicit Euler solved by SUNDIALS KINSOL"});
+#endif
   return all;
 }
 
@@ -32,6 +36,9 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, System& syste
   if (name == "bdf2") return std::make_unique<Bdf>(system, constraints, std::move(solver), options, 2);
   for (const Tableau& tableau : tableaux())
     if (name == tableau.name) return std::make_unique<Explicit>(tableau, system, constraints, options);
+#ifdef DRAPE_HAVE_SUNDIALS
+  if (name == "newton-kinsol") return make_newton_kinsol(system, constraints, std::move(solver), options);
+#endif
   std::string names;
   for (const IntegratorInfo& info : integrators())
     names += (names.empty() ? "" : ", ") + std::string(info.name);
