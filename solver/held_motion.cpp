@@ -1,6 +1,7 @@
 #include "solver/held_motion.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "mesh/parallel.h"
 #include "solver/stopwatch.h"
@@ -43,7 +44,7 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
   v_new_ = v;
   if (!constraints_.obstacles().empty()) {
     set_free(v, h);
-    solve_contacts(state, x, h, options, report);
+    solve_contacts(state, x, v, h, options, report);
     const Stopwatch watch(report.collide_ms);
     const ContactReport contact = constraints_.end_step(x_new_, v_new_);
     report.contacts = contact.contacts;
@@ -69,14 +70,28 @@ void HeldMotion::set_free(const VecX& v, double h) {
   }
 }
 
-void HeldMotion::solve_contacts(const State& state, const VecX& x, double h, const StepOptions& options,
-                                StepReport& report) {
+// What was held and is let go, or comes loose, moves from the next step on: h (I - S) M^-1 f is explicit, and
+// where the cloth is stiff and h long it is far more than the particle would gain.
+void HeldMotion::let_go(const VecX& x, const VecX& v) {
+  for (const Contact& c : constraints_.touching()) {
+    if (c.active() && c.grip != Grip::breaking_loose) continue;
+    const auto held = std::find_if(held_.entries().begin(), held_.entries().end(),
+                                   [&](const FilterEntry& e) { return e.particle == c.particle; });
+    if (held == held_.entries().end() || (c.active() && !held->S.isZero(0))) continue;
+    x_new_.segment<3>(3 * c.particle) = x.segment<3>(3 * c.particle);
+    v_new_.segment<3>(3 * c.particle) = v.segment<3>(3 * c.particle);
+  }
+}
+
+void HeldMotion::solve_contacts(const State& state, const VecX& x, const VecX& v, double h,
+                                const StepOptions& options, StepReport& report) {
   const Stopwatch watch(report.collide_ms);
   double weight = 0;
   for (double m : system_.masses()) weight = std::max(weight, m);
   const double noise = 1e-9 * weight * h * system_.gravity_acceleration().norm();
   for (int round = 0;; ++round) {
     move_within_constraints(state, x, h);
+    let_go(x, v);
     if (round == options.max_contact_solves) return;
     bool changed = constraints_.react(v_new_, r_, noise);
     if (constraints_.check_paths(x_new_)) changed = true;

@@ -5,7 +5,8 @@
 //             a particle would have had,
 //               v_free = v_1 - z + h (I - S) M^-1 f(x_1, v_1),
 //             come the impulse that holds it, r = m (v - v_free) and friction, hence what is released, sticks
-//             and slides; what touches moves to x = x_n + correction + h v.      [constraints/contact.h]
+//             and slides (what is let go moves from the next step on); what touches moves to x = x_n +
+//             correction + h v.      [constraints/contact.h]
 //   So contact is of first order in h, whatever the method between; the rest keeps the method's order.
 // x [m], v [m/s], h [s], f [N], r [N s].
 #pragma once
@@ -32,7 +33,8 @@ class HeldMotion {
  private:
   void set_free(const VecX& v, double h);
   void move_within_constraints(const State& state, const VecX& x, double h);
-  void solve_contacts(const State& state, const VecX& x, double h, const StepOptions& options,
+  void let_go(const VecX& x, const VecX& v);
+  void solve_contacts(const State& state, const VecX& x, const VecX& v, double h, const StepOptions& options,
                       StepReport& report);
 
   System& system_;

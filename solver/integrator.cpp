@@ -24,6 +24,7 @@ std::vector<IntegratorInfo> integrators() {
   for (const Tableau& tableau : tableaux()) all.push_back({tableau.name, tableau.summary});
 #ifdef DRAPE_HAVE_SUNDIALS
   all.push_back({"newton-kinsol", "the equation of implicit Euler solved by SUNDIALS KINSOL"});
+  for (const IntegratorInfo& info : sundials_ode_methods()) all.push_back(info);
 #endif
   return all;
 }
@@ -38,6 +39,8 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, System& syste
     if (name == tableau.name) return std::make_unique<Explicit>(tableau, system, constraints, options);
 #ifdef DRAPE_HAVE_SUNDIALS
   if (name == "newton-kinsol") return make_newton_kinsol(system, constraints, std::move(solver), options);
+  for (const IntegratorInfo& info : sundials_ode_methods())
+    if (name == info.name) return make_sundials_ode(name, system, constraints, std::move(solver), options);
 #endif
   std::string names;
   for (const IntegratorInfo& info : integrators())

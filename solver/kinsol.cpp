@@ -3,9 +3,8 @@
 //   v = its target in the locked directions;   Newton's direction A dv = -F, A = M + h D + h^2 K of here;
 //   KINSOL looks along it for less |F|.                        [Dennis & Schnabel 1996, algorithm A6.3.1]
 // When the contacts do not agree with the solution, they change and KINSOL begins again from it. Should the
-// search along the line give up, it is tried again with stiffer K (chords, then the majorant); then the step is
-// halved.
-// x [m], v [m/s], M [kg], f [N], h [s], F [N s].
+// search along the line give up, it is tried again with stiffer K (chords, then the majorant); then the step
+// is halved. x [m], v [m/s], M [kg], f [N], h [s], F [N s].
 #include <kinsol/kinsol.h>
 #include <kinsol/kinsol_ls.h>
 
@@ -35,7 +34,8 @@ class NewtonKinsol final : public Integrator {
     KINSetUserData(kinsol_, this);
     KINInit(
         kinsol_,
-        [](N_Vector v, N_Vector F, void* self) { return static_cast<NewtonKinsol*>(self)->residual(v, F); }, u);
+        [](N_Vector v, N_Vector F, void* self) { return static_cast<NewtonKinsol*>(self)->residual(v, F); },
+        u);
     linear_ = sundials::our_solver<NewtonKinsol, SUNLINEARSOLVER_DIRECT>(*this, context_);
     matrix_ = SUNMatNewEmpty(context_);
     matrix_->ops->getid = [](SUNMatrix) { return SUNMATRIX_CUSTOM; };
@@ -121,7 +121,8 @@ bool NewtonKinsol::attempt(State& state, double h) {
   scale_ = 0;
   const VecX f = system_.force(state.x, state.v);
   for (int i = 0; i < system_.particles(); ++i)  // an impulse that is known to act
-    scale_ += std::pow(system_.masses()[static_cast<std::size_t>(i)] * system_.gravity_acceleration().norm(), 2);
+    scale_ +=
+        std::pow(system_.masses()[static_cast<std::size_t>(i)] * system_.gravity_acceleration().norm(), 2);
   scale_ = h * std::max({std::sqrt(scale_), 1e-3 * std::sqrt(dot(f, f)), 1e-12});
   f_scale_.setConstant(1 / scale_);
   {

@@ -73,6 +73,46 @@ TEST_CASE("every integrator has its order where the stiffness is not the exact o
       check_order(motion, name, order == 1 ? 1600 : order == 2 ? 200 : 50, order == 4 ? 0.2 : 0.1);
 }
 
+TEST_CASE("inner steps reach the tolerance asked for", "[integrators]") {
+  for (Motion (*make)() : {pendulum, drum, buckled}) {
+    Motion motion = make();
+    const State exact = fine_reference(motion);
+    for (const std::string& name : integrator_names()) {
+      if (order_of(name) != 0) continue;
+      double before = 1;
+      for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+        StepOptions options = precise();
+        options.relative_tolerance = tolerance;
+        options.absolute_tolerance_position = options.absolute_tolerance_velocity = tolerance;
+        const double error = distance(run(motion, name, 10, options), exact);
+        INFO(name << ": tolerance " << tolerance << ", error " << error);
+        CHECK(error < 100 * tolerance);
+        CHECK(error < 0.3 * before);
+        before = error;
+      }
+    }
+  }
+}
+
+TEST_CASE("inner steps are bounded, and the failure says what to do", "[integrators]") {
+  for (const std::string& name : integrator_names()) {
+    if (name != "cvode-adams" && name != "arkode-erk") continue;
+    Chain chain(20, 1, 1e-3, 1e6, {1, 0, 0});
+    chain.system.add(Gravity{});
+    chain.constraints.pin({0, 20});
+    StepOptions options;
+    options.max_inner_steps = 50;
+    auto stepper =
+        make_integrator(name, chain.system, chain.constraints, make_linear_solver("mpcg"), options);
+    const State before = chain.state;
+    const StepReport report = stepper->advance(chain.state, 0.1);
+    INFO(name);
+    CHECK_FALSE(report.done);
+    CHECK_THAT(report.failure.what, Catch::Contains("50 inner steps") && Catch::Contains("cvode-bdf"));
+    CHECK(chain.state.x == before.x);
+  }
+}
+
 TEST_CASE("bdf2 keeps its order when steps change", "[integrators]") {
   Motion motion = pendulum();
   const State exact = fine_reference(motion);
