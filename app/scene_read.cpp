@@ -28,6 +28,12 @@ void read_step(Table& table, StepOptions& step) {
   table.read("max_linear_iterations", step.max_linear_iterations, 0);
   table.read("max_contact_solves", step.max_contact_solves, 1);
   table.read("max_halvings", step.max_halvings, 0);
+  table.read("relative_tolerance", step.relative_tolerance, dimension::number, Range::positive);
+  table.read("absolute_tolerance_position", step.absolute_tolerance_position, dimension::length,
+             Range::positive);
+  table.read("absolute_tolerance_velocity", step.absolute_tolerance_velocity, dimension::speed,
+             Range::positive);
+  table.read("max_inner_steps", step.max_inner_steps, 1);
 }
 
 SimulationOptions read_simulation(const Table* given) {

@@ -15,7 +15,7 @@ install(TARGETS drape EXPORT drapeTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LI
 install(EXPORT drapeTargets NAMESPACE drape:: DESTINATION ${package_dir})
 
 # As 0 or 1, so that the file reads if(NOT 0).
-foreach(name BUILD_SHARED_LIBS DRAPE_HAVE_CHOLMOD)
+foreach(name BUILD_SHARED_LIBS DRAPE_HAVE_CHOLMOD DRAPE_HAVE_SUNDIALS)
   if(${name})
     set(${name} 1)
   else()

@@ -57,6 +57,8 @@ class Constraints {
   bool check_paths(const VecX& x_new);
   ContactReport end_step(VecX& x_new, VecX& v_new);
 
+  // Of the step under way, and after it; those released in it have no planes.
+  const std::vector<Contact>& touching() const { return trial_; }
   const std::vector<Contact>& contacts() const { return committed_; }  // of the last completed step
 
   // How deep each particle is inside a body: 0 outside [m]. For the start and the end of a run.

@@ -7,6 +7,6 @@
 #include "mesh/obj.h"
 #include "mesh/threads.h"
 #include "mesh/topology.h"
+#include "solver/bdf.h"
 #include "solver/fabric.h"
-#include "solver/implicit_euler.h"
 #include "solver/system.h"

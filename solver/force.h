@@ -37,7 +37,7 @@ class Force {
   virtual double dissipation(const VecX& /*x*/, const VecX& /*v*/) const { return 0; }  // v . D v / 2 [W]
   virtual void add_force(const VecX& x, const VecX& v, VecX& f) const = 0;              // f += force [N]
   // The two sides of an implicit step, linearised at (x, v):  A += c D + c^2 K,  b += c (f - K y).
-  // c [s], y [m]: see solver/implicit_euler.h.
+  // c [s], y [m]: see solver/bdf.h.
   virtual void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,
                               BlockMatrix& A, VecX& b) const = 0;
 };

@@ -20,6 +20,12 @@ struct StepOptions {
   int max_contact_solves = 8;  // how often a step may be solved again because a contact changed
   int max_rescues = 20;  // further Newton iterations when a full one would raise the incremental potential
   int max_halvings = 6;  // how often a failed step may be halved before it is given up
+  // Of the integrators with inner steps (cvode-, arkode-): the error of one, relative to |x| and |v|, and
+  // below which it does not matter.
+  double relative_tolerance = 1e-4;
+  double absolute_tolerance_position = 1e-5;  // m
+  double absolute_tolerance_velocity = 1e-3;  // m/s
+  int max_inner_steps = 5000;                 // in a step; more is a failure
 };
 
 // Why and where a step failed.
@@ -33,6 +39,7 @@ struct StepReport {
   bool done = true;           // false: the state is as it was before
   StepFailure failure;        // when not done
   int substeps = 1;           // pieces the step was cut into, because it failed whole
+  int inner_steps = 0;        // of the integrators that choose them
   int newton_iterations = 0;  // these summed over the substeps
   int linear_solves = 0;
   int linear_iterations = 0;
@@ -51,6 +58,9 @@ class Integrator {
   virtual std::string_view name() const = 0;
   virtual StepReport advance(State& state, double h) = 0;  // h [s]
 };
+
+// Throws InputError unless h is a time step and the state is one of the system.
+void check_step(const System& system, const State& state, double h);
 
 // "implicit-euler". Throws InputError for a name that integrators() does not list.
 std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,

@@ -1,4 +1,4 @@
-#include "solver/implicit_euler.h"
+#include "solver/bdf.h"
 
 #include <cmath>
 
@@ -8,16 +8,18 @@
 
 namespace drape {
 
-ImplicitEuler::ImplicitEuler(System& system, Constraints& constraints, std::unique_ptr<LinearSolver> solver,
-                             const StepOptions& options)
-    : system_(system), constraints_(constraints), solver_(std::move(solver)), options_(options) {}
+Bdf::Bdf(System& system, Constraints& constraints, std::unique_ptr<LinearSolver> solver,
+         const StepOptions& options, int order)
+    : system_(system),
+      constraints_(constraints),
+      solver_(std::move(solver)),
+      options_(options),
+      order_(order) {
+  if (order != 1 && order != 2) throw InputError("bdf order = " + std::to_string(order) + ": it is 1 or 2");
+}
 
-StepReport ImplicitEuler::advance(State& state, double h) {
-  if (!(h > 0) || !std::isfinite(h))
-    throw InputError("time step = " + std::to_string(h) + " s: a time step is greater than zero");
-  if (state.particles() != system_.particles() || state.v.size() != state.x.size())
-    throw InputError("state: " + std::to_string(state.particles()) + " particles, but the system has " +
-                     std::to_string(system_.particles()));
+StepReport Bdf::advance(State& state, double h) {
+  check_step(system_, state, h);
   StepReport report;
   {
     const Stopwatch watch(report.step_ms);
@@ -25,7 +27,7 @@ StepReport ImplicitEuler::advance(State& state, double h) {
     int halvings = 0, pieces_left = 1;
     report.substeps = 0;
     while (pieces_left > 0) {
-      if (attempt(state, std::ldexp(h, -halvings), report)) {
+      if (attempt(state, std::ldexp(h, -halvings), halvings == 0, report)) {
         --pieces_left;
         ++report.substeps;
       } else if (halvings == options_.max_halvings) {
@@ -44,19 +46,21 @@ StepReport ImplicitEuler::advance(State& state, double h) {
   return report;
 }
 
-void ImplicitEuler::resize() {
+void Bdf::resize() {
   const auto& pattern = system_.bind();
   if (A_ && &A_->pattern() == pattern.get()) return;
   A_ = std::make_unique<BlockMatrix>(pattern);
   const Eigen::Index n = 3 * system_.particles();
-  for (VecX* vector : {&x_, &v_, &x_bar_, &y_, &x_new_, &v_new_, &v_base_, &guess_, &b_, &b_friction_,
-                       &dv_rows_, &b_rows_, &dv_})
+  for (VecX* vector : {&x_, &v_, &x_bar_, &v_bar_, &y_, &x_new_, &v_new_, &v_base_, &guess_, &b_,
+                       &b_friction_, &dv_rows_, &b_rows_, &dv_})
     vector->setZero(n);
+  past_.touched.assign(static_cast<std::size_t>(system_.particles()), 0);
+  past_.h = 0;
   filter_.reserve(static_cast<std::size_t>(system_.particles()));
   rubbed_.reserve(static_cast<std::size_t>(system_.particles()));
 }
 
-bool ImplicitEuler::attempt(State& state, double h, StepReport& report) {
+bool Bdf::attempt(State& state, double h, bool whole, StepReport& report) {
   resize();
   const double fall = h * system_.gravity_acceleration().norm();
   weight_impulse_ = fall_energy_ = 0;
@@ -66,39 +70,36 @@ bool ImplicitEuler::attempt(State& state, double h, StepReport& report) {
   }
   weight_impulse_ = fall * std::sqrt(weight_impulse_);
 
-  guess(h);
+  choose_coefficients(state, h, whole);
   {
     const Stopwatch watch(report.collide_ms);
     constraints_.begin_step(state.x, state.v, system_.masses(), h);
   }
   x_ = state.x;
   v_ = state.v;
+  if (back_ > 0) look_back(state);
+  guess();
   LinearReport linear;
   bool full = false;  // the last Newton step was taken whole
   for (int k = 0; k < options_.newton_iterations || !full; ++k) {
     if (k == options_.newton_iterations + options_.max_rescues)
       return fail(report, "no step lowers the energy", linear);
     // Linearise at (x, v): A = M + c D + c^2 K, b = M (v_bar - v) + c (f - K y).
-    x_bar_ = state.x;
-    if (constraints_.correction().size() > 0) x_bar_ += constraints_.correction();
-    y_ = x_bar_ + h * v_ - x_;
-    {
-      const Stopwatch watch(report.assemble_ms);
-      assemble(state.v, h, full || k == 0 ? Stiffness::chord : Stiffness::majorant);
-    }
+    const Stiffness stiffness = full || k == 0 ? Stiffness::chord : Stiffness::majorant;
+    linearise(state, stiffness, report);
     if (k > 0) {
-      if (full && nonlinear_residual(h) <= options_.newton_tolerance * weight_impulse_) break;
+      if (full && nonlinear_residual() <= options_.newton_tolerance * weight_impulse_) break;
       guess_.setZero();
     }
     // Solve S (A dv - b) = 0 until the contacts agree with the solution.
-    linear = solve_within_contacts(h, report);
+    linear = solve_within_contacts(state, stiffness, report);
     ++report.newton_iterations;
     if (!good(linear))
       return fail(report, "linear solve: " + std::string(drape::name(linear.reason)), linear);
     // v += dv, x = x_bar + c v
-    full = descend(state.v, k == 0, h);
+    full = descend(k == 0);
     if (!full) ++report.rescues;
-    x_ = x_bar_ + h * v_;
+    x_ = x_bar_ + c_ * v_;
     if (!x_.allFinite()) return fail(report, "the new positions are not finite numbers", linear);
   }
   x_new_ = x_;
@@ -112,32 +113,95 @@ bool ImplicitEuler::attempt(State& state, double h, StepReport& report) {
   }
   report.residual = std::max(report.residual, linear.residual);
   report.converged = report.converged && linear.reason == StopReason::converged;
+  if (order_ == 2) remember(state, h);
   state.x = x_new_;
   state.v = v_new_;
   state.time += h;
   return true;
 }
 
-// What the velocity will change by, as a start for the iteration: free fall. So rigid motion is right from
-// the first iterate, and a solve that is cut short cannot eat gravity.
-void ImplicitEuler::guess(double h) {
-  for (Eigen::Index i = 0; i < guess_.size() / 3; ++i)
-    guess_.segment<3>(3 * i) = h * system_.gravity_acceleration();
+void Bdf::choose_coefficients(const State& state, double h, bool whole) {
+  h_ = h;
+  // BDF2 is stable as long as steps grow by less than 1 + sqrt(2).   [Hairer, Norsett & Wanner, III.5]
+  const bool smooth = whole && past_.h > 0 && h <= 2 * past_.h && state.x.size() == past_.x_end.size() &&
+                      state.x == past_.x_end && state.v == past_.v_end;
+  ahead_ = order_ == 2 && smooth ? h / past_.h : 0;
+  back_ = ahead_ * ahead_ / (1 + 2 * ahead_);
+  c_ = (1 + ahead_) / (1 + 2 * ahead_) * h;
 }
 
-void ImplicitEuler::assemble(const VecX& v_bar, double h, Stiffness stiffness) {
-  A_->set_to_mass(system_.masses());
-  const std::vector<double>& mass = system_.masses();
+// The point of linearisation of order 2.
+void Bdf::look_back(const State& state) {
+  mark_touching();
+  v_ = state.v + ahead_ * (state.v - past_.v);
+  for (int i = 0; i < system_.particles(); ++i)
+    if (restarts(i)) v_.segment<3>(3 * i) = state.v.segment<3>(3 * i);
+  x_ = state.x + back_ * (state.x - past_.x) + c_ * v_;
+}
+
+// What the velocity will change by, as a start for the iteration: free fall. So rigid motion is right from
+// the first iterate, and a solve that is cut short cannot eat gravity. (Order 2: it is in the extrapolation.)
+void Bdf::guess() {
+  for (Eigen::Index i = 0; i < guess_.size() / 3; ++i)
+    guess_.segment<3>(3 * i) = back_ > 0 && !restarts(static_cast<int>(i))
+                                   ? Vec3::Zero()
+                                   : Vec3(h_ * system_.gravity_acceleration());
+}
+
+void Bdf::linearise(const State& state, Stiffness stiffness, StepReport& report) {
+  x_bar_ = state.x;
+  v_bar_ = state.v;
+  mass_ = system_.masses();
+  if (back_ > 0) {
+    x_bar_ += back_ * (state.x - past_.x);
+    v_bar_ += back_ * (state.v - past_.v);
+    restart_touching(state);
+  }
+  if (constraints_.correction().size() > 0) x_bar_ += constraints_.correction();
+  y_ = x_bar_ + c_ * v_ - x_;
+  const Stopwatch watch(report.assemble_ms);
+  assemble(stiffness);
+}
+
+// Particles whose past says nothing of their future, because a body stopped them or may: see the header.
+void Bdf::restart_touching(const State& state) {
+  for (int i = 0; i < system_.particles(); ++i) {
+    if (!restarts(i)) continue;
+    mass_[static_cast<std::size_t>(i)] *= c_ / h_;
+    v_bar_.segment<3>(3 * i) = state.v.segment<3>(3 * i);
+    x_bar_.segment<3>(3 * i) = state.x.segment<3>(3 * i) + (h_ - c_) * state.v.segment<3>(3 * i);
+  }
+  constraints_.filter(state.v, filter_);
+  for (const FilterEntry& e : filter_.entries())
+    if (restarts(e.particle)) x_bar_.segment<3>(3 * e.particle) += (h_ - c_) * e.z;
+}
+
+void Bdf::remember(const State& state, double h) {
+  past_.x = state.x;
+  past_.v = state.v;
+  past_.x_end = x_new_;
+  past_.v_end = v_new_;
+  past_.h = h;
+  std::fill(past_.touched.begin(), past_.touched.end(), 0);
+  mark_touching();
+}
+
+void Bdf::mark_touching() {
+  for (const Contact& c : constraints_.touching()) past_.touched[static_cast<std::size_t>(c.particle)] = 1;
+}
+
+void Bdf::assemble(Stiffness stiffness) {
+  A_->set_to_mass(mass_);
   for_chunks(system_.particles(), [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
       b_.segment<3>(3 * i) =
-          mass[static_cast<std::size_t>(i)] *
-          (v_bar.segment<3>(3 * i) - v_.segment<3>(3 * i) + h * system_.gravity_acceleration());
+          mass_[static_cast<std::size_t>(i)] *
+          (v_bar_.segment<3>(3 * i) - v_.segment<3>(3 * i) + fall_time(i) * system_.gravity_acceleration());
   });
-  for (const auto& force : system_.forces()) force->add_linearised(x_, v_, y_, h, stiffness, *A_, b_);
+  for (const auto& force : system_.forces()) force->add_linearised(x_, v_, y_, c_, stiffness, *A_, b_);
 }
 
-LinearReport ImplicitEuler::solve_within_contacts(double h, StepReport& report) {
+LinearReport Bdf::solve_within_contacts(const State& state, Stiffness stiffness, StepReport& report) {
   // Which contacts hold is found with loose solves; the last one is to the tolerance asked for, from where
   // they came.
   const bool contact = !constraints_.obstacles().empty();
@@ -148,7 +212,7 @@ LinearReport ImplicitEuler::solve_within_contacts(double h, StepReport& report) 
     LinearReport linear;
     {
       const Stopwatch watch(report.solve_ms);
-      linear = solve_once(h, tolerance);
+      linear = solve_once(tolerance);
     }
     ++report.linear_solves;
     report.linear_iterations += linear.iterations;
@@ -159,18 +223,24 @@ LinearReport ImplicitEuler::solve_within_contacts(double h, StepReport& report) 
     v_new_ = v_ + dv_;
     // Twice the residual: what the solve left over is not a reaction.
     bool changed = constraints_.react(v_new_, r_, 2 * linear.residual_impulse);
-    x_new_ = x_bar_ + h * v_new_;
-    if (constraints_.check_paths(x_new_)) changed = true;
+    x_new_ = x_bar_ + c_ * v_new_;
+    if (constraints_.check_paths(x_new_)) {
+      changed = true;
+      if (back_ > 0) {  // what is caught now starts anew
+        mark_touching();
+        linearise(state, stiffness, report);
+      }
+    }
     if (!changed && (tolerance == options_.tolerance || linear.residual <= options_.tolerance)) return linear;
     if (!changed) tolerance = options_.tolerance;
     guess_ = dv_;
   }
 }
 
-LinearReport ImplicitEuler::solve_once(double h, double tolerance) {
+LinearReport Bdf::solve_once(double tolerance) {
   const BlockPattern& pattern = A_->pattern();
   b_friction_ = b_;
-  add_contact_friction(h);
+  add_contact_friction();
   to_rows(pattern, b_friction_, b_rows_);
   to_rows(pattern, guess_, dv_rows_);
   constraints_.filter(v_, filter_);
@@ -184,9 +254,9 @@ LinearReport ImplicitEuler::solve_once(double h, double tolerance) {
 }
 
 // |S b| at (x, v): what is left of the nonlinear equation in the free directions.
-double ImplicitEuler::nonlinear_residual(double h) {
+double Bdf::nonlinear_residual() {
   b_friction_ = b_;
-  add_contact_friction(h);
+  add_contact_friction();
   remove_contact_friction();
   constraints_.filter(v_, filter_);
   filter_.apply(b_friction_);
@@ -194,7 +264,7 @@ double ImplicitEuler::nonlinear_residual(double h) {
 }
 
 // r = A dv - b: the impulse with which the constraints hold the particles.
-void ImplicitEuler::reaction() {
+void Bdf::reaction() {
   r_.resize(dv_.size());
   r_rows_.resize(dv_.size());
   A_->multiply(dv_rows_, r_rows_);
@@ -202,28 +272,28 @@ void ImplicitEuler::reaction() {
   to_particles(A_->pattern(), r_rows_, r_);
 }
 
-void ImplicitEuler::add_contact_friction(double h) {
+void Bdf::add_contact_friction() {
   rubbed_.clear();
   for (const ContactFriction& f : constraints_.friction()) {
     const int slot = A_->pattern().diagonal(A_->pattern().row_of()[static_cast<std::size_t>(f.particle)]);
     const Vec3 slip = v_.segment<3>(3 * f.particle) - f.body_velocity;
-    b_friction_.segment<3>(3 * f.particle) += f.impulse - h * (f.damping * slip);
+    b_friction_.segment<3>(3 * f.particle) += f.impulse - h_ * (f.damping * slip);
     rubbed_.emplace_back(slot, A_->at(slot));
-    A_->at(slot) += h * f.damping;
+    A_->at(slot) += h_ * f.damping;
   }
 }
 
-void ImplicitEuler::remove_contact_friction() {
+void Bdf::remove_contact_friction() {
   for (const auto& [slot, block] : rubbed_) A_->at(slot) = block;
 }
 
-bool ImplicitEuler::good(const LinearReport& linear) const {
+bool Bdf::good(const LinearReport& linear) const {
   if (!dv_.allFinite()) return false;
   return linear.reason == StopReason::converged ||
          (linear.reason == StopReason::iteration_limit && options_.max_linear_iterations > 0);
 }
 
-bool ImplicitEuler::fail(StepReport& report, const std::string& what, const LinearReport& linear) {
+bool Bdf::fail(StepReport& report, const std::string& what, const LinearReport& linear) {
   report.residual = linear.residual;
   report.failure = {what, -1, std::string(system_.not_finite_force(x_, v_))};
   double worst = -1;
@@ -240,7 +310,7 @@ bool ImplicitEuler::fail(StepReport& report, const std::string& what, const Line
 
 // The force with the largest stiffness at a particle, or one that is not finite: what to look at when a solve
 // failed there.
-std::string ImplicitEuler::stiffest_force(int particle) {
+std::string Bdf::stiffest_force(int particle) {
   const int slot = A_->pattern().diagonal(A_->pattern().row_of()[static_cast<std::size_t>(particle)]);
   std::string stiffest;
   double most = -1;
@@ -257,27 +327,27 @@ std::string ImplicitEuler::stiffest_force(int particle) {
 }
 
 // Phi(v), see the header.
-double ImplicitEuler::potential(const VecX& v, const VecX& v_bar, double h) {
-  x_new_ = x_bar_ + h * v;
-  const std::vector<double>& mass = system_.masses();
+double Bdf::potential(const VecX& v) {
+  x_new_ = x_bar_ + c_ * v;
   double phi = sum_chunks(system_.particles(), [&](int begin, int end) {
     double sum = 0;
     for (int i = begin; i < end; ++i) {
-      const Vec3 d = v.segment<3>(3 * i) - v_bar.segment<3>(3 * i) - h * system_.gravity_acceleration();
-      sum += 0.5 * mass[static_cast<std::size_t>(i)] * d.squaredNorm();
+      const Vec3 d =
+          v.segment<3>(3 * i) - v_bar_.segment<3>(3 * i) - fall_time(i) * system_.gravity_acceleration();
+      sum += 0.5 * mass_[static_cast<std::size_t>(i)] * d.squaredNorm();
     }
     return sum;
   });
-  for (const auto& force : system_.forces()) phi += force->energy(x_new_) + h * force->dissipation(x_, v);
+  for (const auto& force : system_.forces()) phi += force->energy(x_new_) + c_ * force->dissipation(x_, v);
   for (const ContactFriction& f : constraints_.friction()) {
     const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
-    phi += 0.5 * h * slip.dot(f.damping * slip) - f.impulse.dot(slip);
+    phi += 0.5 * h_ * slip.dot(f.damping * slip) - f.impulse.dot(slip);
   }
   return phi;
 }
 
 // v <- v + dv when that lowers Phi, else as far towards it as does. True when the step was taken whole.
-bool ImplicitEuler::descend(const VecX& v_bar, bool first, double h) {
+bool Bdf::descend(bool first) {
   v_base_ = v_;
   if (first) {  // the point of linearisation: standing still, but for what is prescribed
     constraints_.filter(v_, filter_);
@@ -286,26 +356,14 @@ bool ImplicitEuler::descend(const VecX& v_bar, bool first, double h) {
     v_base_ += v_;
   }
   v_ += dv_;
-  const double start = potential(v_base_, v_bar, h);
+  const double start = potential(v_base_);
   // A tenth of the energy that the fall of one step brings: what a solve to its tolerance may leave.
   const double allowed = start + 1e-9 * std::abs(start) + 0.05 * fall_energy_;
   for (int halvings = 0; halvings < 12; ++halvings) {
-    if (potential(v_, v_bar, h) <= allowed) return halvings == 0;
+    if (potential(v_) <= allowed) return halvings == 0;
     v_ = 0.5 * (v_ + v_base_);
   }
   return false;
-}
-
-std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,
-                                            std::unique_ptr<LinearSolver> solver,
-                                            const StepOptions& options) {
-  if (name == "implicit-euler")
-    return std::make_unique<ImplicitEuler>(system, constraints, std::move(solver), options);
-  throw InputError("integrator '" + std::string(name) + "' is not in this build; it has: implicit-euler");
-}
-
-std::vector<IntegratorInfo> integrators() {
-  return {{"implicit-euler", "Baraff & Witkin's implicit step, 1 to n Newton iterations (default)"}};
 }
 
 }  // namespace drape

@@ -1,0 +1,46 @@
+// Explicit Runge-Kutta methods as their tableaux: "explicit-euler", "symplectic-euler", "midpoint", "rk4".
+//   X_i = x + h sum_j a_ij V_j,  V_i = v + h sum_j a_ij A_j,  A_i = M^-1 f(X_i, V_i)
+//   x' = x + h sum_i b_i V_i,    v' = v + h sum_i b_i A_i
+// Symplectic Euler is a pair of tableaux, of which the second is implicit in form only: x' = x + h v'.
+//   Stable on an undamped vibration of frequency w [1/s] for h < 2/w (symplectic Euler), 2.8284/w (rk4);
+//   explicit Euler and midpoint for no h.                    [Hairer, Norsett & Wanner, II.1; Hairer,
+//                                                             Lubich & Wanner, I.1]
+// Pins, contact and friction: solver/held_motion.h. A state that is not finite is a failure; it is not tried
+// again in halves, because an unstable method would come back with one step later.
+// x [m], v [m/s], M [kg], f [N], h [s].
+#pragma once
+
+#include <array>
+
+#include "solver/held_motion.h"
+
+namespace drape {
+
+struct Tableau {
+  std::string_view name, summary;
+  int stages;
+  std::array<std::array<double, 3>, 4> a;  // row i: what stage i takes of the stages before it
+  std::array<double, 4> b;
+  bool positions_last = false;  // x' = x + h v'
+};
+
+// All that are known.
+const std::vector<Tableau>& tableaux();
+
+class Explicit final : public Integrator {
+ public:
+  Explicit(const Tableau& tableau, System& system, Constraints& constraints, const StepOptions& options);
+
+  std::string_view name() const override { return tableau_.name; }
+  StepReport advance(State& state, double h) override;
+
+ private:
+  Tableau tableau_;
+  System& system_;
+  HeldMotion motion_;
+  StepOptions options_;
+  std::array<VecX, 4> V_, A_;
+  VecX x_, v_;
+};
+
+}  // namespace drape

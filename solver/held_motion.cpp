@@ -1,0 +1,139 @@
+#include "solver/held_motion.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "mesh/parallel.h"
+#include "solver/stopwatch.h"
+
+namespace drape {
+
+void HeldMotion::begin(const State& state, double h, StepReport& report) {
+  const Stopwatch watch(report.collide_ms);
+  constraints_.begin_step(state.x, state.v, system_.masses(), h);
+  constraints_.filter(state.v, held_);
+  v_start_ = state.v;
+  for (const FilterEntry& e : held_.entries()) v_start_.segment<3>(3 * e.particle) += e.z;
+}
+
+void HeldMotion::acceleration(const VecX& x, const VecX& v, VecX& a) {
+  a.setZero(x.size());
+  for (const auto& force : system_.forces()) force->add_force(x, v, a);
+  const std::vector<double>& mass = system_.masses();
+  for_chunks(system_.particles(), [&](int begin, int end) {
+    for (int i = begin; i < end; ++i)  // what has no mass is held anyway
+      a.segment<3>(3 * i) = a.segment<3>(3 * i) / std::max(mass[static_cast<std::size_t>(i)], 1e-300) +
+                            system_.gravity_acceleration();
+  });
+  for (const FilterEntry& e : held_.entries()) {
+    if (e.S.isZero(0))
+      a.segment<3>(3 * e.particle).setZero();
+    else
+      a.segment<3>(3 * e.particle) = (e.S * a.segment<3>(3 * e.particle)).eval();
+  }
+}
+
+bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOptions& options, State& state,
+                        StepReport& report) {
+  if (!x.allFinite() || !v.allFinite()) {
+    report.done = false;
+    report.failure = not_finite(system_, x, v, "the new positions are not finite numbers");
+    return false;
+  }
+  x_new_ = x;
+  v_new_ = v;
+  if (!constraints_.obstacles().empty()) {
+    set_free(v, h);
+    solve_contacts(state, x, v, h, options, report);
+    const Stopwatch watch(report.collide_ms);
+    const ContactReport contact = constraints_.end_step(x_new_, v_new_);
+    report.contacts = contact.contacts;
+    report.guarded += contact.guarded;
+    report.penetration = std::max(report.penetration, contact.deepest);
+  }
+  state.x = x_new_;
+  state.v = v_new_;
+  state.time += h;
+  return true;
+}
+
+// The velocity without the constraints: what they took at the start and during the step is given back.
+void HeldMotion::set_free(const VecX& v, double h) {
+  v_free_ = v;
+  filter_ = held_;
+  held_.clear();
+  acceleration(x_new_, v, a_);
+  held_ = filter_;
+  for (const FilterEntry& e : held_.entries()) {
+    const Vec3 a = a_.segment<3>(3 * e.particle);
+    v_free_.segment<3>(3 * e.particle) += h * (a - e.S * a) - e.z;
+  }
+}
+
+// What was held and is let go, or comes loose, moves from the next step on: h (I - S) M^-1 f is explicit, and
+// where the cloth is stiff and h long it is far more than the particle would gain.
+void HeldMotion::let_go(const VecX& x, const VecX& v) {
+  for (const Contact& c : constraints_.touching()) {
+    if (c.active() && c.grip != Grip::breaking_loose) continue;
+    const auto held = std::find_if(held_.entries().begin(), held_.entries().end(),
+                                   [&](const FilterEntry& e) { return e.particle == c.particle; });
+    if (held == held_.entries().end() || (c.active() && !held->S.isZero(0))) continue;
+    x_new_.segment<3>(3 * c.particle) = x.segment<3>(3 * c.particle);
+    v_new_.segment<3>(3 * c.particle) = v.segment<3>(3 * c.particle);
+  }
+}
+
+void HeldMotion::solve_contacts(const State& state, const VecX& x, const VecX& v, double h,
+                                const StepOptions& options, StepReport& report) {
+  const Stopwatch watch(report.collide_ms);
+  double weight = 0;
+  for (double m : system_.masses()) weight = std::max(weight, m);
+  const double noise = 1e-9 * weight * h * system_.gravity_acceleration().norm();
+  for (int round = 0;; ++round) {
+    move_within_constraints(state, x, h);
+    let_go(x, v);
+    if (round == options.max_contact_solves) return;
+    bool changed = constraints_.react(v_new_, r_, noise);
+    if (constraints_.check_paths(x_new_)) changed = true;
+    if (!changed) return;
+  }
+}
+
+// S (A dv - b) = 0 within the filter, A = m + h D of what rubs: one particle at a time.
+void HeldMotion::move_within_constraints(const State& state, const VecX& x, double h) {
+  x_new_ = x;
+  v_new_ = v_free_;
+  r_.setZero(x.size());
+  const auto mass = [&](int i) { return system_.masses()[static_cast<std::size_t>(i)]; };
+  const auto& friction = constraints_.friction();
+  for (const ContactFriction& f : friction) {
+    const Mat3 A = mass(f.particle) * Mat3::Identity() + h * f.damping;
+    const Vec3 b = f.impulse - h * (f.damping * (v_free_.segment<3>(3 * f.particle) - f.body_velocity));
+    v_new_.segment<3>(3 * f.particle) += A.inverse() * b;
+    r_.segment<3>(3 * f.particle) -= b;
+  }
+  constraints_.filter(v_free_, filter_);
+  for (const FilterEntry& e : filter_.entries()) {
+    const Vec3 v = v_free_.segment<3>(3 * e.particle), dv = v_new_.segment<3>(3 * e.particle) - v;
+    v_new_.segment<3>(3 * e.particle) = v + (e.S * dv + e.z);
+  }
+  for (const ContactFriction& f : friction)
+    r_.segment<3>(3 * f.particle) +=
+        h * (f.damping * (v_new_.segment<3>(3 * f.particle) - v_free_.segment<3>(3 * f.particle)));
+  for (const Contact& c : constraints_.touching()) {
+    const int i = 3 * c.particle;
+    r_.segment<3>(i) += mass(c.particle) * (v_new_.segment<3>(i) - v_free_.segment<3>(i));
+    x_new_.segment<3>(i) =
+        state.x.segment<3>(i) + constraints_.correction().segment<3>(i) + h * v_new_.segment<3>(i);
+  }
+}
+
+StepFailure not_finite(const System& system, const VecX& x, const VecX& v, const std::string& what) {
+  StepFailure failure{what, -1, {}};
+  for (int i = 0; i < system.particles() && failure.particle < 0; ++i)
+    if (!x.segment<3>(3 * i).allFinite() || !v.segment<3>(3 * i).allFinite()) failure.particle = i;
+  failure.force = system.not_finite_force(x, v);
+  return failure;
+}
+
+}  // namespace drape

@@ -1,0 +1,51 @@
+#include "solver/integrator.h"
+
+#include <cmath>
+
+#include "mesh/obj.h"
+#include "solver/bdf.h"
+#include "solver/explicit.h"
+#include "solver/sundials_integrators.h"
+
+namespace drape {
+
+void check_step(const System& system, const State& state, double h) {
+  if (!(h > 0) || !std::isfinite(h))
+    throw InputError("time step = " + std::to_string(h) + " s: a time step is greater than zero");
+  if (state.particles() != system.particles() || state.v.size() != state.x.size())
+    throw InputError("state: " + std::to_string(state.particles()) + " particles, but the system has " +
+                     std::to_string(system.particles()));
+}
+
+std::vector<IntegratorInfo> integrators() {
+  std::vector<IntegratorInfo> all = {
+      {"implicit-euler", "Baraff & Witkin's implicit step, 1 to n Newton iterations (default)"},
+      {"bdf2", "backward differences of order 2, 1 to n Newton iterations"}};
+  for (const Tableau& tableau : tableaux()) all.push_back({tableau.name, tableau.summary});
+#ifdef DRAPE_HAVE_SUNDIALS
+  all.push_back({"newton-kinsol", "the equation of implicit Euler solved by SUNDIALS KINSOL"});
+  for (const IntegratorInfo& info : sundials_ode_methods()) all.push_back(info);
+#endif
+  return all;
+}
+
+std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,
+                                            std::unique_ptr<LinearSolver> solver,
+                                            const StepOptions& options) {
+  if (name == "implicit-euler")
+    return std::make_unique<Bdf>(system, constraints, std::move(solver), options, 1);
+  if (name == "bdf2") return std::make_unique<Bdf>(system, constraints, std::move(solver), options, 2);
+  for (const Tableau& tableau : tableaux())
+    if (name == tableau.name) return std::make_unique<Explicit>(tableau, system, constraints, options);
+#ifdef DRAPE_HAVE_SUNDIALS
+  if (name == "newton-kinsol") return make_newton_kinsol(system, constraints, std::move(solver), options);
+  for (const IntegratorInfo& info : sundials_ode_methods())
+    if (name == info.name) return make_sundials_ode(name, system, constraints, std::move(solver), options);
+#endif
+  std::string names;
+  for (const IntegratorInfo& info : integrators())
+    names += (names.empty() ? "" : ", ") + std::string(info.name);
+  throw InputError("integrator '" + std::string(name) + "' is not in this build; it has: " + names);
+}
+
+}  // namespace drape

@@ -1,0 +1,266 @@
+// "newton-kinsol": the equation of implicit Euler, solved to newton_tolerance by KINSOL of SUNDIALS.
+//   F(v) = S [ M (v - v_n) - h f(x_bar + h v, v) + friction ] = 0,   x_bar = x_n + correction,
+//   v = its target in the locked directions;   Newton's direction A dv = -F, A = M + h D + h^2 K of here;
+//   KINSOL looks along it for less |F|.                        [Dennis & Schnabel 1996, algorithm A6.3.1]
+// When the contacts do not agree with the solution, they change and KINSOL begins again from it. Should the
+// search along the line give up, it is tried again with stiffer K (chords, then the majorant); then the step
+// is halved. x [m], v [m/s], M [kg], f [N], h [s], F [N s].
+#include <kinsol/kinsol.h>
+#include <kinsol/kinsol_ls.h>
+
+#include <cmath>
+
+#include "mesh/parallel.h"
+#include "solver/stopwatch.h"
+#include "solver/sundials.h"
+#include "solver/sundials_integrators.h"
+
+namespace drape {
+namespace {
+
+class NewtonKinsol final : public Integrator {
+ public:
+  NewtonKinsol(System& system, Constraints& constraints, std::unique_ptr<LinearSolver> solver,
+               const StepOptions& options)
+      : system_(system), constraints_(constraints), options_(options), newton_(system, std::move(solver)) {
+    const Eigen::Index n = 3 * system.particles();
+    for (VecX* vector : {&x_, &x_bar_, &v_, &v_n_, &F_, &f_scale_, &one_, &dv_, &minus_F_, &r_})
+      vector->setZero(n);
+    one_.setOnes();
+    sundials::View u(v_, context_);
+    kinsol_ = KINCreate(context_);
+    KINSetErrHandlerFn(
+        kinsol_, [](int, const char*, const char*, char*, void*) {}, nullptr);
+    KINSetUserData(kinsol_, this);
+    KINInit(
+        kinsol_,
+        [](N_Vector v, N_Vector F, void* self) { return static_cast<NewtonKinsol*>(self)->residual(v, F); },
+        u);
+    linear_ = sundials::our_solver<NewtonKinsol, SUNLINEARSOLVER_DIRECT>(*this, context_);
+    matrix_ = SUNMatNewEmpty(context_);
+    matrix_->ops->getid = [](SUNMatrix) { return SUNMATRIX_CUSTOM; };
+    matrix_->ops->zero = [](SUNMatrix) { return 0; };
+    KINSetLinearSolver(kinsol_, linear_, matrix_);
+    KINSetJacFn(kinsol_, [](N_Vector v, N_Vector, SUNMatrix, void* self, N_Vector, N_Vector) {
+      return static_cast<NewtonKinsol*>(self)->set_up(v);
+    });
+    KINSetMaxSetupCalls(kinsol_, 1);  // a new matrix for every direction
+  }
+  NewtonKinsol(const NewtonKinsol&) = delete;
+  NewtonKinsol& operator=(const NewtonKinsol&) = delete;
+  ~NewtonKinsol() override {
+    KINFree(&kinsol_);
+    SUNLinSolFreeEmpty(linear_);
+    SUNMatFreeEmpty(matrix_);
+  }
+
+  std::string_view name() const override { return "newton-kinsol"; }
+  StepReport advance(State& state, double h) override;
+  int solve_linear(N_Vector dv, N_Vector minus_F);
+
+ private:
+  bool attempt(State& state, double h);
+  bool solve();
+  void equation(const VecX& v);
+  int residual(N_Vector v, N_Vector F);
+  int set_up(N_Vector v);
+  bool fail(const std::string& what);
+
+  System& system_;
+  Constraints& constraints_;
+  StepOptions options_;
+  sundials::Context context_;
+  sundials::Newton newton_;
+  void* kinsol_ = nullptr;
+  SUNLinearSolver linear_ = nullptr;
+  SUNMatrix matrix_ = nullptr;
+  StepReport report_;
+  Filter filter_, held_;  // of the velocity at the start of the solve; the same with z = 0
+  std::vector<ContactFriction> friction_;
+  Stiffness stiffness_ = Stiffness::tangent;
+  double h_ = 0, scale_ = 0;  // s, N s
+  VecX x_, x_bar_, v_, v_n_, F_, f_scale_, one_, dv_, minus_F_, r_;
+};
+
+StepReport NewtonKinsol::advance(State& state, double h) {
+  check_step(system_, state, h);
+  system_.bind();
+  report_ = {};
+  double step_ms = 0;
+  {
+    const Stopwatch watch(step_ms);
+    const double start = state.time;
+    const State before = state;
+    int halvings = 0, pieces_left = 1;
+    report_.substeps = 0;
+    while (pieces_left > 0 && report_.done) {
+      if (attempt(state, std::ldexp(h, -halvings))) {
+        --pieces_left;
+        ++report_.substeps;
+      } else if (halvings == options_.max_halvings) {
+        report_.done = false;
+      } else {
+        ++halvings;
+        pieces_left *= 2;
+      }
+    }
+    if (report_.done) {
+      state.time = start + h;
+      report_.failure = {};
+    } else {
+      state = before;
+    }
+  }
+  report_.step_ms = step_ms;
+  return report_;
+}
+
+bool NewtonKinsol::attempt(State& state, double h) {
+  h_ = h;
+  v_n_ = state.v;
+  scale_ = 0;
+  const VecX f = system_.force(state.x, state.v);
+  for (int i = 0; i < system_.particles(); ++i)  // an impulse that is known to act
+    scale_ +=
+        std::pow(system_.masses()[static_cast<std::size_t>(i)] * system_.gravity_acceleration().norm(), 2);
+  scale_ = h * std::max({std::sqrt(scale_), 1e-3 * std::sqrt(dot(f, f)), 1e-12});
+  f_scale_.setConstant(1 / scale_);
+  {
+    const Stopwatch watch(report_.collide_ms);
+    constraints_.begin_step(state.x, state.v, system_.masses(), h);
+  }
+  v_ = state.v;
+  for (int i = 0; i < system_.particles(); ++i) v_.segment<3>(3 * i) += h * system_.gravity_acceleration();
+  for (int round = 0;; ++round) {
+    x_bar_ = state.x;
+    if (constraints_.correction().size() > 0) x_bar_ += constraints_.correction();
+    constraints_.filter(v_, filter_);
+    for (const FilterEntry& e : filter_.entries()) v_.segment<3>(3 * e.particle) += e.z;
+    friction_ = constraints_.friction();
+    if (!solve()) return false;
+    if (constraints_.obstacles().empty() || round == options_.max_contact_solves) break;
+    // What is left of the equation in the locked directions is the reaction.
+    const Stopwatch watch(report_.collide_ms);
+    equation(v_);
+    r_ = F_;
+    bool changed = constraints_.react(v_, r_, 2 * report_.residual * scale_);
+    x_ = x_bar_ + h * v_;
+    if (constraints_.check_paths(x_)) changed = true;
+    if (!changed) break;
+  }
+  x_ = x_bar_ + h * v_;
+  if (!x_.allFinite()) return fail("the new positions are not finite numbers");
+  const Stopwatch watch(report_.collide_ms);
+  const ContactReport contact = constraints_.end_step(x_, v_);
+  report_.contacts = contact.contacts;
+  report_.guarded += contact.guarded;
+  report_.penetration = std::max(report_.penetration, contact.deepest);
+  state.x = x_;
+  state.v = v_;
+  state.time += h;
+  return true;
+}
+
+bool NewtonKinsol::solve() {
+  held_.clear();
+  for (const FilterEntry& e : filter_.entries()) held_.constrain(e.particle, e.S, Vec3::Zero());
+  const sundials::View u(v_, context_), one(one_, context_), scale(f_scale_, context_);
+  KINSetFuncNormTol(kinsol_, std::max(options_.newton_tolerance, 1e-15));
+  KINSetScaledStepTol(kinsol_, 1e-14);
+  KINSetNumMaxIters(kinsol_, std::max(options_.newton_iterations, 50));
+  KINSetMaxNewtonStep(kinsol_, 1e6 * std::sqrt(static_cast<double>(v_.size())));
+  const VecX start = v_;
+  const double wanted = std::max(options_.newton_tolerance, 1e-7);
+  int flag = KIN_SUCCESS;
+  double norm = 0;
+  for (const Stiffness stiffness : {Stiffness::tangent, Stiffness::chord, Stiffness::majorant}) {
+    stiffness_ = stiffness;
+    flag = KINSol(kinsol_, u, KIN_LINESEARCH, one, scale);
+    long iterations = 0;
+    KINGetNumNonlinSolvIters(kinsol_, &iterations);
+    report_.newton_iterations += static_cast<int>(iterations);
+    KINGetFuncNorm(kinsol_, &norm);
+    if (v_.allFinite() && norm <= wanted) break;
+    ++report_.rescues;
+    if (!v_.allFinite()) v_ = start;
+  }
+  report_.residual = norm;
+  if (v_.allFinite() && (flag >= 0 || norm <= wanted)) {  // or its steps have shrunk to nothing
+    report_.converged = report_.converged && norm <= wanted;
+    return true;
+  }
+  char* text = KINGetReturnFlagName(flag);
+  const std::string reason = text;
+  std::free(text);
+  return fail("KINSOL: " + reason + "; a shorter time step may help");
+}
+
+// F = M (v - v_n) - h f(x_bar + h v, v) + friction, not filtered.
+void NewtonKinsol::equation(const VecX& v) {
+  x_ = x_bar_ + h_ * v;
+  F_.setZero();
+  for (const auto& force : system_.forces()) force->add_force(x_, v, F_);
+  for_chunks(system_.particles(), [&](int begin, int end) {
+    for (int i = begin; i < end; ++i)
+      F_.segment<3>(3 * i) =
+          system_.masses()[static_cast<std::size_t>(i)] *
+              (v.segment<3>(3 * i) - v_n_.segment<3>(3 * i) - h_ * system_.gravity_acceleration()) -
+          h_ * F_.segment<3>(3 * i);
+  });
+  for (const ContactFriction& f : friction_)
+    F_.segment<3>(3 * f.particle) +=
+        h_ * (f.damping * (v.segment<3>(3 * f.particle) - f.body_velocity)) - f.impulse;
+}
+
+int NewtonKinsol::residual(N_Vector v, N_Vector F) {
+  const Stopwatch watch(report_.assemble_ms);
+  dv_ = sundials::numbers(v);
+  equation(dv_);
+  held_.apply(F_);
+  sundials::numbers(F) = F_;
+  return F_.allFinite() ? 0 : 1;
+}
+
+// A at v.
+int NewtonKinsol::set_up(N_Vector v) {
+  const Stopwatch watch(report_.assemble_ms);
+  dv_ = sundials::numbers(v);
+  x_ = x_bar_ + h_ * dv_;
+  newton_.assemble(x_, dv_, dv_, h_, stiffness_);
+  for (const ContactFriction& f : friction_) newton_.add_to_diagonal(f.particle, h_ * f.damping);
+  return 0;
+}
+
+int NewtonKinsol::solve_linear(N_Vector dv, N_Vector minus_F) {
+  const Stopwatch watch(report_.solve_ms);
+  minus_F_ = sundials::numbers(minus_F);
+  dv_.setZero();
+  // No closer than the next residual will be seen.
+  const double wanted = 0.1 * options_.newton_tolerance * scale_ / std::sqrt(dot(minus_F_, minus_F_));
+  const double tolerance = std::max(options_.tolerance, std::min(wanted, 1e-2));
+  const LinearReport linear =
+      newton_.solve(minus_F_, held_, {tolerance, options_.max_linear_iterations, 0}, dv_);
+  ++report_.linear_solves;
+  report_.linear_iterations += linear.iterations;
+  if (linear.reason == StopReason::indefinite || linear.reason == StopReason::not_finite) return -1;
+  sundials::numbers(dv) = dv_;
+  return 0;
+}
+
+bool NewtonKinsol::fail(const std::string& what) {
+  report_.failure = {what, -1, std::string(system_.not_finite_force(x_, v_))};
+  Eigen::Index worst = 0;
+  F_.cwiseAbs().maxCoeff(&worst);
+  report_.failure.particle = static_cast<int>(worst / 3);
+  return false;
+}
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_newton_kinsol(System& system, Constraints& constraints,
+                                               std::unique_ptr<LinearSolver> solver,
+                                               const StepOptions& options) {
+  return std::make_unique<NewtonKinsol>(system, constraints, std::move(solver), options);
+}
+
+}  // namespace drape

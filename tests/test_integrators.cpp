@@ -1,0 +1,351 @@
+// Laws of every integrator of the build: order, exact discrete values, stability, conservation.
+#include <Eigen/Dense>
+#include <complex>
+
+#include "tests/integrators.h"
+
+using namespace drape;
+using namespace drape::test;
+
+namespace {
+
+void check_order(Motion& motion, std::string_view name, int steps, double margin) {
+  const State exact = fine_reference(motion);
+  const double coarse = distance(run(motion, name, steps), exact);
+  const double fine = distance(run(motion, name, 2 * steps), exact);
+  INFO(name << ": " << coarse << " with " << steps << " steps, " << fine << " with twice as many, order "
+            << std::log2(coarse / fine));
+  CHECK(std::log2(coarse / fine) == Approx(order_of(name)).margin(margin));
+}
+
+// A unit mass on a spring of stiffness 1 N/m that is never slack, of frequency 1; its rest is at x[3] = 100.
+struct Oscillator {
+  System system{{0.0, 1.0}};
+  Constraints constraints;
+  State state{0, VecX::Zero(6), VecX::Zero(6)};
+
+  Oscillator() {
+    system.add(std::make_unique<PairForce<TensionSpring>>(
+        std::vector<PairForce<TensionSpring>::Element>{{0, 1, {90, 1}}}));
+    system.add(Gravity{{10, 0, 0}});
+    state.x[3] = 100;
+  }
+};
+
+// The principal root of the recurrence that the displacements obey, from four of them in a row.
+std::complex<double> root_per_step(std::string_view name, double z) {
+  Oscillator o;
+  o.state.x[3] += 0.5;
+  o.state.v[3] = 0.3;
+  auto stepper = make_integrator(name, o.system, o.constraints, make_linear_solver("eigen-ldlt"), precise());
+  const int settled = order_of(name) == 2 && !is_explicit(name) ? 14 : 0;  // the other roots have died out
+  std::array<double, 4> y{};
+  for (int n = 0; n < settled + 4; ++n) {
+    if (n >= settled) y[static_cast<std::size_t>(n - settled)] = o.state.x[3] - 100;
+    REQUIRE(stepper->advance(o.state, z).done);
+  }
+  Eigen::Matrix2d Y;
+  Y << y[1], y[0], y[2], y[1];
+  const Eigen::Vector2d a = Y.inverse() * Eigen::Vector2d(y[2], y[3]);
+  return 0.5 * a[0] + std::sqrt(std::complex<double>(0.25 * a[0] * a[0] + a[1]));
+}
+
+}  // namespace
+
+TEST_CASE("every integrator has its order on a swinging and bouncing mass", "[integrators]") {
+  Motion motion = pendulum();
+  for (const std::string& name : integrator_names())
+    if (const int order = order_of(name); order > 0)
+      check_order(motion, name, order == 1 ? 3200 : order == 2 ? 400 : 100, order == 4 ? 0.15 : 0.06);
+}
+
+TEST_CASE("every integrator has its order on a small cloth", "[integrators]") {
+  Motion motion = drum();
+  for (const std::string& name : integrator_names())
+    if (const int order = order_of(name); order > 0)
+      check_order(motion, name, order == 1 ? 1600 : order == 2 ? 200 : 50, order == 4 ? 0.2 : 0.1);
+}
+
+TEST_CASE("every integrator has its order where the stiffness is not the exact one", "[integrators]") {
+  Motion motion = buckled();
+  for (const std::string& name : integrator_names())
+    if (const int order = order_of(name); order > 0)
+      check_order(motion, name, order == 1 ? 1600 : order == 2 ? 200 : 50, order == 4 ? 0.2 : 0.1);
+}
+
+TEST_CASE("inner steps reach the tolerance asked for", "[integrators]") {
+  for (Motion (*make)() : {pendulum, drum, buckled}) {
+    Motion motion = make();
+    const State exact = fine_reference(motion);
+    for (const std::string& name : integrator_names()) {
+      if (order_of(name) != 0) continue;
+      double before = 1;
+      for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+        StepOptions options = precise();
+        options.relative_tolerance = tolerance;
+        options.absolute_tolerance_position = options.absolute_tolerance_velocity = tolerance;
+        const double error = distance(run(motion, name, 10, options), exact);
+        INFO(name << ": tolerance " << tolerance << ", error " << error);
+        CHECK(error < 100 * tolerance);
+        CHECK(error < 0.3 * before);
+        before = error;
+      }
+    }
+  }
+}
+
+TEST_CASE("inner steps are bounded, and the failure says what to do", "[integrators]") {
+  for (const std::string& name : integrator_names()) {
+    if (name != "cvode-adams" && name != "arkode-erk") continue;
+    Chain chain(20, 1, 1e-3, 1e6, {1, 0, 0});
+    chain.system.add(Gravity{});
+    chain.constraints.pin({0, 20});
+    StepOptions options;
+    options.max_inner_steps = 50;
+    auto stepper =
+        make_integrator(name, chain.system, chain.constraints, make_linear_solver("mpcg"), options);
+    const State before = chain.state;
+    const StepReport report = stepper->advance(chain.state, 0.1);
+    INFO(name);
+    CHECK_FALSE(report.done);
+    CHECK_THAT(report.failure.what, Catch::Contains("50 inner steps") && Catch::Contains("cvode-bdf"));
+    CHECK(chain.state.x == before.x);
+  }
+}
+
+TEST_CASE("bdf2 keeps its order when steps change", "[integrators]") {
+  Motion motion = pendulum();
+  const State exact = fine_reference(motion);
+  std::vector<double> error;
+  for (int steps : {400, 800, 1600}) {
+    State s = motion.start;
+    auto stepper = make_integrator("bdf2", motion.system, motion.constraints,
+                                   make_linear_solver("eigen-ldlt"), precise());
+    for (int n = 0; n < steps; ++n)  // one long, one short
+      REQUIRE(stepper->advance(s, motion.duration / steps * (n % 2 ? 0.7 : 1.3)).done);
+    error.push_back(distance(s, exact));
+  }
+  INFO(error[0] << " " << error[1] << " " << error[2]);
+  CHECK(std::log2(error[1] / error[2]) == Approx(2).margin(0.1));
+}
+
+TEST_CASE("free fall takes the values that each scheme has exactly", "[integrators]") {
+  // validation.md 4.10.
+  const double h = 0.01, g = 9.81;
+  for (const std::string& name : integrator_names()) {
+    if (order_of(name) == 0) continue;
+    const TriangleMesh mesh = grid(4, 4, 1, 1);
+    System system(lumped_mass(mesh, 0.2));
+    system.add(noh_jung(mesh, {}));
+    system.add(Gravity{});
+    Constraints constraints;
+    State state = at_rest(mesh);
+    auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+    double bdf2_error = 0, bdf2_before = 0;  // in g h^2: e_{n+1} = (4 e_n - e_{n-1}) / 3, e_0 = 0, e_1 = 1/2
+    for (int n = 1; n <= 40; ++n) {
+      REQUIRE(stepper->advance(state, h).done);
+      const double next = n == 1 ? 0.5 : (4 * bdf2_error - bdf2_before) / 3;
+      bdf2_before = std::exchange(bdf2_error, next);
+      double fallen = 0.5 * n * n;
+      if (name == "implicit-euler" || name == "newton-kinsol" || name == "symplectic-euler")
+        fallen = 0.5 * n * (n + 1);
+      if (name == "explicit-euler") fallen = 0.5 * n * (n - 1);
+      if (name == "bdf2") fallen = 0.5 * n * n + bdf2_error;
+      INFO(name << ", step " << n);
+      CHECK(-state.x[1] == Approx(fallen * g * h * h).epsilon(1e-10).margin(1e-13));
+      CHECK(-state.v[1] == Approx(n * g * h).epsilon(1e-10));
+    }
+  }
+}
+
+TEST_CASE("an oscillator loses what its scheme takes, and runs as late", "[integrators][reference]") {
+  int compared = 0;
+  for (const auto& row : reference_table("integrator_oscillator.csv")) {
+    const double z = row[0];
+    if (z != 0.1 && z != 0.5 && z != 1) continue;
+    for (const std::string& name : integrator_names()) {
+      int column = -1;
+      if (name == "implicit-euler" || name == "newton-kinsol") column = 1;
+      if (name == "bdf2") column = 3;
+      if (name == "symplectic-euler") column = 7;
+      if (name == "rk4") column = 9;
+      if (name == "explicit-euler") column = 11;
+      double amplitude = 0, phase = 0;
+      if (column > 0) {
+        amplitude = row[static_cast<std::size_t>(column)];
+        phase = row[static_cast<std::size_t>(column) + 1];
+      } else if (name == "midpoint") {  // the explicit one: 1 + iz - z^2/2
+        amplitude = std::sqrt(1 + z * z * z * z / 4);
+        phase = std::atan2(z, 1 - z * z / 2);
+      } else {
+        continue;
+      }
+      const std::complex<double> root = root_per_step(name, z);
+      INFO(name << ", z = " << z);
+      CHECK(std::abs(root) == Approx(amplitude).epsilon(2e-6));
+      CHECK(std::abs(std::arg(root)) == Approx(phase).epsilon(2e-6));
+      ++compared;
+    }
+  }
+  CHECK(compared >= 6);
+}
+
+namespace {
+
+// A chain along x between two pins, stretched by a tenth, that shakes a little: does it still after so many
+// steps?
+bool stays_calm(std::string_view name, double h, double stiffness, double mass, int links) {
+  std::vector<PairForce<TensionSpring>::Element> elements;
+  for (int k = 0; k < links; ++k) elements.push_back({k, k + 1, {1, stiffness}});
+  System system(std::vector<double>(static_cast<std::size_t>(links) + 1, mass));
+  system.add(std::make_unique<PairForce<TensionSpring>>(std::move(elements)));
+  Constraints constraints;
+  constraints.pin({0, links});
+  State state{0, VecX::Zero(3 * (links + 1)), VecX::Zero(3 * (links + 1))};
+  for (int k = 0; k <= links; ++k) state.x[3 * k] = 1.1 * k;
+  const VecX rest = state.x;
+  for (int k = 1; k < links; ++k) state.x[3 * k] += 1e-8 * (k % 2 ? 1 : -1);
+  auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+  for (int n = 0; n < 1000; ++n)
+    if (!stepper->advance(state, h).done || (state.x - rest).norm() > 1e-3) return false;
+  return (state.x - rest).norm() < 1e-6;
+}
+
+}  // namespace
+
+TEST_CASE("the explicit schemes are stable up to their limits, to 2 %", "[integrators]") {
+  // validation.md 4.12; the stiffest vibration of n links between two pins.
+  const double k = 50, m = 0.02;
+  const int links = 20;
+  const double omega = 2 * std::sqrt(k / m) * std::sin(0.5 * M_PI * (links - 1) / links);
+  for (const auto& [name, limit] : {std::pair{"symplectic-euler", 2.0}, {"rk4", 2.8284}}) {
+    INFO(name);
+    CHECK(stays_calm(name, 0.98 * limit / omega, k, m, links));
+    CHECK_FALSE(stays_calm(name, 1.02 * limit / omega, k, m, links));
+  }
+  for (const char* name : {"explicit-euler", "midpoint"}) {
+    INFO(name);
+    CHECK_FALSE(stays_calm(name, 0.8 / omega, k, m, links));
+  }
+}
+
+TEST_CASE("an explicit step that leaves the numbers is a failure that says what to do", "[integrators]") {
+  for (const std::string& name : integrator_names()) {
+    if (!is_explicit(name)) continue;
+    Motion m = drum();
+    auto stepper = make_integrator(name, m.system, m.constraints, make_linear_solver("mpcg"));
+    State state = m.start, before = state;
+    StepReport report;
+    for (int n = 0; n < 3000 && report.done; ++n) {
+      before = state;
+      report = stepper->advance(state, 1);
+    }
+    INFO(name);
+    CHECK_FALSE(report.done);
+    CHECK_THAT(report.failure.what, Catch::Contains("shorter time step"));
+    CHECK(report.failure.particle >= 0);
+    CHECK(state.x == before.x);
+    CHECK(state.time == before.time);
+  }
+}
+
+TEST_CASE("order 1 is Baraff & Witkin's step", "[integrators]") {
+  // (M + h D + h^2 K) dv = h (f - h K v), dense, K and D by differences of the force: taut springs, so that
+  // nothing is clamped.
+  Motion m = drum();
+  m.start.v = random_vector(m.start.x.size(), 0.1, 5);
+  for (int i : m.constraints.pinned()) m.start.v.segment<3>(3 * i).setZero();
+  const Eigen::Index n = m.start.x.size();
+  const double h = 0.01, d = 1e-5;
+  Eigen::MatrixXd K(n, n), D(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    VecX e = VecX::Zero(n);
+    e[k] = d;
+    K.col(k) =
+        -(m.system.force(m.start.x + e, m.start.v) - m.system.force(m.start.x - e, m.start.v)) / (2 * d);
+    D.col(k) =
+        -(m.system.force(m.start.x, m.start.v + e) - m.system.force(m.start.x, m.start.v - e)) / (2 * d);
+  }
+  Eigen::MatrixXd A = h * D + h * h * K;
+  for (Eigen::Index k = 0; k < n; ++k) A(k, k) += m.system.masses()[static_cast<std::size_t>(k / 3)];
+  VecX b = h * (m.system.force(m.start.x, m.start.v) - h * K * m.start.v);
+  for (int i : m.constraints.pinned())
+    for (int k = 3 * i; k < 3 * i + 3; ++k) {
+      A.row(k).setZero();
+      A.col(k).setZero();
+      A(k, k) = 1;
+      b[k] = 0;
+    }
+  const VecX dv = A.ldlt().solve(b);
+  State s = m.start;
+  auto stepper =
+      make_integrator("implicit-euler", m.system, m.constraints, make_linear_solver("eigen-ldlt"), precise());
+  REQUIRE(stepper->advance(s, h).done);
+  CHECK((s.v - m.start.v - dv).cwiseAbs().maxCoeff() < 1e-7 * dv.cwiseAbs().maxCoeff());
+  CHECK((s.x - m.start.x - h * s.v).cwiseAbs().maxCoeff() < 1e-15);
+}
+
+TEST_CASE("a rotor loses spin as its scheme does, and momentum stays", "[integrators]") {
+  // validation.md 4.13: h = 0.01 s, 5 rad/s, 1 s, the equations solved.
+  for (const std::string& name : integrator_names()) {
+    System system({1.0, 1.0});
+    const double k = is_explicit(name) ? 1e3 : 1e6, h = is_explicit(name) ? 1e-3 : 0.01;
+    system.add(std::make_unique<PairForce<TensionSpring>>(
+        std::vector<PairForce<TensionSpring>::Element>{{0, 1, {1, k}}}));
+    Constraints constraints;
+    StepOptions options = precise();
+    options.newton_iterations = 30;
+    options.newton_tolerance = 0;
+    auto stepper = make_integrator(name, system, constraints, make_linear_solver("eigen-ldlt"), options);
+    State state{0, VecX::Zero(6), VecX::Zero(6)};
+    const double stretch = 0.5 * 25 / k;  // m w^2 r = k (2 r - 1), almost
+    state.x << -0.5 - 0.5 * stretch, 0, 0, 0.5 + 0.5 * stretch, 0, 0;
+    state.v << 0.7, -2.5, 0, 0.7, 2.5, 0;
+    const auto spin = [&] {
+      const Vec3 arm = state.x.segment<3>(3) - state.x.segment<3>(0);
+      const Vec3 velocity = state.v.segment<3>(3) - state.v.segment<3>(0);
+      return arm.cross(velocity).z();
+    };
+    const double before = spin();
+    const int steps = static_cast<int>(std::lround(1 / h));
+    for (int n = 0; n < steps; ++n) REQUIRE(stepper->advance(state, h).done);
+    INFO(name);
+    if (name == "implicit-euler" || name == "newton-kinsol")
+      CHECK(spin() / before == Approx(0.8165).epsilon(2e-3));
+    else if (name == "bdf2")
+      CHECK(spin() / before == Approx(0.99661).epsilon(1e-3));
+    else if (name == "symplectic-euler")
+      CHECK(spin() / before == Approx(1).epsilon(1e-12));
+    else if (name == "explicit-euler")
+      CHECK(spin() / before > 1);
+    else
+      CHECK(spin() / before == Approx(1).epsilon(1e-3));
+    CHECK(0.5 * (state.v[0] + state.v[3]) == Approx(0.7).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("the implicit schemes make no energy", "[integrators]") {
+  for (const char* name : {"implicit-euler", "bdf2"}) {
+    const TriangleMesh mesh = grid(12, 12, 1, 1);
+    System system(lumped_mass(mesh, 0.2));
+    system.add(noh_jung(mesh, {.area_density = 0.2, .stretch = 300, .bend = 0}));
+    system.add(Gravity{});
+    Constraints constraints;
+    constraints.pin({0, 11});
+    auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"),
+                                   {.newton_iterations = 20, .newton_tolerance = 1e-9, .tolerance = 1e-9});
+    State state = at_rest(mesh);
+    const auto energy = [&] {
+      return system.elastic_energy(state.x) + system.kinetic_energy(state.v) + system.gravity_energy(state.x);
+    };
+    double most = energy();
+    const double start = most, fall = 0.2 * 9.81 * 0.5;  // J: what there is to gain
+    for (int n = 0; n < 150; ++n) {
+      REQUIRE(stepper->advance(state, 0.01).done);
+      most = std::max(most, energy());
+    }
+    INFO(name << ": " << (most - start) / fall << ", " << (energy() - start) / fall);
+    CHECK(most - start < 1e-3 * fall);
+    CHECK(energy() - start < -0.1 * fall);
+  }
+}

@@ -1,0 +1,167 @@
+// Constraints hold in every integrator of the build: pins, contact, friction; and the same bits everywhere.
+#include <cstring>
+
+#include "tests/integrators.h"
+
+using namespace drape;
+using namespace drape::test;
+
+namespace {
+
+// A soft, damped sheet over a body, that every integrator can step.
+struct Drop {
+  TriangleMesh mesh = grid(11, 11, 0.3, 0.3);
+  System system;
+  Constraints constraints;
+  State state;
+
+  explicit Drop(Shape shape, double friction = 0.3) : system(lumped_mass(mesh, 0.3)), state(at_rest(mesh)) {
+    system.add(noh_jung(mesh, {.area_density = 0.3, .stretch = 10, .bend = 1e-6, .damping = 0.03}));
+    system.add(Gravity{});
+    constraints.add(Obstacle{.shape = std::move(shape), .friction = friction});
+    for (int i = 0; i < state.particles(); ++i) state.x[3 * i + 1] = 0.02;
+  }
+};
+
+// Explicit Euler needs h below what the damping over the stiffness allows.
+double step_for(std::string_view name) { return is_explicit(name) ? 4e-4 : 0.01; }
+
+int steps_for(std::string_view name, double duration) {
+  return static_cast<int>(std::lround(duration / step_for(name)));
+}
+
+struct ThreadsRestored {
+  int before = threads();
+  ~ThreadsRestored() { set_threads(before); }
+};
+
+}  // namespace
+
+TEST_CASE("pinned and massless particles stay, whatever the integrator", "[integrators]") {
+  for (const std::string& name : integrator_names()) {
+    const TriangleMesh mesh = grid(6, 6, 0.3, 0.3);
+    std::vector<double> masses = lumped_mass(mesh, 0.3);
+    masses[35] = 0;
+    System system(masses);
+    system.add(noh_jung(mesh, {.area_density = 0.3, .stretch = 10, .bend = 1e-6, .damping = 0.03}));
+    system.add(Gravity{});
+    Constraints constraints;
+    constraints.pin({0, 5});
+    State state = at_rest(mesh);
+    state.x.array() += 0.1;  // not round
+    const VecX start = state.x;
+    auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+    for (int n = 0; n < steps_for(name, 0.3); ++n) REQUIRE(stepper->advance(state, step_for(name)).done);
+    INFO(name);
+    for (int i : {0, 5, 35}) {
+      CHECK(state.x.segment<3>(3 * i) == start.segment<3>(3 * i));
+      CHECK(state.v.segment<3>(3 * i).norm() == 0);
+    }
+    CHECK((state.x - start).cwiseAbs().maxCoeff() > 0.01);
+    CHECK(state.time == Approx(0.3));
+  }
+}
+
+TEST_CASE("a cloth is never inside a body and comes to rest, whatever the integrator", "[integrators]") {
+  for (const std::string& name : integrator_names()) {
+    for (const bool ball : {true, false}) {
+      Drop drop = ball ? Drop(Sphere{{0, -0.1, 0}, 0.1}) : Drop(Plane{{0, 0, 0}, {0, 1, 0}});
+      auto stepper = make_integrator(name, drop.system, drop.constraints, make_linear_solver("mpcg"));
+      double deepest = 0;
+      int contacts = 0;
+      INFO(name << (ball ? " on a ball" : " on a plane"));
+      for (int n = 0; n < steps_for(name, 2); ++n) {
+        const StepReport report = stepper->advance(drop.state, step_for(name));
+        INFO("step " << n << ": " << report.failure.what << " " << report.failure.force);
+        REQUIRE(report.done);
+        for (double depth : drop.constraints.penetration(drop.state.x)) deepest = std::max(deepest, depth);
+        contacts = report.contacts;
+      }
+      CHECK(deepest < 1e-9);
+      CHECK(contacts > (ball ? 5 : 100));
+      CHECK(max_speed(drop.state) < (ball ? 0.03 : 0.005));
+    }
+  }
+}
+
+TEST_CASE("what lands does not bounce, whatever the integrator", "[integrators]") {
+  for (const std::string& name : integrator_names()) {
+    for (const double height : {0.05, 0.051, 0.0525, 0.054}) {  // the plane is met anywhere within a step
+      System system({0.1});
+      system.add(Gravity{});
+      Constraints constraints;
+      constraints.add(Obstacle{.shape = Plane{}, .friction = 0.3, .margin = 0.001});
+      State state{0, VecX(Vec3(0, height, 0)), VecX(Vec3(0.3, 0, 0))};
+      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+      const double h = is_explicit(name) ? 0.002 : 0.01;
+      double top = 0;  // after the first contact
+      bool landed = false;
+      for (int n = 0; n < 40 || !landed; ++n) {
+        REQUIRE(stepper->advance(state, h).done);
+        landed = landed || state.x[1] < 0.0011;
+        if (landed) top = std::max(top, state.x[1]);
+        CHECK(state.x[1] > 0);
+      }
+      INFO(name << " from " << height << " m");
+      CHECK(top < 0.0011);
+      CHECK(state.v[0] < 0.3);
+    }
+  }
+}
+
+TEST_CASE("a particle on an incline sticks below the angle of friction and slides above it",
+          "[integrators]") {
+  const double mu = 0.3, g = 9.81;
+  for (const std::string& name : integrator_names()) {
+    for (const double slope : {0.2, 0.6}) {
+      const double angle = std::atan(slope);
+      System system({0.1});
+      system.add(Gravity{{0, -g, 0}});
+      Constraints constraints;
+      const Vec3 normal(-std::sin(angle), std::cos(angle), 0), down(-std::cos(angle), -std::sin(angle), 0);
+      constraints.add(Obstacle{.shape = Plane{{0, 0, 0}, normal}, .friction = mu, .margin = 0.001});
+      State state{0, VecX(0.001 * normal), VecX::Zero(3)};
+      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+      const double h = is_explicit(name) ? 0.002 : 0.01;
+      for (int n = 0; n < static_cast<int>(std::lround(1 / h)); ++n) REQUIRE(stepper->advance(state, h).done);
+      INFO(name << " on a slope of " << slope);
+      CHECK(state.x.dot(normal) == Approx(0.001).margin(1e-9));
+      if (slope < mu) {
+        CHECK(state.v.norm() < 1e-9);
+        CHECK(std::abs(state.x.dot(down)) < 1e-4);
+      } else {
+        const double a = g * (std::sin(angle) - mu * std::cos(angle));
+        CHECK(state.v.dot(down) == Approx(a).epsilon(0.02));
+        CHECK(state.x.dot(down) == Approx(0.5 * a).epsilon(0.03));
+      }
+    }
+  }
+}
+
+TEST_CASE("every integrator gives the same bits with 1, 2 and 7 threads", "[integrators]") {
+  const ThreadsRestored restored;
+  const TriangleMesh mesh = grid(64, 64, 1, 1);  // above the size where threads begin
+  for (const std::string& name : integrator_names()) {
+    VecX first;
+    for (int t : {1, 2, 7}) {
+      set_threads(t);
+      System system(lumped_mass(mesh, 0.2));
+      system.add(noh_jung(mesh, {.area_density = 0.2, .stretch = 20, .bend = 1e-6, .damping = 1e-3}));
+      system.add(Gravity{});
+      Constraints constraints;
+      constraints.pin(0);
+      constraints.add(Obstacle{.shape = Sphere{{0, -0.102, 0}, 0.1}});
+      State state = at_rest(mesh);
+      StepOptions options;
+      options.tolerance = 1e-4;
+      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), options);
+      for (int n = 0; n < 4; ++n) REQUIRE(stepper->advance(state, is_explicit(name) ? 4e-4 : 4e-3).done);
+      VecX all(2 * state.x.size());
+      all << state.x, state.v;
+      if (first.size() == 0) first = all;
+      INFO(name << ", " << t << " threads");
+      CHECK(std::memcmp(all.data(), first.data(), static_cast<std::size_t>(all.size()) * sizeof(double)) ==
+            0);
+    }
+  }
+}
