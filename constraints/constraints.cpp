@@ -69,10 +69,12 @@ void Constraints::prepare(int particles, const std::vector<double>& masses) {
   for (auto& found : found_) found.reserve(chunk_size);
 }
 
-void Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double h) {
+void Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double h,
+                             bool foresight) {
   const int n = static_cast<int>(x.size() / 3);
   prepare(n, masses);
   h_ = h;
+  ahead_ = foresight ? h : 0;
   if (obstacles_.empty()) return;
   for (const Contact& c : trial_) {
     contact_of_[static_cast<std::size_t>(c.particle)] = -1;
@@ -109,7 +111,7 @@ void Constraints::take_found() {
 
 void Constraints::look_for_contact(int particle, std::vector<Contact>& found, double& deepest) {
   const Vec3 x = x_.segment<3>(3 * particle);
-  const Vec3 path = h_ * v_.segment<3>(3 * particle);
+  const Vec3 path = ahead_ * v_.segment<3>(3 * particle);
   const double travel = path.norm();
   const int old = committed_of_[static_cast<std::size_t>(particle)];
   const Contact* before = old < 0 ? nullptr : &committed_[static_cast<std::size_t>(old)];
@@ -124,7 +126,7 @@ void Constraints::look_for_contact(int particle, std::vector<Contact>& found, do
     const Vec3 body = obstacle.velocity_at(x);
     const bool touched = plane_with(before, o) != nullptr;
     if (touched ? gap < std::max(0.5 * obstacle.margin, 1e-6)
-                : gap < 0 && gap + (path - h_ * body).dot(s.normal) < 0) {
+                : gap < 0 && gap + (path - ahead_ * body).dot(s.normal) < 0) {
       add_plane(contact, {o, s.normal, gap, body});
     } else if (gap < travel) {
       if (const auto hit = first_hit(obstacle.shape, x, x + path, obstacle.margin)) {

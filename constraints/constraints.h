@@ -47,8 +47,10 @@ class Constraints {
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }
   const std::vector<int>& pinned() const { return pinned_; }
 
-  // x [m], v [m/s], masses [kg], h [s].
-  void begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double h);
+  // x [m], v [m/s], masses [kg], h [s]. Without foresight only what touches already is found, and x -> x + h
+  // v is not looked at: for motions that vibrate within a step.
+  void begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double h,
+                  bool foresight = true);
   void filter(const VecX& v, Filter& filter) const;
   const std::vector<ContactFriction>& friction();
   const VecX& correction() const { return correction_; }  // y [m]; empty without obstacles
@@ -82,7 +84,7 @@ class Constraints {
   std::vector<int> pinned_;
 
   // Scratch of the step under way.
-  double h_ = 0;
+  double h_ = 0, ahead_ = 0;    // s, of the step, and how far ahead contacts are foreseen
   std::vector<double> masses_;  // kg
   VecX x_, v_, correction_;
   std::vector<char> held_;       // pinned, or without mass

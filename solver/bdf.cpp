@@ -102,6 +102,10 @@ bool Bdf::attempt(State& state, double h, bool whole, StepReport& report) {
     x_ = x_bar_ + c_ * v_;
     if (!x_.allFinite()) return fail(report, "the new positions are not finite numbers", linear);
   }
+  if (back_ > 0 && makes_energy(state)) {
+    ++report.rescues;
+    return attempt(state, h, false, report);
+  }
   x_new_ = x_;
   v_new_ = v_;
   {
@@ -118,6 +122,16 @@ bool Bdf::attempt(State& state, double h, bool whole, StepReport& report) {
   state.v = v_new_;
   state.time += h;
   return true;
+}
+
+// More than the error of a smooth motion: order 2 has looked back across a contact or a slackening of stiff
+// cloth, and the step is taken again by order 1.
+bool Bdf::makes_energy(const State& state) const {
+  const auto energy = [&](const VecX& x, const VecX& v) {
+    return system_.elastic_energy(x) + system_.gravity_energy(x) + system_.kinetic_energy(v);
+  };
+  return energy(x_, v_) >
+         energy(state.x, state.v) + 0.05 * fall_energy_ + 1e-3 * system_.kinetic_energy(state.v);
 }
 
 void Bdf::choose_coefficients(const State& state, double h, bool whole) {

@@ -16,6 +16,7 @@
 // from outside, a failed step taken in halves, h more than doubled) the step is of order 1. A particle that
 // touches a body, or did in the last step, takes it with what is known of its present motion u alone:
 //   gamma m (v - v_n) = c f,   x = x_n + (h - c) u + c v      (u = v_n, and the target where it is locked)
+// A step of order 2 that made energy is taken again by order 1 (and counted in rescues).
 // x [m], v [m/s], M [kg], f [N], h [s].
 #pragma once
 
@@ -51,6 +52,7 @@ class Bdf final : public Integrator {
   void resize();
   void choose_coefficients(const State& state, double h, bool whole);
   void look_back(const State& state);
+  bool makes_energy(const State& state) const;
   void restart_touching(const State& state);
   void linearise(const State& state, Stiffness stiffness, StepReport& report);
   void assemble(Stiffness stiffness);

@@ -10,7 +10,7 @@ namespace drape {
 
 void HeldMotion::begin(const State& state, double h, StepReport& report) {
   const Stopwatch watch(report.collide_ms);
-  constraints_.begin_step(state.x, state.v, system_.masses(), h);
+  constraints_.begin_step(state.x, state.v, system_.masses(), h, false);
   constraints_.filter(state.v, held_);
   v_start_ = state.v;
   for (const FilterEntry& e : held_.entries()) v_start_.segment<3>(3 * e.particle) += e.z;
@@ -70,16 +70,24 @@ void HeldMotion::set_free(const VecX& v, double h) {
   }
 }
 
-// What was held and is let go, or comes loose, moves from the next step on: h (I - S) M^-1 f is explicit, and
-// where the cloth is stiff and h long it is far more than the particle would gain.
+// What was held and is let go, or comes loose, gets back the velocity that was taken from it at the start,
+// less friction; it moves from the next step on. Not h (I - S) M^-1 f, which is explicit: where the cloth is
+// stiff and h long it is far more than the particle would gain.
 void HeldMotion::let_go(const VecX& x, const VecX& v) {
   for (const Contact& c : constraints_.touching()) {
     if (c.active() && c.grip != Grip::breaking_loose) continue;
     const auto held = std::find_if(held_.entries().begin(), held_.entries().end(),
                                    [&](const FilterEntry& e) { return e.particle == c.particle; });
     if (held == held_.entries().end() || (c.active() && !held->S.isZero(0))) continue;
+    Vec3 back = -held->z;
+    if (c.active()) {
+      const Mat3 Q = c.locked_directions();
+      back -= Q * (Q.transpose() * back);
+      const double most = c.friction_impulse.norm() / system_.masses()[static_cast<std::size_t>(c.particle)];
+      back *= back.norm() > most ? 1 - most / back.norm() : 0;
+    }
     x_new_.segment<3>(3 * c.particle) = x.segment<3>(3 * c.particle);
-    v_new_.segment<3>(3 * c.particle) = v.segment<3>(3 * c.particle);
+    v_new_.segment<3>(3 * c.particle) = v.segment<3>(3 * c.particle) + back;
   }
 }
 
@@ -123,8 +131,10 @@ void HeldMotion::move_within_constraints(const State& state, const VecX& x, doub
   for (const Contact& c : constraints_.touching()) {
     const int i = 3 * c.particle;
     r_.segment<3>(i) += mass(c.particle) * (v_new_.segment<3>(i) - v_free_.segment<3>(i));
-    x_new_.segment<3>(i) =
-        state.x.segment<3>(i) + constraints_.correction().segment<3>(i) + h * v_new_.segment<3>(i);
+    // Along the planes as far as they say; across them as it came, and not h v: within a step it may vibrate.
+    const Mat3 Q = c.locked_directions();
+    const Vec3 wanted = h * v_new_.segment<3>(i) - (x.segment<3>(i) - state.x.segment<3>(i));
+    x_new_.segment<3>(i) += Q * (Q.transpose() * wanted) + constraints_.correction().segment<3>(i);
   }
 }
 

@@ -1,5 +1,5 @@
 // Pins, contact and friction for integrators that follow dx/dt = v, dv/dt = M^-1 f and know no constraints.
-//   begin     finds the contacts of the predicted motion. What they lock is held during the step: it starts
+//   begin     finds what touches. What that locks is held during the step: it starts
 //             with its target velocity, v_0 = v_n + z, and has the acceleration S M^-1 f.
 //   finish    solves the constrained step with the mass alone, particle by particle: from the velocity that
 //             a particle would have had,

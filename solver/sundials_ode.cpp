@@ -1,5 +1,5 @@
-// "cvode-bdf", "cvode-adams", "arkode-erk", "arkode-dirk": dx/dt = v, dv/dt = S M^-1 f(x, v) by SUNDIALS, with
-// inner steps of its own choice inside each h, so that the error of every inner step is below
+// "cvode-bdf", "cvode-adams", "arkode-erk", "arkode-dirk": dx/dt = v, dv/dt = S M^-1 f(x, v) by SUNDIALS,
+// with inner steps of its own choice inside each h, so that the error of every inner step is below
 //   relative_tolerance |y| + absolute_tolerance_position [m], absolute_tolerance_velocity [m/s].
 // The implicit ones ask for (I - g J) (dx, dv) = (rx, rv) in Newton's iteration; that is our system,
 //   (M + g D + g^2 K) dv = M rv - g K rx,   dx = rx + g dv,
@@ -86,7 +86,8 @@ SundialsOde::SundialsOde(std::string_view name, System& system, Constraints& con
   tolerances.head(n).setConstant(options.absolute_tolerance_position);
   tolerances.tail(n).setConstant(options.absolute_tolerance_velocity);
   const sundials::View y(y_, context_), tolerance(tolerances, context_);
-  if (implicit_) linear_ = sundials::our_solver<SundialsOde, SUNLINEARSOLVER_MATRIX_EMBEDDED>(*this, context_);
+  if (implicit_)
+    linear_ = sundials::our_solver<SundialsOde, SUNLINEARSOLVER_MATRIX_EMBEDDED>(*this, context_);
   if (cvode_)
     make_cvode(y, tolerance);
   else
@@ -111,7 +112,8 @@ void SundialsOde::make_cvode(N_Vector y, N_Vector tolerance) {
 }
 
 void SundialsOde::make_arkode(N_Vector y, N_Vector tolerance) {
-  memory_ = ARKStepCreate(implicit_ ? nullptr : derivative_of, implicit_ ? derivative_of : nullptr, 0, y, context_);
+  memory_ =
+      ARKStepCreate(implicit_ ? nullptr : derivative_of, implicit_ ? derivative_of : nullptr, 0, y, context_);
   ARKStepSetErrHandlerFn(
       memory_, [](int, const char*, const char*, char*, void*) {}, nullptr);
   ARKStepSetUserData(memory_, this);
@@ -266,7 +268,8 @@ std::string SundialsOde::why(int flag) const {
            " inner steps did not reach the end of the step: take larger tolerances or a shorter time step";
   if (too_many)
     return std::to_string(options_.max_inner_steps) +
-           " inner steps did not reach the end of the step: the cloth is stiff, take cvode-bdf or arkode-dirk";
+           " inner steps did not reach the end of the step: the cloth is stiff, take cvode-bdf or "
+           "arkode-dirk";
   char* text = cvode_ ? CVodeGetReturnFlagName(flag) : ARKStepGetReturnFlagName(flag);
   const std::string reason = text;
   std::free(text);
