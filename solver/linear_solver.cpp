@@ -14,6 +14,13 @@ std::unique_ptr<LinearSolver> make_eigen_cg();
 #ifdef DRAPE_HAVE_CHOLMOD
 std::unique_ptr<LinearSolver> make_cholmod();
 #endif
+#ifdef DRAPE_HAVE_SUNDIALS
+std::unique_ptr<LinearSolver> make_sundials_pcg(std::string name,
+                                                std::unique_ptr<Preconditioner> preconditioner);
+#endif
+#ifdef DRAPE_HAVE_PETSC
+std::unique_ptr<LinearSolver> make_petsc();
+#endif
 
 namespace {
 
@@ -36,6 +43,15 @@ const std::vector<Entry>& entries() {
        [] { return make_pcg("ppcg+multigrid", true, make_multigrid()); }},
 #ifdef DRAPE_HAVE_CHOLMOD
       {{"cholmod", "sparse LL^T of SuiteSparse"}, make_cholmod},
+#endif
+#ifdef DRAPE_HAVE_SUNDIALS
+      {{"sundials-pcg", "SUNLinSol_PCG of SUNDIALS, 3x3 block-Jacobi"},
+       [] { return make_sundials_pcg("sundials-pcg", make_block_jacobi()); }},
+      {{"sundials-pcg+multigrid", "the same with smoothed aggregation"},
+       [] { return make_sundials_pcg("sundials-pcg+multigrid", make_multigrid()); }},
+#endif
+#ifdef DRAPE_HAVE_PETSC
+      {{"petsc", "KSP CG of PETSc with its multigrid GAMG"}, make_petsc},
 #endif
       {{"eigen-ldlt", "sparse LDL^T of Eigen"}, make_eigen_ldlt},
       {{"eigen-cg", "conjugate gradient of Eigen with incomplete Cholesky"}, make_eigen_cg},

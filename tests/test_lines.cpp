@@ -1,8 +1,8 @@
 // Laws of single lines: each was written because breaking that line failed no other test.
 #include <sys/resource.h>
-#include <csignal>
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -37,8 +37,11 @@ std::vector<PairForce<BucklingSpring>::Element> bends(const std::vector<std::uni
 int simulate(const Folder& d, const std::string& words) {
   const TriangleMesh sheet = grid(3, 3, 1, 1);
   write_obj(d.path / "sheet.obj", sheet, sheet.positions);
-  std::ofstream(d.path / "s.toml") << "[[cloth]]\nmesh = \"sheet.obj\"\nfabric = \"cotton-poplin\"\n[simulation]\n";
-  return std::system(("cd '" + d.path.string() + "' && '" DRAPE_PROGRAM "' simulate s.toml --quiet --out o " + words).c_str());
+  std::ofstream(d.path / "s.toml")
+      << "[[cloth]]\nmesh = \"sheet.obj\"\nfabric = \"cotton-poplin\"\n[simulation]\n";
+  return std::system(
+      ("cd '" + d.path.string() + "' && '" DRAPE_PROGRAM "' simulate s.toml --quiet --out o " + words)
+          .c_str());
 }
 }  // namespace
 
@@ -68,7 +71,8 @@ TEST_CASE("a box pins what lies on its sides", "[contact]") {
 }
 
 TEST_CASE("what the solution would drive through a surface is caught within the equations", "[contact]") {
-  // Pulled down by a spring in one step: the prediction (no gravity) does not meet the plane, the solution does.
+  // Pulled down by a spring in one step: the prediction (no gravity) does not meet the plane, the solution
+  // does.
   System system({0.01, 0.01});
   std::vector<PairForce<TensionSpring>::Element> e;
   e.push_back({0, 1, {0.1, 100}});
@@ -163,7 +167,8 @@ TEST_CASE("a bad start does not loosen the tolerance", "[solvers]") {
 }
 
 TEST_CASE("a residual is relative to the scale where the right-hand side is round-off", "[solvers]") {
-  // The size that a residual is compared with is at least `scale`: a right-hand side of round-off is solved at once.
+  // The size that a residual is compared with is at least `scale`: a right-hand side of round-off is solved
+  // at once.
   Small p({{0, 1}}, 2);
   p.b *= 1e-9;
   for (const auto& info : linear_solvers()) {
@@ -206,14 +211,19 @@ TEST_CASE("a file that does not reach the disk is an error and is not there", "[
   file.write("small");  // stays in the buffer
   setrlimit(RLIMIT_FSIZE, &none);
   std::string said;
-  try { file.keep(); } catch (const InputError& e) { said = e.what(); }
+  try {
+    file.keep();
+  } catch (const InputError& e) {
+    said = e.what();
+  }
   setrlimit(RLIMIT_FSIZE, &old);
   CHECK_THAT(said, Catch::Contains("cannot write: File too large"));
   CHECK_FALSE(fs::exists(d.path / "a.txt"));
 }
 
 TEST_CASE("line elements count texture coordinates from the end", "[obj]") {
-  const TriangleMesh mesh = parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 1\nf 1 2 3\nl -3/-2 -1/-1\n", "l.obj");
+  const TriangleMesh mesh =
+      parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 1\nf 1 2 3\nl -3/-2 -1/-1\n", "l.obj");
   CHECK(mesh.document->warnings.empty());
   CHECK_THAT(format_obj(mesh, mesh.positions), Catch::Contains("l 1/1 3/2\n"));
 }

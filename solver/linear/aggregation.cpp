@@ -31,7 +31,8 @@ int aggregate(const BlockCsr& A, const std::vector<char>& strong, std::vector<in
   int count = 0;
   const auto each_strong = [&](int i, const auto& f) {
     for (int k = A.begin(i); k < A.end(i); ++k)
-      if (const int j = A.at(k); j != i && strong[static_cast<std::size_t>(k)] && of[static_cast<std::size_t>(j)] != alone)
+      if (const int j = A.at(k);
+          j != i && strong[static_cast<std::size_t>(k)] && of[static_cast<std::size_t>(j)] != alone)
         f(j, k);
   };
   // A vertex none of whose neighbours is taken begins an aggregate with all of them.
@@ -98,7 +99,8 @@ BlockCsr smoothed_aggregation(const BlockCsr& A, double theta, const std::functi
     };
     add(of[static_cast<std::size_t>(i)], (1 - omega) * T[static_cast<std::size_t>(i)]);
     for (int k = A.begin(i); k < A.end(i); ++k)
-      if (const int j = A.at(k); j != i && strong[static_cast<std::size_t>(k)] && of[static_cast<std::size_t>(j)] >= 0)
+      if (const int j = A.at(k);
+          j != i && strong[static_cast<std::size_t>(k)] && of[static_cast<std::size_t>(j)] >= 0)
         add(of[static_cast<std::size_t>(j)], -(inverse * A[k] * T[static_cast<std::size_t>(j)]));
   });
 }

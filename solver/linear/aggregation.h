@@ -1,4 +1,5 @@
-// Smoothed aggregation over whole vertices.                    [Vanek, Mandel & Brezina 1996, sections 3 and 4]
+// Smoothed aggregation over whole vertices.                    [Vanek, Mandel & Brezina 1996, sections 3 and
+// 4]
 //   i and j are strongly coupled when |A_ij|_F^2 > theta^2 |A_ii|_F |A_jj|_F; aggregates are a vertex and its
 //   strong neighbours; the tentative prolongation T gives each aggregate one translation (a 3x3 block S_i for
 //   every vertex); P = (I - omega D_F^-1 A_F) T, A_F with its weak couplings moved to the diagonal.

@@ -20,7 +20,8 @@ struct Wide {  // a block that is being summed up
 class RowSum {
  public:
   void prepare(int columns) {
-    if (place_.size() != static_cast<std::size_t>(columns)) place_.assign(static_cast<std::size_t>(columns), -1);
+    if (place_.size() != static_cast<std::size_t>(columns))
+      place_.assign(static_cast<std::size_t>(columns), -1);
   }
   Four* at(int column) {
     int& place = place_[static_cast<std::size_t>(column)];

@@ -1,7 +1,7 @@
 // Sparse matrices of 3x3 blocks that are built row by row, and the two operations that multigrid is made of:
 //   multiply(A, B) = A B [Gustavson 1978],   transposed(A) = A^T.
-// Internal to solver/linear. Blocks column by column; columns ascend within a row. Deterministic on any number
-// of threads: rows are made in fixed chunks and put together in order.
+// Internal to solver/linear. Blocks column by column; columns ascend within a row. Deterministic on any
+// number of threads: rows are made in fixed chunks and put together in order.
 #pragma once
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // Incomplete Cholesky on 3x3 blocks, no fill: P^-1 = L D L^T with L of the pattern of A, in float.
 //   A_jk <- A_jk - A_ij^T D_i^-1 A_ik for every i < j <= k whose block (j, k) is in the pattern, D_i = A_ii;
 //   L_ji = A_ij^T D_i^-1.                                                    [Meijerink & van der Vorst 1977]
-// Where a pivot is not positive the matrix is shifted, A + a diag(A), a growing until it works [Manteuffel 1980],
-// and the report says so. Block rows of A's upper triangle stand in for the columns of L.
+// Where a pivot is not positive the matrix is shifted, A + a diag(A), a growing until it works [Manteuffel
+// 1980], and the report says so. Block rows of A's upper triangle stand in for the columns of L.
 
 #include "solver/linear/preconditioner.h"
 #include "solver/linear/projected_block.h"
@@ -27,7 +27,8 @@ class BlockIc0 final : public Preconditioner {
       if (shift_ > largest_shift) return false;
     }
     if (shift_ > 0)
-      report.note = "incomplete Cholesky broke down; it was built for A + " + std::to_string(shift_) + " diag(A)";
+      report.note =
+          "incomplete Cholesky broke down; it was built for A + " + std::to_string(shift_) + " diag(A)";
     lower_.resize(values_.size());
     for (std::size_t s = 0; s < values_.size(); ++s) lower_[s] = values_[s].cast<float>();
     y_.resize(3 * static_cast<Eigen::Index>(A.rows()));
@@ -72,7 +73,8 @@ class BlockIc0 final : public Preconditioner {
       // A pivot that is all but lost is no better than one that is negative.
       constexpr double least = 1e-5;
       const Mat3 original = projected.block(begin, i, i);
-      if (!positive_definite(value(begin)) || value(begin).determinant() < least * least * least * original.determinant())
+      if (!positive_definite(value(begin)) ||
+          value(begin).determinant() < least * least * least * original.determinant())
         return false;
       value(begin) = value(begin).inverse().eval();
       for (int k = begin + 1; k < end; ++k) eliminate(value(begin), k, end, column);
@@ -97,7 +99,7 @@ class BlockIc0 final : public Preconditioner {
 
   const BlockPattern* pattern_ = nullptr;
   double shift_ = 0;
-  std::vector<Mat3> values_;    // scratch of the factorisation, by slot
+  std::vector<Mat3> values_;  // scratch of the factorisation, by slot
   std::vector<Mat3f> lower_;
   Eigen::VectorXf y_;
 };

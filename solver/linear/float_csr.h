@@ -13,8 +13,8 @@ typedef float FourFloats __attribute__((vector_size(16), aligned(4)));
 class FloatCsr {
  public:
   FloatCsr() = default;
-  // Row new_row of this is row old_row(new_row) of A, with the columns renamed; keep(new_row, new_column) says
-  // which blocks.
+  // Row new_row of this is row old_row(new_row) of A, with the columns renamed; keep(new_row, new_column)
+  // says which blocks.
   template <class OldRow, class NewColumn, class Keep>
   FloatCsr(const BlockCsr& A, const OldRow& old_row, const NewColumn& new_column, const Keep& keep) {
     start_.reserve(A.start.size());

@@ -1,10 +1,10 @@
 // A V-cycle of smoothed aggregation as preconditioner.     [Vanek, Mandel & Brezina 1996; Tamstorf, Jones &
 // McCormick 2015]
 //   level: x = smooth down (r);  x += P V(P^T (r - A x));  x = smooth up (r, x);    next level: A_c = P^T A P
-// Our own, because it beat PETSc's GAMG on these matrices (tests/bench measures both): blocks of whole vertices,
-// float inside the cycle, and threads that do not change a bit.
-// The hierarchy is kept from step to step while it still works: while the iterations stay within a third more than
-// when it was new. Once they do not, even in the middle of a solve, it is built anew.
+// Our own, because it beat PETSc's GAMG on these matrices (tests/bench measures both): blocks of whole
+// vertices, float inside the cycle, and threads that do not change a bit. The hierarchy is kept from step to
+// step while it still works: while the iterations stay within a third more than when it was new. Once they do
+// not, even in the middle of a solve, it is built anew.
 #include <Eigen/Cholesky>
 
 #include "solver/linear/aggregation.h"
@@ -23,43 +23,8 @@ struct Level {
   FloatCsr prolongation, restriction;  // rows and columns as the smoothers number them
   VecXf x, r, residual;
 
-  explicit Level(const BlockCsr& A)
-      : smoother(A), x(VecXf::Zero(3 * A.rows())), r(x), residual(x) {}
+  explicit Level(const BlockCsr& A) : smoother(A), x(VecXf::Zero(3 * A.rows())), r(x), residual(x) {}
 };
-
-BlockCsr finest(const BlockMatrix& A, const ProjectedBlocks& projected) {
-  BlockCsr upper, whole;
-  upper.columns = A.rows();
-  const std::vector<int>&start = A.pattern().row_start(), &column = A.pattern().column();
-  const auto in_row = [&](int r) { return start[static_cast<std::size_t>(r) + 1]; };
-  // Below the diagonal the transposes of what stands above it: slots by column, ascending rows.
-  std::vector<int> first(static_cast<std::size_t>(A.rows()) + 1, 0), row_of, slot_of;
-  for (int r = 0; r < A.rows(); ++r)
-    for (int s = A.pattern().diagonal(r) + 1; s < in_row(r); ++s)
-      ++first[static_cast<std::size_t>(column[static_cast<std::size_t>(s)]) + 1];
-  for (std::size_t r = 0; r < static_cast<std::size_t>(A.rows()); ++r) first[r + 1] += first[r];
-  row_of.resize(static_cast<std::size_t>(first.back()));
-  slot_of.resize(row_of.size());
-  std::vector<int> next(first.begin(), first.end() - 1);
-  for (int r = 0; r < A.rows(); ++r)
-    for (int s = A.pattern().diagonal(r) + 1; s < in_row(r); ++s) {
-      const auto place = static_cast<std::size_t>(next[static_cast<std::size_t>(column[static_cast<std::size_t>(s)])]++);
-      row_of[place] = r;
-      slot_of[place] = s;
-    }
-  return build_rows(A.rows(), A.rows(), [&](int r, BlockCsr& part) {
-    for (int k = first[static_cast<std::size_t>(r)]; k < first[static_cast<std::size_t>(r) + 1]; ++k) {
-      const int c = row_of[static_cast<std::size_t>(k)];
-      part.column.push_back(c);
-      part.block.push_back(projected.block(slot_of[static_cast<std::size_t>(k)], c, r).transpose());
-    }
-    for (int s = A.pattern().diagonal(r); s < in_row(r); ++s) {
-      const int c = column[static_cast<std::size_t>(s)];
-      part.column.push_back(c);
-      part.block.push_back(projected.block(s, r, c));
-    }
-  });
-}
 
 // Directions that no vertex of an aggregate may take have no stiffness: they get a little, and stay at zero.
 void make_definite(BlockCsr& A) {
@@ -81,7 +46,7 @@ class Multigrid final : public Preconditioner {
     const ProjectedBlocks projected(A, filter);
     for (int r = 0; r < A.rows(); ++r)
       if (!positive_definite(projected.block(A.pattern().diagonal(r), r, r))) return false;
-    build(finest(A, projected), [&](int r) { return projected.S(r); });
+    build(whole(A, projected), [&](int r) { return projected.S(r); });
     serial_ = A.pattern().serial();
     ++report.analyses;
     works_ = coarse_.info() == Eigen::Success;
@@ -138,8 +103,10 @@ class Multigrid final : public Preconditioner {
     const auto all = [](int, int) { return true; };
     const auto fine_row = [&](int r) { return fine.smoother.old_of(r); };
     const auto coarse_row = [&](int r) { return coarse.old_of(r); };
-    fine.prolongation = FloatCsr(P, fine_row, [&](int c) { return coarse.new_of(c); }, all);
-    fine.restriction = FloatCsr(R, coarse_row, [&](int c) { return fine.smoother.new_of(c); }, all);
+    fine.prolongation = FloatCsr(
+        P, fine_row, [&](int c) { return coarse.new_of(c); }, all);
+    fine.restriction = FloatCsr(
+        R, coarse_row, [&](int c) { return fine.smoother.new_of(c); }, all);
   }
 
   void factorise(const BlockCsr& A) {

@@ -6,6 +6,7 @@
 
 #include "constraints/filter.h"
 #include "solver/block_matrix.h"
+#include "solver/linear/block_csr.h"
 
 namespace drape {
 
@@ -42,7 +43,10 @@ class ProjectedBlocks {
   std::vector<int> entry_;  // row -> entry of the filter, -1: free
 };
 
-// Symmetric and positive definite, to the bit and by its leading minors.
+// The projected matrix with both its halves.
+BlockCsr whole(const BlockMatrix& A, const ProjectedBlocks& projected);
+
+// Of a symmetric block, by its leading minors.
 inline bool positive_definite(const Mat3& b) {
   const double minor = b(0, 0) * b(1, 1) - b(0, 1) * b(1, 0);
   return b(0, 0) > 0 && minor > 0 && b.determinant() > 0;

@@ -1,9 +1,10 @@
 // Symmetric block Gauss-Seidel in float: one pass over the matrix on the way down, residual included, and one
-// on the way up.                                                             [Briggs, Henson & McCormick 2000]
+// on the way up.                                                             [Briggs, Henson & McCormick
+// 2000]
 //   A = L + D + U:   down from x = 0:  (L + D) x = r,  r - A x = -U x;      up:  (D + U) x_new = r - L x
-// Rows are cut into chunks at least as long as the bandwidth and numbered anew: first all even chunks, then all
-// odd ones. Those of one kind do not touch each other, so they are swept side by side, and the sweep up is the
-// adjoint of the sweep down, whatever the number of threads.
+// Rows are cut into chunks at least as long as the bandwidth and numbered anew: first all even chunks, then
+// all odd ones. Those of one kind do not touch each other, so they are swept side by side, and the sweep up
+// is the adjoint of the sweep down, whatever the number of threads.
 #pragma once
 
 #include "solver/linear/float_csr.h"

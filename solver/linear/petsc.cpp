@@ -1,0 +1,142 @@
+// "petsc": the prefiltered system by PETSc's KSP CG, preconditioned by its algebraic multigrid GAMG.
+//   PETSc takes blocks of three over memory that is not its own in none of its formats ("block size 3 > 1 is not
+//   supported yet"), so it gets a copy, BAIJ; GAMG wants scalar rows and gets a conversion. One process here; the calls are those of runs under mpirun.
+//                                                             [Balay et al., PETSc Users Manual, 3.18]
+#include <petscksp.h>
+
+#include "solver/linear/projected_block.h"
+#include "solver/linear/residual.h"
+#include "solver/stopwatch.h"
+
+namespace drape {
+namespace {
+
+// PETSc is started once a process and stopped at its end.
+void start_petsc() {
+  static const bool started = [] {
+    PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
+    PetscInitializeNoArguments();
+    PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+    std::atexit([] { PetscFinalize(); });
+    return true;
+  }();
+  static_cast<void>(started);
+}
+
+class Petsc final : public LinearSolver {
+ public:
+  Petsc() {
+    start_petsc();
+    KSPCreate(PETSC_COMM_SELF, &ksp_);
+    KSPSetType(ksp_, KSPCG);
+    KSPSetNormType(ksp_, KSP_NORM_UNPRECONDITIONED);
+    KSPSetInitialGuessNonzero(ksp_, PETSC_TRUE);
+    PC pc = nullptr;
+    KSPGetPC(ksp_, &pc);
+    PCSetType(pc, PCGAMG);
+    PCGAMGSetThreshold(pc, threshold_, 1);
+    PCGAMGSetReuseInterpolation(pc, PETSC_TRUE);
+  }
+  Petsc(const Petsc&) = delete;
+  Petsc& operator=(const Petsc&) = delete;
+  ~Petsc() override {
+    release();
+    KSPDestroy(&ksp_);
+  }
+
+  std::string_view name() const override { return "petsc"; }
+
+  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
+                     VecX& dv) override {
+    LinearReport report;
+    z_.resize(b.size());
+    right_.resize(b.size());
+    {
+      const Stopwatch watch(report.setup_ms);
+      hand_over(A, filter, report);
+    }
+    if (report.reason != StopReason::converged) return report;
+    {
+      const Stopwatch watch(report.solve_ms);
+      const double reference = reference_impulse(A, b, filter, options, z_, right_);
+      filter.apply(dv);
+      if (right_.allFinite() && dv.allFinite() && reference > 0) iterate(A.rows(), options, reference, dv, report);
+      if (reference == 0) dv.setZero();
+      dv += z_;
+      const StopReason stopped = report.reason;
+      finish(A, b, filter, options, reference, dv, scratch_, report);
+      if (stopped != StopReason::converged && report.reason != StopReason::not_finite) report.reason = stopped;
+    }
+    return report;
+  }
+
+ private:
+  void release() {
+    MatDestroy(&rows_);
+    MatDestroy(&matrix_);
+  }
+
+  void hand_over(const BlockMatrix& A, const Filter& filter, LinearReport& report) {
+    const BlockPattern& pattern = A.pattern();
+    const ProjectedBlocks projected(A, filter);
+    for (int r = 0; r < A.rows(); ++r)
+      if (!positive_definite(projected.block(pattern.diagonal(r), r, r))) report.reason = StopReason::indefinite;
+    if (report.reason != StopReason::converged) return;
+    const BlockCsr blocks = whole(A, projected);
+    const bool same = serial_ == pattern.serial();
+    MatDestroy(&matrix_);
+    MatCreate(PETSC_COMM_SELF, &matrix_);
+    MatSetSizes(matrix_, 3 * A.rows(), 3 * A.rows(), 3 * A.rows(), 3 * A.rows());
+    MatSetType(matrix_, MATSEQBAIJ);
+    MatSetOption(matrix_, MAT_ROW_ORIENTED, PETSC_FALSE);
+    MatSeqBAIJSetPreallocationCSR(matrix_, 3, blocks.start.data(), blocks.column.data(),
+                                  blocks.block.front().data());
+    if (!same) MatDestroy(&rows_);
+    MatConvert(matrix_, MATAIJ, rows_ ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, &rows_);
+    MatSetBlockSize(rows_, 3);
+    KSPSetOperators(ksp_, matrix_, rows_);
+    if (KSPSetUp(ksp_) != 0) report.reason = StopReason::indefinite;
+    if (!same) ++report.analyses;
+    serial_ = pattern.serial();
+  }
+
+  void iterate(int rows, const LinearOptions& options, double reference, VecX& y, LinearReport& report) {
+    KSPSetTolerances(ksp_, 0, options.tolerance * reference, 1e30, iteration_limit(options, rows));
+    if (options.history) {
+      curve_.resize(static_cast<std::size_t>(iteration_limit(options, rows)) + 1);
+      KSPSetResidualHistory(ksp_, curve_.data(), static_cast<PetscInt>(curve_.size()), PETSC_TRUE);
+    }
+    Vec right = nullptr, solution = nullptr;
+    VecCreateSeqWithArray(PETSC_COMM_SELF, 3, 3 * rows, right_.data(), &right);
+    VecCreateSeqWithArray(PETSC_COMM_SELF, 3, 3 * rows, y.data(), &solution);
+    const PetscErrorCode error = KSPSolve(ksp_, right, solution);
+    VecDestroy(&right);
+    VecDestroy(&solution);
+    KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+    PetscInt iterations = 0, points = 0;
+    KSPGetConvergedReason(ksp_, &reason);
+    KSPGetIterationNumber(ksp_, &iterations);
+    report.iterations = static_cast<int>(iterations);
+    if (options.history) {
+      KSPGetResidualHistory(ksp_, nullptr, &points);
+      for (PetscInt k = 0; k < points; ++k)
+        options.history->push_back(curve_[static_cast<std::size_t>(k)] / reference);
+    }
+    if (error != 0 || reason == KSP_DIVERGED_INDEFINITE_MAT || reason == KSP_DIVERGED_INDEFINITE_PC ||
+        reason == KSP_DIVERGED_PC_FAILED)
+      report.reason = StopReason::indefinite;
+  }
+
+  KSP ksp_ = nullptr;
+  Mat matrix_ = nullptr, rows_ = nullptr;  // in blocks; the same in scalar rows
+  PetscReal threshold_[1] = {0.08};
+  std::uint64_t serial_ = 0;
+  std::vector<double> curve_;
+  VecX z_, right_, scratch_;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_petsc() { return std::make_unique<Petsc>(); }
+
+}  // namespace drape
