@@ -52,7 +52,7 @@ struct SimulationOptions {
   double frame_rate = 25;        // 1/s; 0: only the last
   Vec3 gravity = {0, -9.81, 0};  // m/s^2
   std::string integrator = "implicit-euler";
-  std::string linear_solver = "mpcg";
+  std::string linear_solver = "mpcg+block-ic0";  // README.md says why
   StepOptions step;
   ContactOptions contact;
   int threads = 0;                 // 0: as many as there are processors

@@ -31,9 +31,9 @@ struct Entry {
 
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> all = {
-      {{"mpcg", "modified conjugate gradient of Baraff & Witkin, 3x3 block-Jacobi (default)"},
+      {{"mpcg", "modified conjugate gradient of Baraff & Witkin, 3x3 block-Jacobi"},
        [] { return make_pcg("mpcg", false, make_block_jacobi()); }},
-      {{"mpcg+block-ic0", "the same with incomplete Cholesky on 3x3 blocks"},
+      {{"mpcg+block-ic0", "the same with incomplete Cholesky on 3x3 blocks (default)"},
        [] { return make_pcg("mpcg+block-ic0", false, make_block_ic0()); }},
       {{"ppcg", "prefiltered conjugate gradient of Tamstorf et al., 3x3 block-Jacobi"},
        [] { return make_pcg("ppcg", true, make_block_jacobi()); }},

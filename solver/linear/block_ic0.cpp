@@ -19,20 +19,13 @@ class BlockIc0 final : public Preconditioner {
 
   bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
     pattern_ = &A.pattern();
-    const ProjectedBlocks projected(A, filter);
-    constexpr double first_shift = 1e-3, largest_shift = 10;
     shift_ = shift_ > first_shift ? shift_ / 4 : 0;  // the matrix of the last step needed so much
-    while (!factorise(A, projected, shift_)) {
-      shift_ = shift_ == 0 ? first_shift : 4 * shift_;
-      if (shift_ > largest_shift) return false;
-    }
-    if (shift_ > 0)
-      report.note =
-          "incomplete Cholesky broke down; it was built for A + " + std::to_string(shift_) + " diag(A)";
-    lower_.resize(values_.size());
-    for (std::size_t s = 0; s < values_.size(); ++s) lower_[s] = values_[s].cast<float>();
-    y_.resize(3 * static_cast<Eigen::Index>(A.rows()));
-    return true;
+    return build(A, filter, report);
+  }
+
+  bool make_safer(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
+    raise_shift();
+    return build(A, filter, report);
   }
 
   void apply(const VecX& r, VecX& s) override {
@@ -55,6 +48,25 @@ class BlockIc0 final : public Preconditioner {
   }
 
  private:
+  static constexpr double first_shift = 1e-3, largest_shift = 10;
+
+  void raise_shift() { shift_ = shift_ == 0 ? first_shift : 4 * shift_; }
+
+  bool build(const BlockMatrix& A, const Filter& filter, LinearReport& report) {
+    const ProjectedBlocks projected(A, filter);
+    while (!factorise(A, projected, shift_)) {
+      raise_shift();
+      if (shift_ > largest_shift) return false;
+    }
+    if (shift_ > 0)
+      report.note =
+          "incomplete Cholesky broke down; it was built for A + " + std::to_string(shift_) + " diag(A)";
+    lower_.resize(values_.size());
+    for (std::size_t s = 0; s < values_.size(); ++s) lower_[s] = values_[s].cast<float>();
+    y_.resize(3 * static_cast<Eigen::Index>(A.rows()));
+    return true;
+  }
+
   static int first(const std::vector<int>& start, int row) { return start[static_cast<std::size_t>(row)]; }
   const Mat3f& at(int slot) const { return lower_[static_cast<std::size_t>(slot)]; }
   Mat3& value(int slot) { return values_[static_cast<std::size_t>(slot)]; }
@@ -71,7 +83,7 @@ class BlockIc0 final : public Preconditioner {
     for (int i = 0; i < A.rows(); ++i) {
       const int begin = first(start, i), end = first(start, i + 1);
       // A pivot that is all but lost is no better than one that is negative.
-      constexpr double least = 1e-5;
+      constexpr double least = 1e-3;
       const Mat3 original = projected.block(begin, i, i);
       if (!positive_definite(value(begin)) ||
           value(begin).determinant() < least * least * least * original.determinant())

@@ -68,6 +68,7 @@ class Pcg final : public LinearSolver {
     residual(A, right, filter, x, r_);
     double rr = dot(r_, r_);
     note(rr);
+    const double far_off = 1e12 * (rr + reference * reference);  // no residual of a sound iteration
     int restarts = 0, since_ready = 0;
     while (report.reason == StopReason::converged) {
       d_.setZero();
@@ -76,6 +77,13 @@ class Pcg final : public LinearSolver {
         preconditioner_->apply(r_, s_);
         filter.apply(s_);
         const double rho_new = dot(r_, s_);
+        const bool broken = std::isfinite(rr) && (!(rho_new > 0) || rr > far_off);
+        if (broken && preconditioner_->make_safer(A, filter, report)) {
+          begin_again(A, right, filter, x);
+          rho = 1;
+          rr = dot(r_, r_);
+          continue;
+        }
         if (!(rho_new > 0)) {
           report.reason = std::isfinite(rho_new) ? StopReason::indefinite : StopReason::not_finite;
           break;
@@ -113,6 +121,13 @@ class Pcg final : public LinearSolver {
       }
     }
     preconditioner_->learn(since_ready);
+  }
+
+  void begin_again(const BlockMatrix& A, const VecX& right, const Filter& filter, VecX& x) {
+    x.setZero();
+    if (!prefiltered_) filter.impose(x);
+    d_.setZero();
+    residual(A, right, filter, x, r_);
   }
 
   // x += alpha d, r -= alpha q; returns r.r

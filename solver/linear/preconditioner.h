@@ -17,6 +17,11 @@ class Preconditioner {
   // positive definite.
   virtual bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) = 0;
   virtual void apply(const VecX& r, VecX& s) = 0;
+  // It did not act as a positive definite matrix: made safer, at the price of iterations. False: it cannot
+  // be.
+  virtual bool make_safer(const BlockMatrix& /*A*/, const Filter& /*filter*/, LinearReport& /*report*/) {
+    return false;
+  }
   // One that is kept over several systems says here that it no longer suits this one: after so many
   // iterations it is made ready anew, and the iteration goes on from where it is.
   virtual bool outdated(int /*iterations*/) const { return false; }

@@ -1,6 +1,9 @@
 // "sundials-pcg": the prefiltered system by SUNLinSol_PCG of SUNDIALS, over our matrix and preconditioner.
-//   (S A S + I - S) y = S (b - A z),   dv = y + z                     [Maurer 2017, in SUNDIALS' documentation]
+//   (S A S + I - S) y = S (b - A z),   dv = y + z                     [Maurer 2017, in SUNDIALS'
+//   documentation]
 #include <sunlinsol/sunlinsol_pcg.h>
+
+#include <limits>
 
 #include "solver/linear/preconditioner.h"
 #include "solver/linear/residual.h"
@@ -28,6 +31,9 @@ class SundialsPcg final : public LinearSolver {
     {
       const Stopwatch watch(report.setup_ms);
       resize(b.size());
+      // SUNDIALS' iteration cannot be interrupted when a preconditioner that was kept no longer works: none
+      // is.
+      preconditioner_->learn(std::numeric_limits<int>::max() / 8);
       if (!preconditioner_->prepare(A, filter, report)) report.reason = StopReason::indefinite;
     }
     if (report.reason != StopReason::converged) return report;
@@ -72,7 +78,6 @@ class SundialsPcg final : public LinearSolver {
     const int flag = SUNLinSolSolve(pcg_, nullptr, y, right, options.tolerance * reference);
     report.iterations = SUNLinSolNumIters(pcg_);
     broke_down_ = flag != SUNLS_SUCCESS && flag != SUNLS_RES_REDUCED && flag != SUNLS_CONV_FAIL;
-    preconditioner_->learn(report.iterations);
   }
 
   // S A S x + (I - S) x
@@ -82,7 +87,8 @@ class SundialsPcg final : public LinearSolver {
     A_->multiply(x_, Ax_);
     filter_->apply(Ax_);
     for (const FilterEntry& e : filter_->entries())
-      Ax_.segment<3>(3 * e.particle) += sundials::numbers(x).segment<3>(3 * e.particle) - x_.segment<3>(3 * e.particle);
+      Ax_.segment<3>(3 * e.particle) +=
+          sundials::numbers(x).segment<3>(3 * e.particle) - x_.segment<3>(3 * e.particle);
     sundials::numbers(product) = Ax_;
     return 0;
   }

@@ -1,0 +1,150 @@
+// Laws of the preconditioners, and of solvers that keep something from one system to the next.
+#include <catch2/catch.hpp>
+
+#include "mesh/threads.h"
+#include "solver/linear/preconditioner.h"
+#include "tests/tables.h"
+
+using namespace drape;
+using namespace drape::test;
+
+namespace {
+
+// Keeps the right-hand side and the guess of the last system it solved.
+class Recorder final : public LinearSolver {
+ public:
+  Recorder(VecX& b, VecX& guess) : b_(b), guess_(guess) {}
+  std::string_view name() const override { return "recorder"; }
+  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
+                     VecX& dv) override {
+    b_ = b;
+    guess_ = dv;
+    return inner_->solve(A, b, filter, options, dv);
+  }
+
+ private:
+  std::unique_ptr<LinearSolver> inner_ = make_linear_solver("mpcg");
+  VecX &b_, &guess_;
+};
+
+// A sheet hung by two corners after some steps: the matrix of a real fall, slack and taut edges in it.
+struct HungSheet {
+  TriangleMesh mesh;
+  System system;
+  Constraints constraints;
+  State state;
+  ImplicitEuler stepper;
+  Filter filter;
+  VecX b, guess;
+
+  explicit HungSheet(int side, int steps)
+      : mesh(grid(side, side, 1, 1)),
+        system(lumped_mass(mesh, 0.2)),
+        state(at_rest(mesh)),
+        stepper(system, constraints, std::make_unique<Recorder>(b, guess), {.tolerance = 1e-3}) {
+    system.add(noh_jung(mesh, {.area_density = 0.2, .stretch = 2000, .bend = 1e-5}));
+    system.add(Gravity{});
+    constraints.pin({0, side - 1});
+    for (int k = 0; k < steps; ++k) stepper.advance(state, 0.01);
+    filter = held({0, side - 1});
+  }
+
+  // Locks some particles, and lets every third one of them slide.
+  Filter held(const std::vector<int>& particles) const {
+    Filter f;
+    int count = 0;
+    for (int i : particles) {
+      const Vec3 n = Vec3(0.3, 1, -0.2).normalized();
+      const Mat3 S = ++count % 3 == 0 ? Mat3(Mat3::Identity() - n * n.transpose()) : Mat3(Mat3::Zero());
+      f.constrain(i, S, Vec3::Zero());
+    }
+    f.renumber(stepper.matrix().pattern().row_of());
+    return f;
+  }
+};
+
+const std::vector<std::string> names = {"block-jacobi", "block-ic0", "multigrid"};
+
+}  // namespace
+
+TEST_CASE("a preconditioner is symmetric and positive definite, the same bits on any number of threads",
+          "[solvers]") {
+  const HungSheet sheet(60, 12);  // large enough for threads
+  const Filter filter = sheet.held({0, 59, 700, 701, 702, 1800, 1801, 1900, 2500});
+  const int before = threads();
+  for (const std::string& name : names) {
+    INFO(name);
+    VecX first;
+    for (int t : {1, 2, 7}) {
+      set_threads(t);
+      const auto preconditioner = make_preconditioner(name);
+      LinearReport report;
+      REQUIRE(preconditioner->prepare(sheet.stepper.matrix(), filter, report));
+      VecX u = random_vector(sheet.b.size(), 1, 1), v = random_vector(sheet.b.size(), 1, 2), Pu = u, Pv = v;
+      filter.apply(u);
+      filter.apply(v);
+      preconditioner->apply(u, Pu);
+      preconditioner->apply(v, Pv);
+      filter.apply(Pu);
+      filter.apply(Pv);
+      CHECK(u.dot(Pu) > 0);
+      CHECK(v.dot(Pv) > 0);
+      CHECK(std::abs(u.dot(Pv) - v.dot(Pu)) < 2e-5 * std::sqrt(u.dot(Pu) * v.dot(Pv)));  // floats inside
+      if (first.size() == 0) first = Pu;
+      CHECK(Pu == first);
+    }
+  }
+  set_threads(before);
+}
+
+TEST_CASE("better preconditioners need fewer iterations, multigrid as few on a finer sheet", "[solvers]") {
+  std::vector<int> by_multigrid;
+  for (int side : {33, 65}) {
+    const HungSheet sheet(side, 15);
+    std::vector<int> iterations;
+    for (const char* name : {"ppcg", "ppcg+block-ic0", "ppcg+multigrid"}) {
+      VecX dv = sheet.guess;
+      const LinearReport report = make_linear_solver(name)->solve(sheet.stepper.matrix(), sheet.b, sheet.filter,
+                                                                  {.tolerance = 1e-3}, dv);
+      INFO(name << ", " << side << ": " << report.note);
+      CHECK(report.reason == StopReason::converged);
+      iterations.push_back(report.iterations);
+    }
+    CHECK(2 * iterations[1] < iterations[0]);
+    CHECK(iterations[2] < iterations[1]);
+    CHECK(iterations[2] <= 20);
+    by_multigrid.push_back(iterations[2]);
+  }
+  CHECK(by_multigrid[1] <= by_multigrid[0] + 5);
+}
+
+TEST_CASE("contacts that come and go need no new analysis, and every solver still agrees", "[solvers]") {
+  const HungSheet sheet(17, 15);
+  for (const auto& info : linear_solvers()) {
+    INFO(info.name);
+    const auto solver = make_linear_solver(info.name);
+    int analyses = 0;
+    for (int round = 0; round < 6; ++round) {
+      std::vector<int> touching;
+      for (int i = round; i < 17 * 17; i += 7 + round) touching.push_back(i);
+      const Filter filter = sheet.held(touching);
+      VecX dv = VecX::Zero(sheet.b.size()), expected = dv;
+      const LinearReport report =
+          solver->solve(sheet.stepper.matrix(), sheet.b, filter, {.tolerance = 1e-9}, dv);
+      make_linear_solver("eigen-ldlt")->solve(sheet.stepper.matrix(), sheet.b, filter, {}, expected);
+      CHECK(report.reason == StopReason::converged);
+      CHECK((dv - expected).norm() <= 1e-5 * expected.norm());
+      analyses += report.analyses;
+    }
+    if (info.name == "cholmod" || info.name == "eigen-ldlt") CHECK(analyses == 1);
+  }
+}
+
+TEST_CASE("an incomplete factor that breaks down is built safer, and says so", "[solvers]") {
+  const HungSheet sheet(33, 15);
+  const auto preconditioner = make_preconditioner("block-ic0");
+  LinearReport report;
+  REQUIRE(preconditioner->prepare(sheet.stepper.matrix(), sheet.filter, report));
+  REQUIRE(preconditioner->make_safer(sheet.stepper.matrix(), sheet.filter, report));
+  CHECK_THAT(report.note, Catch::Contains("broke down"));
+}
