@@ -104,8 +104,8 @@ TEST_CASE("better preconditioners need fewer iterations, multigrid as few on a f
     std::vector<int> iterations;
     for (const char* name : {"ppcg", "ppcg+block-ic0", "ppcg+multigrid"}) {
       VecX dv = sheet.guess;
-      const LinearReport report = make_linear_solver(name)->solve(sheet.stepper.matrix(), sheet.b, sheet.filter,
-                                                                  {.tolerance = 1e-3}, dv);
+      const LinearReport report = make_linear_solver(name)->solve(sheet.stepper.matrix(), sheet.b,
+                                                                  sheet.filter, {.tolerance = 1e-3}, dv);
       INFO(name << ", " << side << ": " << report.note);
       CHECK(report.reason == StopReason::converged);
       iterations.push_back(report.iterations);
