@@ -54,6 +54,7 @@ void Constraints::prepare(int particles, const std::vector<double>& masses) {
   for (std::size_t i = 0; i < n; ++i)
     if (masses[i] == 0) held_[i] = 1;
   clearance_.assign(n * obstacles_.size(), 0.0);  // nothing known yet: look at once
+  trial_.clear();
   committed_.clear();
   if (obstacles_.empty()) return;  // pins need no more memory than this
   committed_of_.assign(n, -1);

@@ -2,10 +2,12 @@
 
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "mesh/obj.h"
@@ -41,17 +43,21 @@ class Helpers {
     done_.store(0, std::memory_order_relaxed);
     work(publish(count));
     while (done_.load(std::memory_order_acquire) < count) breathe();
+    if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
   }
 
   int count() const { return static_cast<int>(threads_.size()); }
 
  private:
-  // A loop is known by its generation; the ticket is the generation and the next chunk, so that a helper that
-  // comes late, when the next loop has been published, cannot take a chunk in the name of the old one.
+  // A loop is known by its generation; the ticket is the generation and how many chunks are still to be
+  // taken. A helper that comes late sees none left in the old loop, or another generation; and as a loop is
+  // published only when the one before is done, what is read between a ticket with chunks left and its
+  // exchange belongs to that ticket's loop.
   std::uint32_t publish(int count) {
     count_.store(count, std::memory_order_relaxed);
     const auto generation = static_cast<std::uint32_t>(ticket_.load() >> 32) + 1;
-    ticket_.store(std::uint64_t{generation} << 32, std::memory_order_release);
+    ticket_.store(std::uint64_t{generation} << 32 | static_cast<std::uint32_t>(count),
+                  std::memory_order_release);
     ticket_.notify_all();
     return generation;
   }
@@ -59,13 +65,17 @@ class Helpers {
   void work(std::uint32_t generation) {
     while (true) {
       std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
-      const auto chunk = static_cast<std::uint32_t>(ticket);
-      if (static_cast<std::uint32_t>(ticket >> 32) != generation) return;
-      if (static_cast<int>(chunk) >= count_.load(std::memory_order_relaxed)) return;
+      const auto left = static_cast<std::uint32_t>(ticket);
+      if (static_cast<std::uint32_t>(ticket >> 32) != generation || left == 0) return;
+      const int chunk = count_.load(std::memory_order_relaxed) - static_cast<int>(left);
       const auto f = f_.load(std::memory_order_relaxed);
       const void* context = context_.load(std::memory_order_relaxed);
-      if (!ticket_.compare_exchange_weak(ticket, ticket + 1, std::memory_order_acq_rel)) continue;
-      f(context, static_cast<int>(chunk));
+      if (!ticket_.compare_exchange_weak(ticket, ticket - 1, std::memory_order_acq_rel)) continue;
+      try {
+        f(context, chunk);
+      } catch (...) {  // the first one goes to the caller, when all are done
+        if (!failed_.exchange(true)) failure_ = std::current_exception();
+      }
       done_.fetch_add(1, std::memory_order_release);
     }
   }
@@ -93,7 +103,8 @@ class Helpers {
   std::atomic<void (*)(const void*, int)> f_{nullptr};
   std::atomic<const void*> context_{nullptr};
   std::atomic<int> count_{0}, done_{0};
-  std::atomic<bool> stop_{false};
+  std::atomic<bool> stop_{false}, failed_{false};
+  std::exception_ptr failure_;
   std::vector<std::thread> threads_;
 };
 
@@ -126,9 +137,11 @@ void run_in_parallel(int count, void (*f)(const void*, int), const void* context
     helpers.reset();
     helpers = std::make_unique<Helpers>(threads() - 1);
   }
-  inside_a_loop = true;
+  const struct Inside {
+    Inside() { inside_a_loop = true; }
+    ~Inside() { inside_a_loop = false; }
+  } inside;
   helpers->run(count, f, context);
-  inside_a_loop = false;
 }
 
 }  // namespace drape

@@ -71,7 +71,8 @@ struct Recorded {
   explicit Recorded(const Scene& scene, Simulation made) : simulation(std::move(made)) {
     simulation.integrator = make_integrator(
         "implicit-euler", *simulation.system, *simulation.constraints,
-        std::make_unique<RecordingSolver>(make_linear_solver("mpcg"), recording), scene.simulation.step);
+        std::make_unique<RecordingSolver>(make_linear_solver(scene.simulation.linear_solver), recording),
+        scene.simulation.step);
   }
   Recording recording;
   Simulation simulation;
@@ -95,7 +96,7 @@ Names cells(const std::string& line) {
 }  // namespace
 
 TEST_CASE("the recorded system is the one that the step solved", "[compare]") {
-  const Scene scene = hung_sheet_scene({});
+  const Scene scene = hung_sheet_scene({parse_setting("simulation.linear_solver=\"mpcg\"")});
   Recorded run(scene, make_hung_sheet(scene, 12));
   for (int k = 0; k < 4; ++k) run.simulation.integrator->advance(run.simulation.state, 0.01);
   CHECK_FALSE(run.recording.last);
@@ -193,7 +194,8 @@ TEST_CASE("a solve that meets the tolerance differs by no more than is allowed",
 TEST_CASE("integrators: what differs by linear algebra, what by time integration", "[compare]") {
   Desk desk;
   REQUIRE(desk.run("'" + on_ball +
-                   "' --at 1 --steps 5 --solvers mpcg,eigen-ldlt --integrators implicit-euler --out o") == 0);
+                   "' --linear-solver mpcg --at 1 --steps 5 --solvers mpcg,eigen-ldlt --integrators "
+                   "implicit-euler --out o") == 0);
   const JsonValue json = desk.json();
   REQUIRE(json["runs"].size() == 4);
   std::multiset<std::string> causes;
@@ -212,7 +214,8 @@ TEST_CASE("integrators: what differs by linear algebra, what by time integration
 }
 
 TEST_CASE("an integrator that fails is a row, not an end", "[compare]") {
-  const Scene scene = read_scene(on_ball, {parse_setting("cloth.0.stretch=1e300")});
+  const Scene scene = read_scene(
+      on_ball, {parse_setting("cloth.0.stretch=1e300"), parse_setting("simulation.linear_solver=\"mpcg\"")});
   CompareWords words;
   words.solvers = "mpcg";
   words.integrators = "implicit-euler";
@@ -406,7 +409,7 @@ TEST_CASE("a path that fails, an interrupt, a full disk", "[compare]") {
   Desk desk;
   const std::string scene = "'" + on_ball + "' --out o ";
   CHECK(desk.run(scene + "--steps 3 --set cloth.0.stretch=1e300") == 1);
-  CHECK_THAT(desk.err, Contains("error: step 1 of the run with mpcg failed: "));
+  CHECK_THAT(desk.err, Contains("error: step 1 of the run with mpcg+block-ic0 failed: "));
   CHECK(desk.json()["failure"].is_string());
   CHECK(desk.json()["agree"] == false);
   fs::remove_all(desk.path / "o");

@@ -35,6 +35,13 @@ int aggregate(const BlockCsr& A, const std::vector<char>& strong, std::vector<in
           j != i && strong[static_cast<std::size_t>(k)] && of[static_cast<std::size_t>(j)] != alone)
         f(j, k);
   };
+  // What is coupled to nothing strongly is solved by the smoother alone.
+  for (int i = 0; i < n; ++i) {
+    bool coupled = false;
+    for (int k = A.begin(i); k < A.end(i); ++k)
+      coupled = coupled || (A.at(k) != i && strong[static_cast<std::size_t>(k)]);
+    if (!coupled) of[static_cast<std::size_t>(i)] = alone;
+  }
   // A vertex none of whose neighbours is taken begins an aggregate with all of them.
   for (int i = 0; i < n; ++i) {
     if (of[static_cast<std::size_t>(i)] != none) continue;

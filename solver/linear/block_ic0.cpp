@@ -18,6 +18,8 @@ class BlockIc0 final : public Preconditioner {
   std::string_view name() const override { return "block-ic0"; }
 
   bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
+    if (serial_ != A.pattern().serial()) shift_ = 0;
+    serial_ = A.pattern().serial();
     pattern_ = &A.pattern();
     shift_ = shift_ > first_shift ? shift_ / 4 : 0;  // the matrix of the last step needed so much
     return build(A, filter, report);
@@ -25,13 +27,17 @@ class BlockIc0 final : public Preconditioner {
 
   bool make_safer(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
     raise_shift();
-    return build(A, filter, report);
+    if (shift_ <= largest_shift) return build(A, filter, report);
+    shift_ = 0;
+    return false;
   }
 
   void apply(const VecX& r, VecX& s) override {
     const std::vector<int>&start = pattern_->row_start(), &column = pattern_->column();
     const int rows = pattern_->rows();
-    y_ = r.cast<float>();
+    const double size = r.cwiseAbs().maxCoeff();  // so that floats neither vanish nor overflow
+    if (size == 0) return s.setZero(), void();
+    y_ = (r / size).cast<float>();
     for (int i = 0; i < rows; ++i) {  // L y = r, column by column; y <- D^-1 y as soon as it stands
       const Vec3f yi = y_.segment<3>(3 * i);
       for (int k = first(start, i) + 1; k < first(start, i + 1); ++k)
@@ -44,7 +50,7 @@ class BlockIc0 final : public Preconditioner {
         sum.noalias() -= at(k) * y_.segment<3>(3 * column[static_cast<std::size_t>(k)]);
       y_.segment<3>(3 * i) = sum;
     }
-    s = y_.cast<double>();
+    s = size * y_.cast<double>();
   }
 
  private:
@@ -56,7 +62,10 @@ class BlockIc0 final : public Preconditioner {
     const ProjectedBlocks projected(A, filter);
     while (!factorise(A, projected, shift_)) {
       raise_shift();
-      if (shift_ > largest_shift) return false;
+      if (shift_ > largest_shift) {
+        shift_ = 0;
+        return false;
+      }
     }
     if (shift_ > 0)
       report.note =
@@ -110,6 +119,7 @@ class BlockIc0 final : public Preconditioner {
   }
 
   const BlockPattern* pattern_ = nullptr;
+  std::uint64_t serial_ = 0;
   double shift_ = 0;
   std::vector<Mat3> values_;  // scratch of the factorisation, by slot
   std::vector<Mat3f> lower_;

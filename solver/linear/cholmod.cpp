@@ -7,6 +7,8 @@
 #include <cholmod.h>
 #include <dlfcn.h>
 
+#include <stdexcept>
+
 #include "solver/linear/projected.h"
 #include "solver/linear/residual.h"
 #include "solver/stopwatch.h"
@@ -75,6 +77,7 @@ class Cholmod final : public LinearSolver {
       right.xtype = CHOLMOD_REAL;
       right.dtype = CHOLMOD_DOUBLE;
       cholmod_dense* solution = cholmod_solve(CHOLMOD_A, factor_, &right, &common_);
+      if (!solution) give_up();
       dv = Eigen::Map<const VecX>(static_cast<const double*>(solution->x), b.size());
       cholmod_free_dense(&solution, &common_);
       finish(A, b, filter, options, system_.reference(), dv, scratch_, report);
@@ -88,11 +91,18 @@ class Cholmod final : public LinearSolver {
     if (analysed_ != pattern) {
       cholmod_free_factor(&factor_, &common_);
       factor_ = cholmod_analyze(&matrix, &common_);
+      if (!factor_) give_up();
       analysed_ = pattern;
       report.analyses = 1;
     }
     cholmod_factorize(&matrix, factor_, &common_);
+    if (common_.status < 0) give_up();
     if (common_.status != CHOLMOD_OK) report.reason = StopReason::indefinite;
+  }
+
+  [[noreturn]] void give_up() {
+    analysed_ = 0;
+    throw std::runtime_error("cholmod: not enough memory for the factor, or it is too large");
   }
 
   static cholmod_sparse view(const ProjectedSystem::Matrix& m) {

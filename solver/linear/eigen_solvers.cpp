@@ -26,7 +26,8 @@ class EigenLdlt final : public LinearSolver {
         report.analyses = 1;
       }
       factor_.factorize(system_.matrix());
-      if (factor_.info() != Eigen::Success) report.reason = StopReason::indefinite;
+      if (factor_.info() != Eigen::Success || !(factor_.vectorD().minCoeff() > 0))
+        report.reason = StopReason::indefinite;
     }
     if (report.reason != StopReason::converged) return report;
     {
@@ -55,7 +56,8 @@ class EigenCg final : public LinearSolver {
       const Stopwatch watch(report.setup_ms);
       system_.project(A, b, filter, options);
       right = system_.right_side().norm();
-      if (right > 0) {
+      if (!std::isfinite(right)) report.reason = StopReason::not_finite;
+      if (right > 0 && report.reason == StopReason::converged) {
         cg_.setMaxIterations(iteration_limit(options, A.rows()));
         cg_.setTolerance(options.tolerance * system_.reference() / right);
         cg_.compute(system_.matrix());

@@ -43,6 +43,7 @@ class Multigrid final : public Preconditioner {
   std::string_view name() const override { return "multigrid"; }
 
   bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
+    fallen_back_ = false;
     reused_ = works_ && serial_ == A.pattern().serial();
     if (reused_) return true;
     const ProjectedBlocks projected(A, filter);
@@ -51,29 +52,42 @@ class Multigrid final : public Preconditioner {
     build(whole(A, projected), [&](int r) { return projected.S(r); });
     serial_ = A.pattern().serial();
     ++report.analyses;
-    works_ = coarse_.info() == Eigen::Success;
+    works_ = coarse_.rows() == 0 || coarse_.info() == Eigen::Success;  // no factor: smoothed only
     return works_;
   }
 
+  // Half slack, half taut, a large sheet can be too much for floats: a new hierarchy, then none.
+  bool make_safer(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
+    if (fallen_back_) return false;
+    works_ = false;
+    if (reused_) return prepare(A, filter, report);
+    fallen_back_ = true;
+    report.note = "multigrid did not act as a positive definite matrix; block-jacobi took over";
+    return block_jacobi_->prepare(A, filter, report);
+  }
+
   void apply(const VecX& r, VecX& s) override {
+    if (fallen_back_) return block_jacobi_->apply(r, s);
     Level& top = levels_.front();
+    const double size = r.cwiseAbs().maxCoeff();  // so that floats neither vanish nor overflow
+    if (size == 0) return s.setZero(), void();
     for_chunks(top.smoother.rows(), [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
         const int old = top.smoother.old_of(i);
-        for (int k = 0; k < 3; ++k) top.r[3 * i + k] = static_cast<float>(r[3 * old + k]);
+        for (int k = 0; k < 3; ++k) top.r[3 * i + k] = static_cast<float>(r[3 * old + k] / size);
       }
     });
     cycle(0);
     for_chunks(top.smoother.rows(), [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
         const int old = top.smoother.old_of(i);
-        for (int k = 0; k < 3; ++k) s[3 * old + k] = static_cast<double>(top.x[3 * i + k]);
+        for (int k = 0; k < 3; ++k) s[3 * old + k] = size * static_cast<double>(top.x[3 * i + k]);
       }
     });
   }
 
   bool outdated(int iterations) const override {
-    return reused_ && 3 * iterations > 4 * iterations_when_new_ + 6;
+    return reused_ && !fallen_back_ && 3 * iterations > 4 * iterations_when_new_ + 6;
   }
 
   void learn(int iterations) override {
@@ -113,6 +127,7 @@ class Multigrid final : public Preconditioner {
 
   void factorise(const BlockCsr& A) {
     const Level& last = levels_.back();
+    coarse_ = {};
     if (A.rows() > 8 * coarsest_rows) return;  // too large for a dense factor: smoothed only
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * A.rows(), 3 * A.rows());
     for (int r = 0; r < A.rows(); ++r)
@@ -154,7 +169,8 @@ class Multigrid final : public Preconditioner {
   std::vector<Level> levels_;
   Eigen::LLT<Eigen::MatrixXd> coarse_;
   std::uint64_t serial_ = 0;
-  bool works_ = false, reused_ = false;
+  bool works_ = false, reused_ = false, fallen_back_ = false;
+  std::unique_ptr<Preconditioner> block_jacobi_ = make_block_jacobi();
   int iterations_when_new_ = 0;
 };
 

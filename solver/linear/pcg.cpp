@@ -17,6 +17,8 @@
 namespace drape {
 namespace {
 
+constexpr int lost = 1 << 28;  // iterations
+
 class Pcg final : public LinearSolver {
  public:
   Pcg(std::string name, bool prefiltered, std::unique_ptr<Preconditioner> preconditioner)
@@ -32,6 +34,7 @@ class Pcg final : public LinearSolver {
     {
       const Stopwatch watch(report.solve_ms);
       const double reference = reference_impulse(A, b, filter, options, z_, r_);  // leaves S (b - A z) in r
+      if (reference == 0) dv.setZero();  // nothing pushes: nothing to be relative to, and nothing to do
       if (prefiltered_) {
         right_ = r_;
         filter.apply(dv);
@@ -120,7 +123,8 @@ class Pcg final : public LinearSolver {
         break;
       }
     }
-    preconditioner_->learn(since_ready);
+    // What failed is not kept for the next system.
+    preconditioner_->learn(report.reason == StopReason::converged ? since_ready : lost);
   }
 
   void begin_again(const BlockMatrix& A, const VecX& right, const Filter& filter, VecX& x) {

@@ -95,13 +95,16 @@ class Petsc final : public LinearSolver {
     MatSetOption(matrix_, MAT_ROW_ORIENTED, PETSC_FALSE);
     MatSeqBAIJSetPreallocationCSR(matrix_, 3, blocks.start.data(), blocks.column.data(),
                                   blocks.block.front().data());
-    if (!same) MatDestroy(&rows_);
+    if (!same) {
+      KSPReset(ksp_);
+      MatDestroy(&rows_);
+    }
     MatConvert(matrix_, MATAIJ, rows_ ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, &rows_);
     MatSetBlockSize(rows_, 3);
     KSPSetOperators(ksp_, matrix_, rows_);
     if (KSPSetUp(ksp_) != 0) report.reason = StopReason::indefinite;
     if (!same) ++report.analyses;
-    serial_ = pattern.serial();
+    serial_ = report.reason == StopReason::converged ? pattern.serial() : 0;
   }
 
   void iterate(int rows, const LinearOptions& options, double reference, VecX& y, LinearReport& report) {
