@@ -134,8 +134,9 @@ configure() {
 # compile PRESET [TARGET]
 compile() {
   local preset=$1
+  shift
   say "building build/$preset"
-  cmake --build --preset "$preset" --parallel "$(jobs)" ${2:+--target "$2"} || die "building failed, see above"
+  cmake --build --preset "$preset" --parallel "$(jobs)" ${1:+--target "$@"} || die "building failed, see above"
 }
 
 # One tree serves every word. A new one is made without the tests; one that has them keeps them.
@@ -189,6 +190,7 @@ bench() {
   configure_program
   compile release drape_bench drape_bench_solvers
   build/release/drape_bench "$@"
+  [[ $# -gt 0 ]] || build/release/drape_bench_solvers 32 100
 }
 
 # A difference between solvers is shown at the end; the other comparisons go on.
