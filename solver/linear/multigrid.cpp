@@ -7,6 +7,7 @@
 // not, even in the middle of a solve, it is built anew. (Waiting longer, for as many iterations as a set-up
 // takes time, was slower in every gallery scene.)
 #include <Eigen/Cholesky>
+#include <optional>
 
 #include "solver/linear/aggregation.h"
 #include "solver/linear/preconditioner.h"
@@ -52,7 +53,7 @@ class Multigrid final : public Preconditioner {
     build(whole(A, projected), [&](int r) { return projected.S(r); });
     serial_ = A.pattern().serial();
     ++report.analyses;
-    works_ = coarse_.rows() == 0 || coarse_.info() == Eigen::Success;  // no factor: smoothed only
+    works_ = !coarse_ || coarse_->info() == Eigen::Success;
     return works_;
   }
 
@@ -127,20 +128,20 @@ class Multigrid final : public Preconditioner {
 
   void factorise(const BlockCsr& A) {
     const Level& last = levels_.back();
-    coarse_ = {};
+    coarse_.reset();
     if (A.rows() > 8 * coarsest_rows) return;  // too large for a dense factor: smoothed only
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * A.rows(), 3 * A.rows());
     for (int r = 0; r < A.rows(); ++r)
       for (int k = A.begin(r); k < A.end(r); ++k)
         dense.block<3, 3>(3 * last.smoother.new_of(r), 3 * last.smoother.new_of(A.at(k))) = A[k];
-    coarse_.compute(dense);
+    coarse_.emplace(dense);
   }
 
   void cycle(std::size_t depth) {
     Level& level = levels_[depth];
     if (depth + 1 == levels_.size()) {
-      if (3 * level.smoother.rows() == coarse_.rows()) {
-        level.x = coarse_.solve(level.r.cast<double>()).cast<float>();
+      if (coarse_) {
+        level.x = coarse_->solve(level.r.cast<double>()).cast<float>();
       } else {
         level.smoother.down(level.r, level.x, level.residual);
         level.smoother.up(level.r, level.x);
@@ -167,7 +168,7 @@ class Multigrid final : public Preconditioner {
   }
 
   std::vector<Level> levels_;
-  Eigen::LLT<Eigen::MatrixXd> coarse_;
+  std::optional<Eigen::LLT<Eigen::MatrixXd>> coarse_;  // of the last level; none: smoothed only
   std::uint64_t serial_ = 0;
   bool works_ = false, reused_ = false, fallen_back_ = false;
   std::unique_ptr<Preconditioner> block_jacobi_ = make_block_jacobi();
