@@ -160,7 +160,8 @@ TEST_CASE("a loosened solver is caught, with the step and the vertex", "[compare
       desk.out,
       Contains("mpcg: agree\neigen-ldlt: agree\nmpcg@1e-2: differ: sheet of 400 vertices, step 6, vertex ") &&
           Contains(" of cloth 'sheet', by ") && Contains("asked 1e-06"));
-  for (const JsonValue& row : desk.json()["rows"]) {
+  const JsonValue whole = desk.json();  // outlives the loop over a part of it
+  for (const JsonValue& row : whole["rows"]) {
     const bool loose = row["solver"] == "mpcg@1e-2";
     CHECK(row["agrees"] == !loose);
     if (!loose) continue;
