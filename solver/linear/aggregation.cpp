@@ -1,74 +1,79 @@
 #include "solver/linear/aggregation.h"
 
-#include <Eigen/LU>
+#include "solver/linear/row_sum.h"
 
 namespace drape {
 namespace {
 
 constexpr int none = -1, alone = -2;
 
-// Whether each block couples strongly; the diagonal counts as strong.
-std::vector<char> strong_couplings(const BlockCsr& A, double theta) {
-  const int n = A.rows();
-  std::vector<double> size(static_cast<std::size_t>(n), 0.0);  // |A_ii|
-  for (int i = 0; i < n; ++i)
-    for (int k = A.begin(i); k < A.end(i); ++k)
-      if (A.at(k) == i) size[static_cast<std::size_t>(i)] = A[k].norm();
-  std::vector<char> strong(A.column.size());
-  for_chunks(n, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i)
-      for (int k = A.begin(i); k < A.end(i); ++k) {
-        const double both = size[static_cast<std::size_t>(i)] * size[static_cast<std::size_t>(A.at(k))];
-        strong[static_cast<std::size_t>(k)] = A.at(k) == i || A[k].squaredNorm() > theta * theta * both;
-      }
-  });
-  return strong;
+using Graph = SparseRows<1>;  // the strong neighbours of every vertex, and how strongly they are coupled
+
+template <class Scalar>
+float squared_norm(const Scalar* block) {
+  Scalar sum = 0;
+  for (int e = 0; e < 9; ++e) sum += block[e] * block[e];
+  return static_cast<float>(sum);
 }
 
+class Strength {
+ public:
+  Strength(const Smoother& A, double theta) : least_(static_cast<std::size_t>(A.rows())) {
+    for_chunks(A.rows(), [&](int begin, int end) {
+      for (int i = begin; i < end; ++i)
+        least_[static_cast<std::size_t>(i)] =
+            static_cast<float>(theta * std::sqrt(static_cast<double>(squared_norm(A.diagonal(i)))));
+    });
+  }
+  bool operator()(int i, int j, float size) const {
+    return size > least_[static_cast<std::size_t>(i)] * least_[static_cast<std::size_t>(j)];
+  }
+
+ private:
+  std::vector<float> least_;  // theta |A_ii|
+};
+
 // vertex -> aggregate; `alone` for those that take no part. Returns how many aggregates there are.
-int aggregate(const BlockCsr& A, const std::vector<char>& strong, std::vector<int>& of) {
-  const int n = A.rows();
+int aggregate(const Graph& strong, std::vector<int>& of) {
+  const int n = strong.rows();
   int count = 0;
   const auto each_strong = [&](int i, const auto& f) {
-    for (int k = A.begin(i); k < A.end(i); ++k)
-      if (const int j = A.at(k);
-          j != i && strong[static_cast<std::size_t>(k)] && of[static_cast<std::size_t>(j)] != alone)
-        f(j, k);
+    const Graph::Row row = strong[i];
+    for (int k = 0; k < row.count; ++k)
+      if (int& other = of[static_cast<std::size_t>(row.column[k])]; other != alone) f(other, k);
   };
   // What is coupled to nothing strongly is solved by the smoother alone.
-  for (int i = 0; i < n; ++i) {
-    bool coupled = false;
-    for (int k = A.begin(i); k < A.end(i); ++k)
-      coupled = coupled || (A.at(k) != i && strong[static_cast<std::size_t>(k)]);
-    if (!coupled) of[static_cast<std::size_t>(i)] = alone;
-  }
+  for (int i = 0; i < n; ++i)
+    if (strong[i].count == 0) of[static_cast<std::size_t>(i)] = alone;
   // A vertex none of whose neighbours is taken begins an aggregate with all of them.
   for (int i = 0; i < n; ++i) {
     if (of[static_cast<std::size_t>(i)] != none) continue;
     bool untouched = true;
-    each_strong(i, [&](int j, int) { untouched = untouched && of[static_cast<std::size_t>(j)] == none; });
+    each_strong(i, [&](int& other, int) { untouched = untouched && other == none; });
     if (!untouched) continue;
     of[static_cast<std::size_t>(i)] = count;
-    each_strong(i, [&](int j, int) { of[static_cast<std::size_t>(j)] = count; });
+    each_strong(i, [&](int& other, int) { other = count; });
     ++count;
   }
   // The others join the aggregate they are coupled to most strongly.
   const std::vector<int> before = of;
   for (int i = 0; i < n; ++i) {
     if (of[static_cast<std::size_t>(i)] != none) continue;
-    double most = 0;
-    each_strong(i, [&](int j, int k) {
-      if (before[static_cast<std::size_t>(j)] < 0 || A[k].squaredNorm() <= most) return;
-      most = A[k].squaredNorm();
-      of[static_cast<std::size_t>(i)] = before[static_cast<std::size_t>(j)];
-    });
+    float most = 0;
+    const Graph::Row row = strong[i];
+    for (int k = 0; k < row.count; ++k) {
+      const int other = before[static_cast<std::size_t>(row.column[k])];
+      if (other < 0 || *row[k] <= most) continue;
+      most = *row[k];
+      of[static_cast<std::size_t>(i)] = other;
+    }
   }
   // What is left forms aggregates with its own kind.
   for (int i = 0; i < n; ++i) {
     if (of[static_cast<std::size_t>(i)] != none) continue;
     of[static_cast<std::size_t>(i)] = count;
-    each_strong(i, [&](int j, int) {
-      if (of[static_cast<std::size_t>(j)] == none) of[static_cast<std::size_t>(j)] = count;
+    each_strong(i, [&](int& other, int) {
+      if (other == none) other = count;
     });
     ++count;
   }
@@ -77,39 +82,63 @@ int aggregate(const BlockCsr& A, const std::vector<char>& strong, std::vector<in
 
 }  // namespace
 
-BlockCsr smoothed_aggregation(const BlockCsr& A, double theta, const std::function<Mat3(int)>& tentative) {
+int smoothed_aggregation(const Smoother& A, double theta, const ProjectedBlocks* projected, BlockRows& P) {
   const int n = A.rows();
-  std::vector<Mat3> T(static_cast<std::size_t>(n));
-  std::vector<int> of(static_cast<std::size_t>(n), none);
-  for (int i = 0; i < n; ++i) {
-    T[static_cast<std::size_t>(i)] = tentative(i);
-    if (T[static_cast<std::size_t>(i)].isZero(0)) of[static_cast<std::size_t>(i)] = alone;
-  }
-  const std::vector<char> strong = strong_couplings(A, theta);
-  const int aggregates = aggregate(A, strong, of);
-  constexpr double omega = 2.0 / 3;
-  return build_rows(n, aggregates, [&](int i, BlockCsr& part) {
-    if (of[static_cast<std::size_t>(i)] < 0) return;
-    Mat3 D = Mat3::Zero();  // the diagonal block of A_F
-    for (int k = A.begin(i); k < A.end(i); ++k)
-      if (A.at(k) == i || !strong[static_cast<std::size_t>(k)]) D += A[k];
-    const Mat3 inverse = omega * D.inverse();
-    const auto first = part.column.size();
-    const auto add = [&](int aggregate, const Mat3& block) {
-      std::size_t k = first;
-      while (k < part.column.size() && part.column[k] < aggregate) ++k;
-      if (k == part.column.size() || part.column[k] != aggregate) {
-        part.column.insert(part.column.begin() + static_cast<std::ptrdiff_t>(k), aggregate);
-        part.block.insert(part.block.begin() + static_cast<std::ptrdiff_t>(k), Mat3::Zero());
-      }
-      part.block[k] += block;
-    };
-    add(of[static_cast<std::size_t>(i)], (1 - omega) * T[static_cast<std::size_t>(i)]);
-    for (int k = A.begin(i); k < A.end(i); ++k)
-      if (const int j = A.at(k);
-          j != i && strong[static_cast<std::size_t>(k)] && of[static_cast<std::size_t>(j)] >= 0)
-        add(of[static_cast<std::size_t>(j)], -(inverse * A[k] * T[static_cast<std::size_t>(j)]));
+  const auto locked = [&](int i) { return projected && projected->locked(i); };
+  const auto free = [&](int i) { return !projected || projected->free(i); };
+  const Strength strongly(A, theta);
+  Graph strong;
+  strong.build(n, 16, [&](int i, Graph::Chunk& chunk) {
+    if (locked(i)) return;
+    A.each_other(i, [&](int j, const float* block) {
+      const float size = squared_norm(block);
+      if (strongly(i, j, size)) *chunk.add(j) = size;
+    });
   });
+  std::vector<int> of(static_cast<std::size_t>(n), none);
+  const int aggregates = aggregate(strong, of);
+
+  constexpr double omega = 2.0 / 3;
+  P.resize(n);
+  for_chunks(n, [&](int begin, int end) {
+    RowSum sum(aggregates);
+    BlockRows::Chunk& chunk = P.open(begin, 4 * chunk_size);
+    for (int i = begin; i < end; ++i) {
+      const int own = of[static_cast<std::size_t>(i)];
+      if (own >= 0) {
+        sum.at(own);
+        WideBlock D;  // the diagonal block of A_F
+        D.add(A.diagonal(i));
+        A.each_other(i, [&](int j, const float* block) {
+          const int other = of[static_cast<std::size_t>(j)];
+          if (!strongly(i, j, squared_norm(block))) {
+            D.add(block);
+          } else if (other >= 0) {
+            if (free(j)) {
+              sum.at(other).add(block);
+            } else {
+              const Mat3 S = projected->S(j);
+              sum.at(other).add_product(block, S.data());
+            }
+          }
+        });
+        Mat3 filtered, product;
+        D.store(filtered.data());
+        // Weak couplings that push may leave no positive diagonal behind: then they do not count.
+        if (!positive_definite(filtered)) filtered = Eigen::Map<const Mat3>(A.diagonal(i));
+        const Mat3 inverse = -omega * filtered.inverse();
+        sum.take([&](int column, const WideBlock& block) {
+          block.store(product.data());
+          Mat3 smoothed = inverse * product;
+          if (column == own) smoothed += (1 - omega) * (projected ? projected->S(i) : Mat3::Identity());
+          Eigen::Map<Eigen::Matrix3f>(chunk.add(column)) = smoothed.cast<float>();
+        });
+      }
+      chunk.end_row();
+    }
+    chunk.close();
+  });
+  return aggregates;
 }
 
 }  // namespace drape

@@ -2,7 +2,7 @@
 // McCormick 2015]
 //   level: x = smooth down (r);  x += P V(P^T (r - A x));  x = smooth up (r, x);    next level: A_c = P^T A P
 // Our own, because it beat PETSc's GAMG on these matrices (tests/bench measures both): blocks of whole
-// vertices, float inside the cycle, and threads that do not change a bit. The hierarchy is kept from step to
+// vertices, kept in float, and threads that do not change a bit. The hierarchy is kept from step to
 // step while it still works: while the iterations stay within a third more than when it was new. Once they do
 // not, even in the middle of a solve, it is built anew. (Waiting longer, for as many iterations as a set-up
 // takes time, was slower in every gallery scene.)
@@ -10,34 +10,29 @@
 #include <optional>
 
 #include "solver/linear/aggregation.h"
+#include "solver/linear/galerkin.h"
 #include "solver/linear/preconditioner.h"
-#include "solver/linear/projected_block.h"
-#include "solver/linear/smoother.h"
 
 namespace drape {
 namespace {
 
-constexpr double strength = 0.08;  // of the finest level, half of it on each coarser one
+// More than a few percent cuts couplings that the finest sheets need: 0.08 took 65 iterations where 0.02
+// takes 12 (100 k vertices, 1e-3).
+constexpr double strength = 0.02;
 constexpr int coarsest_rows = 50, most_levels = 12;
 constexpr int most_iterations = 1000;  // more than that with a new one: the next system gets another chance
 
 struct Level {
   Smoother smoother;
-  FloatCsr prolongation, restriction;  // rows and columns as the smoothers number them
-  VecXf x, r, residual;
+  BlockRows prolongation, restriction;  // to the next coarser level
+  VecX x, r, residual;                  // x, r: of a coarser level
 
-  explicit Level(const BlockCsr& A) : smoother(A), x(VecXf::Zero(3 * A.rows())), r(x), residual(x) {}
+  template <class Rows>
+  void build(const Rows& A) {
+    smoother.build(A);
+    for (VecX* v : {&x, &r, &residual}) v->setZero(3 * static_cast<Eigen::Index>(A.rows()));
+  }
 };
-
-// Directions that no vertex of an aggregate may take have no stiffness: they get a little, and stay at zero.
-void make_definite(BlockCsr& A) {
-  for (int r = 0; r < A.rows(); ++r)
-    for (int k = A.begin(r); k < A.end(r); ++k)
-      if (A.at(k) == r) {
-        Mat3& block = A.block[static_cast<std::size_t>(k)];
-        block.diagonal().array() += block.trace() > 0 ? 1e-6 * block.trace() : 1.0;
-      }
-}
 
 class Multigrid final : public Preconditioner {
  public:
@@ -50,14 +45,15 @@ class Multigrid final : public Preconditioner {
     const ProjectedBlocks projected(A, filter);
     for (int r = 0; r < A.rows(); ++r)
       if (!positive_definite(projected.block(A.pattern().diagonal(r), r, r))) return false;
-    build(whole(A, projected), [&](int r) { return projected.S(r); });
+    if (serial_ != A.pattern().serial()) below_ = below_diagonal(A.pattern());
     serial_ = A.pattern().serial();
+    build(ProjectedRows(A, projected, below_), projected);
     ++report.analyses;
     works_ = !coarse_ || coarse_->info() == Eigen::Success;
     return works_;
   }
 
-  // Half slack, half taut, a large sheet can be too much for floats: a new hierarchy, then none.
+  // It may be too old for this matrix; a new one, then none.
   bool make_safer(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
     if (fallen_back_) return false;
     works_ = false;
@@ -69,110 +65,91 @@ class Multigrid final : public Preconditioner {
 
   void apply(const VecX& r, VecX& s) override {
     if (fallen_back_) return block_jacobi_->apply(r, s);
-    Level& top = levels_.front();
-    const double size = r.cwiseAbs().maxCoeff();  // so that floats neither vanish nor overflow
-    if (size == 0) return s.setZero(), void();
-    for_chunks(top.smoother.rows(), [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) {
-        const int old = top.smoother.old_of(i);
-        for (int k = 0; k < 3; ++k) top.r[3 * i + k] = static_cast<float>(r[3 * old + k] / size);
-      }
-    });
-    cycle(0);
-    for_chunks(top.smoother.rows(), [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) {
-        const int old = top.smoother.old_of(i);
-        for (int k = 0; k < 3; ++k) s[3 * old + k] = size * static_cast<double>(top.x[3 * i + k]);
-      }
-    });
+    cycle(0, r, s);
   }
 
-  bool outdated(int iterations) const override {
-    return reused_ && !fallen_back_ && 3 * iterations > 4 * iterations_when_new_ + 6;
+  bool outdated(int iterations, double decades) const override {
+    return reused_ && !fallen_back_ && 3 * iterations > 4 * rate_when_new_ * std::max(decades, 1.0) + 12;
   }
 
-  void learn(int iterations) override {
-    if (outdated(iterations) || iterations > most_iterations) works_ = false;
-    if (!reused_) iterations_when_new_ = iterations;
+  void learn(int iterations, double decades) override {
+    if (outdated(iterations, decades) || iterations > most_iterations) works_ = false;
+    if (!reused_) rate_when_new_ = iterations / std::max(decades, 1.0);
   }
+
+  void forget() override { works_ = false; }
 
  private:
-  void build(BlockCsr A, const std::function<Mat3(int)>& allowed) {
-    levels_.clear();
-    double theta = strength;
-    std::function<Mat3(int)> tentative = allowed;
-    levels_.emplace_back(A);
-    while (A.rows() > coarsest_rows && static_cast<int>(levels_.size()) < most_levels) {
-      const BlockCsr P = smoothed_aggregation(A, theta, tentative);
-      if (P.columns == 0 || 10 * P.columns > 9 * A.rows()) break;  // nothing gained by a coarser one
-      const BlockCsr R = transposed(P);
-      A = multiply(R, multiply(A, P));
-      make_definite(A);
-      levels_.emplace_back(A);
-      link(levels_[levels_.size() - 2], levels_.back().smoother, P, R);
-      tentative = [](int) { return Mat3(Mat3::Identity()); };
-      theta *= 0.5;
+  void build(const ProjectedRows& A, const ProjectedBlocks& projected) {
+    count_ = 0;
+    add_level(A);
+    while (last().smoother.rows() > coarsest_rows && count_ < most_levels) {
+      Level& fine = last();
+      const int columns = smoothed_aggregation(fine.smoother, strength, count_ == 1 ? &projected : nullptr,
+                                               fine.prolongation);
+      if (columns == 0 || 10 * columns > 9 * fine.smoother.rows()) break;  // nothing gained by a coarser one
+      transpose(fine.prolongation, columns, fine.restriction);
+      add_level(galerkin_.coarse(fine.smoother, fine.prolongation, fine.restriction));
     }
-    factorise(A);
+    factorise(last().smoother);
   }
 
-  static void link(Level& fine, const Smoother& coarse, const BlockCsr& P, const BlockCsr& R) {
-    const auto all = [](int, int) { return true; };
-    const auto fine_row = [&](int r) { return fine.smoother.old_of(r); };
-    const auto coarse_row = [&](int r) { return coarse.old_of(r); };
-    fine.prolongation = FloatCsr(
-        P, fine_row, [&](int c) { return coarse.new_of(c); }, all);
-    fine.restriction = FloatCsr(
-        R, coarse_row, [&](int c) { return fine.smoother.new_of(c); }, all);
+  Level& last() { return levels_[static_cast<std::size_t>(count_) - 1]; }
+  template <class Rows>
+  void add_level(const Rows& A) {
+    ++count_;
+    last().build(A);
   }
 
-  void factorise(const BlockCsr& A) {
-    const Level& last = levels_.back();
+  void factorise(const Smoother& A) {
     coarse_.reset();
     if (A.rows() > 8 * coarsest_rows) return;  // too large for a dense factor: smoothed only
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * A.rows(), 3 * A.rows());
     for (int r = 0; r < A.rows(); ++r)
-      for (int k = A.begin(r); k < A.end(r); ++k)
-        dense.block<3, 3>(3 * last.smoother.new_of(r), 3 * last.smoother.new_of(A.at(k))) = A[k];
+      A.each(r, [&](int c, const auto* block) {
+        for (int e = 0; e < 9; ++e) dense(3 * r + e % 3, 3 * c + e / 3) = block[e];
+      });
     coarse_.emplace(dense);
   }
 
-  void cycle(std::size_t depth) {
-    Level& level = levels_[depth];
-    if (depth + 1 == levels_.size()) {
+  void cycle(int depth, const VecX& r, VecX& x) {
+    Level& level = levels_[static_cast<std::size_t>(depth)];
+    if (depth + 1 == count_) {
       if (coarse_) {
-        level.x = coarse_->solve(level.r.cast<double>()).cast<float>();
+        x = coarse_->solve(r);
       } else {
-        level.smoother.down(level.r, level.x, level.residual);
-        level.smoother.up(level.r, level.x);
+        level.smoother.down(r, x, level.residual);
+        level.smoother.up(r, x);
       }
       return;
     }
-    Level& below = levels_[depth + 1];
-    level.smoother.down(level.r, level.x, level.residual);
+    Level& below = levels_[static_cast<std::size_t>(depth) + 1];
+    level.smoother.down(r, x, level.residual);
     for_chunks(below.smoother.rows(), [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) store(level.restriction.times(i, level.residual.data()), i, below.r);
-    });
-    cycle(depth + 1);
-    for_chunks(level.smoother.rows(), [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
-        const FourFloats c = level.prolongation.times(i, below.x.data());
-        for (int k = 0; k < 3; ++k) level.x[3 * i + k] += c[k];
+        const Four sum = times(level.restriction[i], level.residual.data());
+        for (int k = 0; k < 3; ++k) below.r[3 * i + k] = sum[k];
       }
     });
-    level.smoother.up(level.r, level.x);
+    cycle(depth + 1, below.r, below.x);
+    for_chunks(level.smoother.rows(), [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) {
+        const Four correction = times(level.prolongation[i], below.x.data());
+        for (int k = 0; k < 3; ++k) x[3 * i + k] += correction[k];
+      }
+    });
+    level.smoother.up(r, x);
   }
 
-  static void store(const FourFloats& value, int row, VecXf& to) {
-    for (int k = 0; k < 3; ++k) to[3 * row + k] = value[k];
-  }
-
-  std::vector<Level> levels_;
+  std::array<Level, most_levels> levels_;  // the first count_ are in use
+  int count_ = 0;
+  Galerkin galerkin_;
+  Mirror below_;                                       // of the pattern
   std::optional<Eigen::LLT<Eigen::MatrixXd>> coarse_;  // of the last level; none: smoothed only
   std::uint64_t serial_ = 0;
   bool works_ = false, reused_ = false, fallen_back_ = false;
   std::unique_ptr<Preconditioner> block_jacobi_ = make_block_jacobi();
-  int iterations_when_new_ = 0;
+  double rate_when_new_ = 0;  // iterations a decade
 };
 
 }  // namespace

@@ -17,8 +17,6 @@
 namespace drape {
 namespace {
 
-constexpr int lost = 1 << 28;  // iterations
-
 class Pcg final : public LinearSolver {
  public:
   Pcg(std::string name, bool prefiltered, std::unique_ptr<Preconditioner> preconditioner)
@@ -73,10 +71,13 @@ class Pcg final : public LinearSolver {
     note(rr);
     const double far_off = 1e12 * (rr + reference * reference);  // no residual of a sound iteration
     int restarts = 0, since_ready = 0;
+    double rr_ready = rr;  // when the preconditioner was made ready
+    const auto decades = [&] { return rr > 0 && rr_ready > 0 ? 0.5 * std::log10(rr_ready / rr) : 0; };
     while (report.reason == StopReason::converged) {
       d_.setZero();
       double rho = 1;
-      while (rr > target * target && report.iterations < limit && !preconditioner_->outdated(since_ready)) {
+      while (rr > target * target && report.iterations < limit &&
+             !preconditioner_->outdated(since_ready, decades())) {
         preconditioner_->apply(r_, s_);
         filter.apply(s_);
         const double rho_new = dot(r_, s_);
@@ -115,16 +116,19 @@ class Pcg final : public LinearSolver {
       residual(A, right, filter, x, r_);
       rr = dot(r_, r_);
       if (rr <= 1.02 * target * target || report.iterations >= limit) break;
-      if (preconditioner_->outdated(since_ready)) {
-        preconditioner_->learn(since_ready);
+      if (preconditioner_->outdated(since_ready, decades())) {
+        preconditioner_->learn(since_ready, decades());
         since_ready = 0;
+        rr_ready = rr;
         prepare(A, filter, report);
       } else if (++restarts > 3) {
         break;
       }
     }
-    // What failed is not kept for the next system.
-    preconditioner_->learn(report.reason == StopReason::converged ? since_ready : lost);
+    if (report.reason == StopReason::converged)
+      preconditioner_->learn(since_ready, decades());
+    else
+      preconditioner_->forget();
   }
 
   void begin_again(const BlockMatrix& A, const VecX& right, const Filter& filter, VecX& x) {

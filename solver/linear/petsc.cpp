@@ -86,15 +86,25 @@ class Petsc final : public LinearSolver {
       if (!positive_definite(projected.block(pattern.diagonal(r), r, r)))
         report.reason = StopReason::indefinite;
     if (report.reason != StopReason::converged) return;
-    const BlockCsr blocks = whole(A, projected);
     const bool same = serial_ == pattern.serial();
+    if (!same) below_ = below_diagonal(pattern);
+    const ProjectedRows both_halves(A, projected, below_);
+    start_.assign(1, 0);
+    column_.clear();
+    block_.clear();
+    for (int r = 0; r < A.rows(); ++r) {
+      both_halves.each(r, [&](int c, const Mat3& block) {
+        column_.push_back(c);
+        block_.push_back(block);
+      });
+      start_.push_back(static_cast<PetscInt>(column_.size()));
+    }
     MatDestroy(&matrix_);
     MatCreate(PETSC_COMM_SELF, &matrix_);
     MatSetSizes(matrix_, 3 * A.rows(), 3 * A.rows(), 3 * A.rows(), 3 * A.rows());
     MatSetType(matrix_, MATSEQBAIJ);
     MatSetOption(matrix_, MAT_ROW_ORIENTED, PETSC_FALSE);
-    MatSeqBAIJSetPreallocationCSR(matrix_, 3, blocks.start.data(), blocks.column.data(),
-                                  blocks.block.front().data());
+    MatSeqBAIJSetPreallocationCSR(matrix_, 3, start_.data(), column_.data(), block_.front().data());
     if (!same) {
       KSPReset(ksp_);
       MatDestroy(&rows_);
@@ -139,6 +149,9 @@ class Petsc final : public LinearSolver {
   PetscReal threshold_[1] = {
       -1};  // nothing dropped: 0.08, which suits our own, took fifteen times as long here
   std::uint64_t serial_ = 0;
+  Mirror below_;
+  std::vector<PetscInt> start_, column_;
+  std::vector<Mat3> block_;
   std::vector<double> curve_;
   VecX z_, right_, scratch_;
 };

@@ -22,10 +22,12 @@ class Preconditioner {
   virtual bool make_safer(const BlockMatrix& /*A*/, const Filter& /*filter*/, LinearReport& /*report*/) {
     return false;
   }
-  // One that is kept over several systems says here that it no longer suits this one: after so many
-  // iterations it is made ready anew, and the iteration goes on from where it is.
-  virtual bool outdated(int /*iterations*/) const { return false; }
-  virtual void learn(int /*iterations*/) {}  // how many the solve took since it was made ready
+  // One that is kept over several systems says here that it no longer suits this one, after so many
+  // iterations that made the residual smaller by so many powers of ten: it is made ready anew, and the
+  // iteration goes on from where it is.
+  virtual bool outdated(int /*iterations*/, double /*decades*/) const { return false; }
+  virtual void learn(int /*iterations*/, double /*decades*/) {}  // what a whole solve took
+  virtual void forget() {}  // what was kept is not to be used for another system
 };
 
 // The inverses of the 3x3 diagonal blocks.                                    [Baraff & Witkin 1998, 5.3]

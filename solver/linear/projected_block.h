@@ -6,7 +6,7 @@
 
 #include "constraints/filter.h"
 #include "solver/block_matrix.h"
-#include "solver/linear/block_csr.h"
+#include "solver/linear/mirror.h"
 
 namespace drape {
 
@@ -43,8 +43,39 @@ class ProjectedBlocks {
   std::vector<int> entry_;  // row -> entry of the filter, -1: free
 };
 
-// The projected matrix with both its halves.
-BlockCsr whole(const BlockMatrix& A, const ProjectedBlocks& projected);
+// What stands below the diagonal, by rows: the place of an entry is the slot of its transpose.
+inline Mirror below_diagonal(const BlockPattern& pattern) {
+  Mirror below;
+  below.build(pattern.rows(), pattern.rows(), [&](int r, const auto& f) {
+    for (int s = pattern.diagonal(r) + 1; s < pattern.row_start()[static_cast<std::size_t>(r) + 1]; ++s)
+      f(pattern.column()[static_cast<std::size_t>(s)], s);
+  });
+  return below;
+}
+
+// The projected matrix with both its halves, row by row.
+class ProjectedRows {
+ public:
+  ProjectedRows(const BlockMatrix& A, const ProjectedBlocks& projected, const Mirror& below)
+      : pattern_(A.pattern()), projected_(projected), below_(below) {}
+
+  int rows() const { return pattern_.rows(); }
+  int bandwidth() const { return pattern_.bandwidth(); }
+
+  template <class F>  // f(column, block), columns ascending
+  void each(int row, const F& f) const {
+    below_.in_column(row, [&](int c, int slot) { f(c, Mat3(projected_.block(slot, c, row).transpose())); });
+    for (int s = pattern_.diagonal(row); s < pattern_.row_start()[static_cast<std::size_t>(row) + 1]; ++s) {
+      const int c = pattern_.column()[static_cast<std::size_t>(s)];
+      f(c, projected_.block(s, row, c));
+    }
+  }
+
+ private:
+  const BlockPattern& pattern_;
+  const ProjectedBlocks& projected_;
+  const Mirror& below_;
+};
 
 // Of a symmetric block, by its leading minors.
 inline bool positive_definite(const Mat3& b) {

@@ -1,35 +1,84 @@
-// Symmetric block Gauss-Seidel in float: one pass over the matrix on the way down, residual included, and one
-// on the way up.                                                             [Briggs, Henson & McCormick
-// 2000]
+// A matrix of a multigrid level in the three parts that Gauss-Seidel sweeps over, and its symmetric block
+// sweeps: one pass over the matrix on the way down, residual included, and one on the way up.
+//                                                                             [Briggs, Henson & McCormick
+//                                                                             2000]
 //   A = L + D + U:   down from x = 0:  (L + D) x = r,  r - A x = -U x;      up:  (D + U) x_new = r - L x
-// Rows are cut into chunks at least as long as the bandwidth and numbered anew: first all even chunks, then
-// all odd ones. Those of one kind do not touch each other, so they are swept side by side, and the sweep up
-// is the adjoint of the sweep down, whatever the number of threads.
+// Rows are cut into chunks at least as long as the bandwidth; all even chunks come before all odd ones, and
+// that order says what is L and what is U. Chunks of one kind do not touch each other, so they are swept side
+// by side, and the sweep up is the adjoint of the sweep down, whatever the number of threads.
+//   L and U are kept in float; what that takes from a row's sum goes to D, which stays in double: the mass of
+//   a
+// fine sheet's vertex is a millionth of its stiffness, and float alone would lose it.
 #pragma once
 
-#include "solver/linear/float_csr.h"
+#include <Eigen/LU>
+
+#include "solver/linear/sparse_rows.h"
 
 namespace drape {
 
 class Smoother {
  public:
-  explicit Smoother(const BlockCsr& A);
+  template <class Rows>  // rows(), bandwidth(), each(row, f(column, block)), both halves
+  void build(const Rows& A);
 
-  int rows() const { return static_cast<int>(old_of_.size()); }
-  int new_of(int row) const { return new_of_[static_cast<std::size_t>(row)]; }  // row of A -> row here
-  int old_of(int row) const { return old_of_[static_cast<std::size_t>(row)]; }
+  int rows() const { return rows_; }
+  const double* diagonal(int row) const { return diagonal_.data() + 9 * static_cast<std::ptrdiff_t>(row); }
+  template <class F>  // f(column, block)
+  void each(int row, const F& f) const {
+    f(row, diagonal(row));
+    each_other(row, f);
+  }
+  template <class F>  // without the diagonal
+  void each_other(int row, const F& f) const {
+    for (const BlockRows* part : {&lower_, &upper_}) {
+      const BlockRows::Row blocks = (*part)[row];
+      for (int k = 0; k < blocks.count; ++k) f(blocks.column[k], blocks[k]);
+    }
+  }
 
-  void down(const VecXf& r, VecXf& x, VecXf& residual) const;
-  void up(const VecXf& r, VecXf& x) const;
+  void down(const VecX& r, VecX& x, VecX& residual) const;
+  void up(const VecX& r, VecX& x) const;
 
  private:
   template <class F>
   void for_rows_of(bool odd, const F& f) const;  // f(begin, end) for every chunk of that kind
-  void solve_diagonal(int row, FourFloats right, float* x) const;
+  void solve_diagonal(int row, Four right, double* x) const;
 
-  std::vector<int> new_of_, old_of_, even_, odd_;  // where the chunks of each kind begin, and end
-  FloatCsr lower_, upper_;
-  std::vector<float> inverse_;  // D^-1: 9 a row, and 1 more
+  int rows_ = 0, chunk_rows_ = 1;
+  BlockRows lower_, upper_;
+  std::vector<double> diagonal_, inverse_;  // D and D^-1: 9 a row, and 1 more
 };
+
+template <class Rows>
+void Smoother::build(const Rows& A) {
+  rows_ = A.rows();
+  chunk_rows_ = std::max(A.bandwidth(), 256);
+  lower_.resize(rows_);
+  upper_.resize(rows_);
+  diagonal_.resize(9 * static_cast<std::size_t>(rows_) + 1);
+  inverse_.resize(diagonal_.size());
+  for_chunks(rows_, [&](int begin, int end) {
+    BlockRows::Chunk &lower = lower_.open(begin, 8 * chunk_size), &upper = upper_.open(begin, 8 * chunk_size);
+    for (int r = begin; r < end; ++r) {
+      const int chunk = r / chunk_rows_, first = chunk * chunk_rows_, last = first + chunk_rows_;
+      Mat3 D = Mat3::Zero();
+      A.each(r, [&](int c, const auto& block) {
+        const Mat3 exact = block.template cast<double>();
+        if (c == r) return D += exact, void();
+        const bool before = first <= c && c < last ? c < r : chunk % 2 == 1;
+        Eigen::Map<Eigen::Matrix3f> kept((before ? lower : upper).add(c));
+        kept = exact.template cast<float>();
+        D += exact - kept.template cast<double>();
+      });
+      Eigen::Map<Mat3>(diagonal_.data() + 9 * static_cast<std::ptrdiff_t>(r)) = D;
+      Eigen::Map<Mat3>(inverse_.data() + 9 * static_cast<std::ptrdiff_t>(r)) = D.inverse();
+      lower.end_row();
+      upper.end_row();
+    }
+    lower.close();
+    upper.close();
+  });
+}
 
 }  // namespace drape

@@ -3,8 +3,6 @@
 //   documentation]
 #include <sunlinsol/sunlinsol_pcg.h>
 
-#include <limits>
-
 #include "solver/linear/preconditioner.h"
 #include "solver/linear/residual.h"
 #include "solver/stopwatch.h"
@@ -33,7 +31,7 @@ class SundialsPcg final : public LinearSolver {
       resize(b.size());
       // SUNDIALS' iteration cannot be interrupted when a preconditioner that was kept no longer works: none
       // is.
-      preconditioner_->learn(std::numeric_limits<int>::max() / 8);
+      preconditioner_->forget();
       if (!preconditioner_->prepare(A, filter, report)) report.reason = StopReason::indefinite;
     }
     if (report.reason != StopReason::converged) return report;

@@ -1,0 +1,71 @@
+#include "solver/linear/galerkin.h"
+
+#include "solver/linear/row_sum.h"
+
+namespace drape {
+
+void transpose(const BlockRows& P, int columns, BlockRows& R) {
+  Mirror by_column;
+  by_column.build(P.rows(), columns, [&](int r, const auto& f) {
+    for (int k = 0; k < P[r].count; ++k) f(P[r].column[k], k);
+  });
+  const int average = static_cast<int>(by_column.row.size()) / std::max(columns, 1) + 1;
+  R.build(columns, average, [&](int row, BlockRows::Chunk& chunk) {
+    by_column.in_column(row, [&](int r, int k) {
+      float* block = chunk.add(r);
+      for (int e = 0; e < 9; ++e) block[e] = P[r][k][e / 3 + 3 * (e % 3)];
+    });
+  });
+}
+
+const SymmetricRows& Galerkin::coarse(const Smoother& A, const BlockRows& P, const BlockRows& R) {
+  const int columns = R.rows();
+  product_.resize(A.rows());
+  for_chunks(A.rows(), [&](int begin, int end) {
+    RowSum sum(columns);
+    BlockRows::Chunk& chunk = product_.open(begin, 8 * chunk_size);
+    for (int i = begin; i < end; ++i) {
+      A.each(i, [&](int j, const auto* block) {
+        const BlockRows::Row row = P[j];
+        for (int k = 0; k < row.count; ++k) sum.at(row.column[k]).add_product(block, row[k]);
+      });
+      sum.take([&](int column, const WideBlock& block) { block.store(chunk.add(column)); });
+      chunk.end_row();
+    }
+    chunk.close();
+  });
+  coarse_.upper_.resize(columns);
+  for_chunks(columns, [&](int begin, int end) {
+    RowSum sum(columns);
+    BlockRows::Chunk& chunk = coarse_.upper_.open(begin, 8 * chunk_size);
+    for (int i = begin; i < end; ++i) {
+      sum.at(i);  // the diagonal first
+      const BlockRows::Row row = R[i];
+      for (int k = 0; k < row.count; ++k) {
+        const BlockRows::Row product = product_[row.column[k]];
+        for (int l = 0; l < product.count; ++l)
+          if (product.column[l] >= i) sum.at(product.column[l]).add_product(row[k], product[l]);
+      }
+      sum.take([&](int column, const WideBlock& block) {
+        float* to = chunk.add(column);
+        block.store(to);
+        if (column != i) return;
+        const float trace = to[0] + to[4] + to[8];
+        for (int e = 0; e < 9; e += 4) to[e] += trace > 0 ? 2e-7f * trace : 1;
+      });
+      chunk.end_row();
+    }
+    chunk.close();
+  });
+  coarse_.bandwidth_ = 0;
+  coarse_.below_.build(columns, columns, [&](int r, const auto& f) {
+    const BlockRows::Row row = coarse_.upper_[r];
+    for (int k = 1; k < row.count; ++k) {
+      coarse_.bandwidth_ = std::max(coarse_.bandwidth_, row.column[k] - r);
+      f(row.column[k], k);
+    }
+  });
+  return coarse_;
+}
+
+}  // namespace drape

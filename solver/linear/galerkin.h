@@ -1,0 +1,48 @@
+// The matrix of the next coarser level, A_c = P^T A P, and what it is made of.       [Gustavson 1978]
+//   Of the symmetric A_c only the upper triangle is computed, so that it is symmetric to the last bit.
+#pragma once
+
+#include "solver/linear/sparse_rows.h"
+#include "solver/linear/mirror.h"
+#include "solver/linear/smoother.h"
+
+namespace drape {
+
+// The upper triangle of a symmetric matrix, each row's diagonal block first; gone through whole, row by row.
+class SymmetricRows {
+ public:
+  int rows() const { return upper_.rows(); }
+  int bandwidth() const { return bandwidth_; }
+
+  template <class F>  // f(column, block)
+  void each(int row, const F& f) const {
+    below_.in_column(row, [&](int c, int k) { f(c, block(c, k).transpose()); });
+    for (int k = 0; k < upper_[row].count; ++k) f(upper_[row].column[k], block(row, k));
+  }
+
+ private:
+  friend class Galerkin;
+  Eigen::Map<const Eigen::Matrix3f> block(int row, int k) const {
+    return Eigen::Map<const Eigen::Matrix3f>(upper_[row][k]);
+  }
+
+  BlockRows upper_;
+  Mirror below_;
+  int bandwidth_ = 0;
+};
+
+// R = P^T
+void transpose(const BlockRows& P, int columns, BlockRows& R);
+
+class Galerkin {
+ public:
+  // R = P^T. A direction that no vertex of an aggregate may take has no stiffness: it gets a little, and stays
+  // at zero.
+  const SymmetricRows& coarse(const Smoother& A, const BlockRows& P, const BlockRows& R);
+
+ private:
+  BlockRows product_;  // A P
+  SymmetricRows coarse_;
+};
+
+}  // namespace drape

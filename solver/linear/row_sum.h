@@ -1,0 +1,60 @@
+// One row of a sparse product in the making: which columns it has, and the sums of their blocks.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "solver/linear/sparse_rows.h"
+
+namespace drape {
+
+struct WideBlock {  // three of the four lanes count
+  Four column[3] = {};
+
+  template <class Scalar>
+  void add(const Scalar* b) {
+    for (int k = 0; k < 3; ++k) column[k] += load(b + 3 * k);
+  }
+  template <class A, class B>
+  void add_product(const A* a, const B* b) {
+    const Four a0 = load(a), a1 = load(a + 3), a2 = load(a + 6);
+    for (int k = 0; k < 3; ++k) column[k] += a0 * b[3 * k] + a1 * b[3 * k + 1] + a2 * b[3 * k + 2];
+  }
+  template <class Scalar>
+  void store(Scalar* to) const {
+    for (int k = 0; k < 3; ++k)
+      for (int r = 0; r < 3; ++r) to[3 * k + r] = static_cast<Scalar>(column[k][r]);
+  }
+};
+
+class RowSum {
+ public:
+  explicit RowSum(int columns) : place_(static_cast<std::size_t>(columns), -1) {}
+
+  WideBlock& at(int column) {
+    int& place = place_[static_cast<std::size_t>(column)];
+    if (place < 0) {
+      place = static_cast<int>(column_.size());
+      column_.push_back(column);
+      sum_.emplace_back();
+    }
+    return sum_[static_cast<std::size_t>(place)];
+  }
+
+  // f(column, sum) in the order in which the columns came; then the row is empty again.
+  template <class F>
+  void take(const F& f) {
+    for (std::size_t k = 0; k < column_.size(); ++k) {
+      f(column_[k], sum_[k]);
+      place_[static_cast<std::size_t>(column_[k])] = -1;
+    }
+    column_.clear();
+    sum_.clear();
+  }
+
+ private:
+  std::vector<int> place_, column_;
+  std::vector<WideBlock> sum_;
+};
+
+}  // namespace drape

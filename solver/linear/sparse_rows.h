@@ -1,0 +1,103 @@
+// Sparse matrices that a preconditioner makes row by row and multiplies with row by row: 3x3 blocks (column by
+// column), or single numbers, kept in float and calculated with in double. Rows stand together in fixed chunks.
+// A chunk is made by one thread and stays where it was made: nothing is copied to put the matrix together, and
+// no thread count changes it.
+#pragma once
+
+#include <vector>
+
+#include "mesh/parallel.h"
+#include "mesh/triangle_mesh.h"
+
+namespace drape {
+
+typedef double Four __attribute__((vector_size(32), aligned(8)));
+inline Four load(const double* p) { return *reinterpret_cast<const Four*>(p); }
+inline Four load(const float* p) {
+  typedef float FourFloats __attribute__((vector_size(16), aligned(4)));
+  return __builtin_convertvector(*reinterpret_cast<const FourFloats*>(p), Four);
+}
+
+template <int width>
+class SparseRows {
+ public:
+  class Chunk {
+   public:
+    // An entry of the row that end_row() closes; the caller writes its numbers.
+    float* add(int column) {
+      column_.push_back(column);
+      value_.resize(value_.size() + width);
+      return value_.data() + value_.size() - width;
+    }
+    void end_row() { start_.push_back(static_cast<int>(column_.size())); }
+    void close() { value_.push_back(0); }  // so that the last column can be read four wide
+
+   private:
+    friend class SparseRows;
+    std::vector<int> start_, column_;
+    std::vector<float> value_;
+  };
+  struct Row {
+    int count;
+    const int* column;
+    const float* value;
+    const float* operator[](int k) const { return value + width * static_cast<std::ptrdiff_t>(k); }
+  };
+
+  // Begins anew with so many rows. Each chunk of them is then opened, filled in order and closed.
+  void resize(int rows) {
+    rows_ = rows;
+    chunks_.resize(static_cast<std::size_t>(chunk_count(rows)));
+  }
+  Chunk& open(int first_row, std::size_t entries_expected) {
+    Chunk& chunk = chunks_[static_cast<std::size_t>(first_row / chunk_size)];
+    chunk.start_.assign(1, 0);
+    chunk.column_.clear();
+    chunk.value_.clear();
+    chunk.column_.reserve(entries_expected);
+    chunk.value_.reserve(width * entries_expected + 1);
+    return chunk;
+  }
+  template <class Make>  // make(row, chunk) adds the entries of the row
+  void build(int rows, int entries_a_row, const Make& make) {
+    resize(rows);
+    for_chunks(rows, [&](int begin, int end) {
+      Chunk& chunk = open(begin, static_cast<std::size_t>(entries_a_row) * chunk_size);
+      for (int row = begin; row < end; ++row) {
+        make(row, chunk);
+        chunk.end_row();
+      }
+      chunk.close();
+    });
+  }
+
+  int rows() const { return rows_; }
+  Row operator[](int row) const {
+    const Chunk& chunk = chunks_[static_cast<std::size_t>(row / chunk_size)];
+    const int begin = chunk.start_[static_cast<std::size_t>(row % chunk_size)];
+    const int end = chunk.start_[static_cast<std::size_t>(row % chunk_size) + 1];
+    return {end - begin, chunk.column_.data() + begin,
+            chunk.value_.data() + width * static_cast<std::ptrdiff_t>(begin)};
+  }
+
+ private:
+  int rows_ = 0;
+  std::vector<Chunk> chunks_;
+};
+
+using BlockRows = SparseRows<9>;
+
+// A row of blocks times x: three of the four lanes count.
+inline Four times(const BlockRows::Row& row, const double* x) {
+  Four sum = {0, 0, 0, 0}, sum1 = sum, sum2 = sum;
+  const float* a = row.value;
+  for (int k = 0; k < row.count; ++k, a += 9) {
+    const double* xj = x + 3 * static_cast<std::ptrdiff_t>(row.column[k]);
+    sum += load(a) * xj[0];
+    sum1 += load(a + 3) * xj[1];
+    sum2 += load(a + 6) * xj[2];
+  }
+  return sum + sum1 + sum2;
+}
+
+}  // namespace drape
