@@ -117,8 +117,9 @@ int smoothed_aggregation(const Smoother& A, double theta, const ProjectedBlocks*
             if (free(j)) {
               sum.at(other).add(block);
             } else {
-              const Mat3 S = projected->S(j);
-              sum.at(other).add_product(block, S.data());
+              double S[10] = {};  // read four wide
+              Eigen::Map<Mat3>{S} = projected->S(j);
+              sum.at(other).add_product(block, S);
             }
           }
         });

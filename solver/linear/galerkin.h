@@ -2,9 +2,9 @@
 //   Of the symmetric A_c only the upper triangle is computed, so that it is symmetric to the last bit.
 #pragma once
 
-#include "solver/linear/sparse_rows.h"
 #include "solver/linear/mirror.h"
 #include "solver/linear/smoother.h"
+#include "solver/linear/sparse_rows.h"
 
 namespace drape {
 
@@ -36,8 +36,8 @@ void transpose(const BlockRows& P, int columns, BlockRows& R);
 
 class Galerkin {
  public:
-  // R = P^T. A direction that no vertex of an aggregate may take has no stiffness: it gets a little, and stays
-  // at zero.
+  // R = P^T. A direction that no vertex of an aggregate may take has no stiffness: it gets a little, and
+  // stays at zero.
   const SymmetricRows& coarse(const Smoother& A, const BlockRows& P, const BlockRows& R);
 
  private:

@@ -28,7 +28,8 @@ struct Mirror {
 
   template <class F>  // f(row, place)
   void in_column(int column, const F& f) const {
-    for (int k = start[static_cast<std::size_t>(column)]; k < start[static_cast<std::size_t>(column) + 1]; ++k)
+    for (int k = start[static_cast<std::size_t>(column)]; k < start[static_cast<std::size_t>(column) + 1];
+         ++k)
       f(row[static_cast<std::size_t>(k)], place[static_cast<std::size_t>(k)]);
   }
 };

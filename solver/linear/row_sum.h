@@ -18,7 +18,10 @@ struct WideBlock {  // three of the four lanes count
   template <class A, class B>
   void add_product(const A* a, const B* b) {
     const Four a0 = load(a), a1 = load(a + 3), a2 = load(a + 6);
-    for (int k = 0; k < 3; ++k) column[k] += a0 * b[3 * k] + a1 * b[3 * k + 1] + a2 * b[3 * k + 2];
+    for (int k = 0; k < 3; ++k) {
+      const Four bk = load(b + 3 * k);
+      column[k] += a0 * bk[0] + a1 * bk[1] + a2 * bk[2];
+    }
   }
   template <class Scalar>
   void store(Scalar* to) const {

@@ -43,7 +43,8 @@ void Smoother::up(const VecX& r, VecX& x) const {
   for (const bool odd : {true, false})
     for_rows_of(odd, [&](int begin, int end) {
       for (int i = end - 1; i >= begin; --i)
-        solve_diagonal(i, at(r, i) - times(lower_[i], x.data()) - times(upper_[i], x.data()), x.data());
+        solve_diagonal(i, at(r, i) - times<true>(lower_[i], x.data()) - times<true>(upper_[i], x.data()),
+                       x.data());
     });
 }
 
