@@ -11,9 +11,8 @@ using Graph = SparseRows<1>;  // the strong neighbours of every vertex, and how 
 
 template <class Scalar>
 float squared_norm(const Scalar* block) {
-  Scalar sum = 0;
-  for (int e = 0; e < 9; ++e) sum += block[e] * block[e];
-  return static_cast<float>(sum);
+  const Four a = load(block), b = load(block + 3), c = load(block + 6), sum = a * a + b * b + c * c;
+  return static_cast<float>(sum[0] + sum[1] + sum[2]);
 }
 
 class Strength {

@@ -25,9 +25,12 @@ const SymmetricRows& Galerkin::coarse(const Smoother& A, const BlockRows& P, con
     RowSum sum(columns);
     BlockRows::Chunk& chunk = product_.open(begin, 8 * chunk_size);
     for (int i = begin; i < end; ++i) {
+      const BlockRows::Row own = P[i];  // A_c above its diagonal has no use for columns before these
+      const int least = own.count == 0 ? columns : *std::min_element(own.column, own.column + own.count);
       A.each(i, [&](int j, const auto* block) {
         const BlockRows::Row row = P[j];
-        for (int k = 0; k < row.count; ++k) sum.at(row.column[k]).add_product(block, row[k]);
+        for (int k = 0; k < row.count; ++k)
+          if (row.column[k] >= least) sum.at(row.column[k]).add_product(block, row[k]);
       });
       sum.take([&](int column, const WideBlock& block) { block.store(chunk.add(column)); });
       chunk.end_row();
