@@ -1,6 +1,4 @@
 // Constraints hold in every integrator of the build: pins, contact, friction; and the same bits everywhere.
-#include <cstring>
-
 #include "tests/integrators.h"
 
 using namespace drape;
@@ -29,11 +27,6 @@ double step_for(std::string_view name) { return is_explicit(name) ? 4e-4 : 0.01;
 int steps_for(std::string_view name, double duration) {
   return static_cast<int>(std::lround(duration / step_for(name)));
 }
-
-struct ThreadsRestored {
-  int before = threads();
-  ~ThreadsRestored() { set_threads(before); }
-};
 
 }  // namespace
 
@@ -180,8 +173,7 @@ TEST_CASE("every integrator gives the same bits with 1, 2 and 7 threads", "[inte
       all << state.x, state.v;
       if (first.size() == 0) first = all;
       INFO(name << ", " << t << " threads");
-      CHECK(std::memcmp(all.data(), first.data(), static_cast<std::size_t>(all.size()) * sizeof(double)) ==
-            0);
+      CHECK(same_bits(all, first));
     }
   }
 }

@@ -184,7 +184,7 @@ TEST_CASE("the product is that of the whole symmetric matrix, the same bits on a
       expected.segment<3>(3 * r) += A.at(s) * x.segment<3>(3 * c);
       if (c > r) expected.segment<3>(3 * c) += A.at(s).transpose() * x.segment<3>(3 * r);
     }
-  const int before = threads();
+  const ThreadsRestored restored;
   VecX first;
   for (int t : {1, 2, 7}) {
     set_threads(t);
@@ -193,7 +193,6 @@ TEST_CASE("the product is that of the whole symmetric matrix, the same bits on a
     if (first.size() == 0) first = y;
     CHECK(y == first);
   }
-  set_threads(before);
 }
 
 TEST_CASE("a pattern knows every pair once, in chunks that only neighbours share", "[solvers]") {

@@ -27,24 +27,15 @@ class Recorder final : public LinearSolver {
   VecX &b_, &guess_;
 };
 
-// A sheet hung by two corners after some steps: the matrix of a real fall, slack and taut edges in it.
-struct HungSheet {
-  TriangleMesh mesh;
-  System system;
-  Constraints constraints;
-  State state;
+// A hung sheet after some steps: the matrix of a real fall, slack and taut edges in it.
+struct FallingSheet : HungSheet {
   ImplicitEuler stepper;
   Filter filter;
   VecX b, guess;
 
-  explicit HungSheet(int side, int steps)
-      : mesh(grid(side, side, 1, 1)),
-        system(lumped_mass(mesh, 0.2)),
-        state(at_rest(mesh)),
+  explicit FallingSheet(int side, int steps)
+      : HungSheet(side, 2000, 1e-5),
         stepper(system, constraints, std::make_unique<Recorder>(b, guess), {.tolerance = 1e-3}) {
-    system.add(noh_jung(mesh, {.area_density = 0.2, .stretch = 2000, .bend = 1e-5}));
-    system.add(Gravity{});
-    constraints.pin({0, side - 1});
     for (int k = 0; k < steps; ++k) stepper.advance(state, 0.01);
     filter = held({0, side - 1});
   }
@@ -69,9 +60,9 @@ const std::vector<std::string> names = {"block-jacobi", "block-ic0", "multigrid"
 
 TEST_CASE("a preconditioner is symmetric and positive definite, the same bits on any number of threads",
           "[solvers]") {
-  const HungSheet sheet(60, 12);  // large enough for threads
+  const FallingSheet sheet(60, 12);  // large enough for threads
   const Filter filter = sheet.held({0, 59, 700, 701, 702, 1800, 1801, 1900, 2500});
-  const int before = threads();
+  const ThreadsRestored restored;
   for (const std::string& name : names) {
     INFO(name);
     VecX first;
@@ -94,13 +85,12 @@ TEST_CASE("a preconditioner is symmetric and positive definite, the same bits on
       CHECK(Pu == first);
     }
   }
-  set_threads(before);
 }
 
 TEST_CASE("better preconditioners need fewer iterations, multigrid as few on a finer sheet", "[solvers]") {
   std::vector<int> by_multigrid;
   for (int side : {33, 65}) {
-    const HungSheet sheet(side, 15);
+    const FallingSheet sheet(side, 15);
     std::vector<int> iterations;
     for (const char* name : {"ppcg", "ppcg+block-ic0", "ppcg+multigrid"}) {
       VecX dv = sheet.guess;
@@ -119,7 +109,7 @@ TEST_CASE("better preconditioners need fewer iterations, multigrid as few on a f
 }
 
 TEST_CASE("contacts that come and go need no new analysis, and every solver still agrees", "[solvers]") {
-  const HungSheet sheet(17, 15);
+  const FallingSheet sheet(17, 15);
   for (const auto& info : linear_solvers()) {
     INFO(info.name);
     const auto solver = make_linear_solver(info.name);
@@ -141,7 +131,7 @@ TEST_CASE("contacts that come and go need no new analysis, and every solver stil
 }
 
 TEST_CASE("an incomplete factor that breaks down is built safer, and says so", "[solvers]") {
-  const HungSheet sheet(33, 15);
+  const FallingSheet sheet(33, 15);
   const auto preconditioner = make_preconditioner("block-ic0");
   LinearReport report;
   REQUIRE(preconditioner->prepare(sheet.stepper.matrix(), sheet.filter, report));
