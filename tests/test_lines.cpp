@@ -3,9 +3,6 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <csignal>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 
 #include "app/atomic_file.h"
 #include "app/units.h"
@@ -13,6 +10,7 @@
 #include "mesh/topology.h"
 #include "solver/buckling_spring.h"
 #include "solver/damping.h"
+#include "tests/folder.h"
 #include "tests/tables.h"
 
 using namespace drape;
@@ -20,15 +18,6 @@ using namespace drape::test;
 namespace fs = std::filesystem;
 
 namespace {
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string n = (fs::temp_directory_path() / "drape-line-XXXXXX").string();
-    REQUIRE(mkdtemp(n.data()));
-    path = n;
-  }
-  ~Folder() { fs::remove_all(path); }
-};
 std::vector<PairForce<BucklingSpring>::Element> bends(const std::vector<std::unique_ptr<Force>>& forces) {
   for (const auto& f : forces)
     if (const auto* b = dynamic_cast<const PairForce<BucklingSpring>*>(f.get())) return b->elements();
@@ -37,11 +26,8 @@ std::vector<PairForce<BucklingSpring>::Element> bends(const std::vector<std::uni
 int simulate(const Folder& d, const std::string& words) {
   const TriangleMesh sheet = grid(3, 3, 1, 1);
   write_obj(d.path / "sheet.obj", sheet, sheet.positions);
-  std::ofstream(d.path / "s.toml")
-      << "[[cloth]]\nmesh = \"sheet.obj\"\nfabric = \"cotton-poplin\"\n[simulation]\n";
-  return std::system(
-      ("cd '" + d.path.string() + "' && '" DRAPE_PROGRAM "' simulate s.toml --quiet --out o " + words)
-          .c_str());
+  d.write("s.toml", "[[cloth]]\nmesh = \"sheet.obj\"\nfabric = \"cotton-poplin\"\n[simulation]\n");
+  return d.drape("simulate s.toml --quiet --out o " + words).exit_code;
 }
 }  // namespace
 
