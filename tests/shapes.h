@@ -1,5 +1,5 @@
-// Shapes for the laws of distances: meshes, points of their surfaces, and whether a point is inside by another
-// way than the distance.
+// Shapes for the laws of distances: meshes, points of their surfaces, and whether a point is inside by
+// another way than the distance.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -74,7 +74,9 @@ inline TriangleMesh open_sheet() {
 
 inline MeshBody body(const TriangleMesh& m) { return std::make_shared<const SurfaceDistance>(m); }
 
-inline Mat3 some_rotation() { return Eigen::AngleAxisd(0.7, Vec3(1, 2, -0.5).normalized()).toRotationMatrix(); }
+inline Mat3 some_rotation() {
+  return Eigen::AngleAxisd(0.7, Vec3(1, 2, -0.5).normalized()).toRotationMatrix();
+}
 
 // A shape, points of its surface by parametrisation, and whether a point is inside by another way than the
 // distance.

@@ -1,4 +1,5 @@
 // drape compare: systems taken out of a run, verdicts, integrators, exit codes of the real program.
+#include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -128,6 +129,90 @@ TEST_CASE("a solve that meets the tolerance differs by no more than is allowed",
   }
 }
 
+TEST_CASE("a row holds what dense algebra says of its solution", "[compare]") {
+  const Scene scene = hung_sheet_scene({});
+  Recorded run(scene, make_hung_sheet(scene, 6));
+  run.recording.on = true;
+  for (int k = 0; k < 8; ++k) run.simulation.integrator->advance(run.simulation.state, 0.01);
+  LinearSystem system = *run.recording.last;
+  const BlockPattern& pattern = system.A.pattern();
+  const Eigen::Index n = system.b.size();
+  Eigen::MatrixXd D(n, n), S = Eigen::MatrixXd::Identity(n, n);
+  VecX z = VecX::Zero(n), column(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    system.A.multiply(VecX::Unit(n, k), column);
+    D.col(k) = column;
+  }
+  system.filter.clear();
+  for (int row = 0; row < 36; row += 5) {  // locked, or sliding and moved along
+    const Vec3 p = Vec3(1, 2 + row, -1).normalized();
+    const bool locked = row % 2 == 0;
+    system.filter.constrain(row, locked ? Mat3(Mat3::Zero()) : Mat3(Mat3::Identity() - p * p.transpose()),
+                            0.1 * p);
+    S.block<3, 3>(3 * row, 3 * row) = system.filter.entries().back().S;
+    z.segment<3>(3 * row) = 0.1 * p;
+  }
+  const double reference = 2 * (S * (system.b - D * z)).norm();
+  system.options.scale = reference;         // which is the larger then
+  Simulation& simulation = run.simulation;  // as if it were two cloths
+  Cloth upper, lower;
+  upper.name = "upper", lower.name = "lower";
+  upper.mesh.positions.resize(1), lower.mesh.positions.resize(35);
+  lower.first_particle = 1;
+  simulation.cloths = {upper, lower};
+
+  VecX loose = system.guess, best = system.guess;
+  LinearOptions options = system.options;
+  options.tolerance = 1e-2;
+  make_linear_solver("mpcg")->solve(system.A, system.b, system.filter, options, loose);
+  options.tolerance = 1e-4;
+  make_linear_solver("mpcg")->solve(system.A, system.b, system.filter, options, best);
+  int worst = 0;
+  const auto apart = [&](int row) { return (loose - best).segment<3>(3 * row).norm(); };
+  for (int row = 1; row < 36; ++row)
+    if (apart(row) > apart(worst)) worst = row;
+  VecX Su = VecX::Zero(n);
+  Su.segment<3>(3 * worst) = (loose - best).segment<3>(3 * worst).normalized();
+  Su = S * Su;
+  const VecX g = (S * D * S + Eigen::MatrixXd::Identity(n, n) - S).ldlt().solve(Su);
+  const double r_best = (S * (system.b - D * best)).norm() / reference;
+
+  SolverBench bench({{"mpcg@1e-2", "mpcg", 1e-2}, {"mpcg@1e-4", "mpcg", 1e-4}}, 1e-4, 1);
+  const std::vector<SolverRow> rows = bench.compare(system, 8, simulation);
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[1].most_accurate);
+  CHECK(rows[0].residual == Approx((S * (system.b - D * loose)).norm() / reference));
+  CHECK(rows[1].residual == Approx(r_best));
+  CHECK(rows[0].difference == Approx(apart(worst)));
+  CHECK(*rows[0].allowed == Approx(g.norm() * reference * (1.05e-4 + r_best)).epsilon(1e-4));
+  const int particle = pattern.particle_of()[static_cast<std::size_t>(worst)];
+  CHECK(rows[0].cloth == (particle == 0 ? "upper" : "lower"));
+  CHECK(rows[0].vertex == (particle == 0 ? 0 : particle - 1));
+
+  // Missing the tolerance is enough to differ, where the place that differs most would be allowed, too.
+  std::vector<SolverChoice> choices = {{"mpcg@1e-9", "mpcg", 1e-9}};
+  for (double t = 1e-4; t < 1e-3; t *= 1.2) choices.push_back({"mpcg@" + std::to_string(t), "mpcg", t});
+  int missed = 0;
+  for (const SolverRow& row : SolverBench(choices, 1e-4, 1).compare(system, 8, simulation)) {
+    const bool meets = row.residual <= 1.05e-4, allowed = !row.allowed || row.difference <= *row.allowed;
+    CHECK(row.agrees == (meets && allowed));
+    CHECK((allowed || !meets));
+    missed += allowed && !meets;
+  }
+  CHECK(missed > 0);
+
+  // The memory of what is already there is not that of a solver.
+  const std::vector<SolverRow> again = bench.compare(system, 8, simulation);
+  CHECK((rows[0].first_solve && rows[1].first_solve));
+  CHECK_FALSE((again[0].first_solve || again[0].peak_bytes));
+
+  VecX off = best;
+  off.segment<3>(0) += Vec3(0, 0.25, 0);  // of a locked one
+  CHECK(constraint_violation(system, off) == Approx(0.25));
+  off[3 * 35] = std::nan("");
+  CHECK_FALSE(constraint_violation(system, off) <= 1e300);
+}
+
 TEST_CASE("integrators: what differs by linear algebra, what by time integration", "[compare]") {
   Desk desk;
   REQUIRE(desk.run("'" + on_ball +
@@ -150,6 +235,93 @@ TEST_CASE("integrators: what differs by linear algebra, what by time integration
   CHECK(count(content(desk.path / "o/compare.html"), "<svg") == 2);
 }
 
+namespace {
+
+// A run done by hand, and its sums.
+struct ByHand {
+  VecX x;
+  double drift = 0;  // J
+  int steps = 0, not_converged = 0;
+  long iterations = 0;
+
+  ByHand(const Scene& scene, const std::string& integrator, const std::vector<double>& time_steps,
+         double tolerance) {
+    Simulation s = make_simulation(scene);
+    StepOptions options = scene.simulation.step;
+    options.tolerance = tolerance;
+    const auto stepper =
+        make_integrator(integrator, *s.system, *s.constraints, make_linear_solver("mpcg"), options);
+    const auto energy = [&] {
+      return s.system->kinetic_energy(s.state.v) + s.system->elastic_energy(s.state.x) +
+             s.system->gravity_energy(s.state.x);
+    };
+    const double start = energy();
+    for (const double h : time_steps) {
+      const StepReport report = stepper->advance(s.state, h);
+      ++steps;
+      not_converged += report.converged ? 0 : 1;
+      iterations += report.linear_iterations;
+    }
+    x = s.state.x;
+    drift = energy() - start;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the rows of integrators are those of the same runs done by hand", "[compare]") {
+  const double tolerance = 1e-6;
+  const Scene scene =
+      read_scene(scenes + "flag.toml", {parse_setting("simulation.linear_solver=\"mpcg\""),
+                                        parse_setting("simulation.tolerance=1e-6"),
+                                        parse_setting("simulation.max_linear_iterations=12")});
+  CompareWords words;
+  words.solvers = "mpcg@1e-2";
+  words.integrators = "implicit-euler,bdf2";
+  words.time_steps = "10ms,20ms";
+  Comparison comparison;
+  REQUIRE(compare_integrators(scene, compare_options(words), 0.05, true, comparison));
+  REQUIRE(comparison.runs.size() == 6);
+  const std::vector<double> coarse = {0.02, 0.02, 0.01}, fine(5, 0.01);
+  std::vector<ByHand> expected;
+  for (const char* integrator : {"implicit-euler", "bdf2"}) {
+    expected.emplace_back(scene, integrator, coarse, tolerance);
+    expected.emplace_back(scene, integrator, fine, tolerance);
+    expected.emplace_back(scene, integrator, coarse, 1e-2);
+  }
+  int not_converged = 0;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const IntegratorRow& row = comparison.runs[k];
+    INFO(row.integrator << " at " << row.time_step << " s with " << row.solver);
+    CHECK(row.reference == (k == 1));
+    CHECK(row.end == Approx(0.05));
+    CHECK(row.steps == expected[k].steps);
+    CHECK(row.linear_iterations == expected[k].iterations);
+    CHECK(row.steps_not_converged == expected[k].not_converged);
+    CHECK(row.energy_drift == Approx(expected[k].drift));
+    CHECK(*row.energy_error == Approx(expected[k].drift - expected[1].drift).margin(1e-15));
+    double most = 0, squares = 0;
+    for (Eigen::Index i = 0; i < expected[k].x.size(); i += 3) {
+      const double d = (expected[k].x - expected[1].x).segment<3>(i).norm();
+      most = std::max(most, d);
+      squares += d * d;
+    }
+    CHECK(*row.max_distance == Approx(most).margin(1e-15));
+    CHECK(*row.rms_distance ==
+          Approx(std::sqrt(3 * squares / static_cast<double>(expected[k].x.size()))).margin(1e-15));
+    REQUIRE(row.same_run_distance.has_value() == (k % 3 == 2));
+    if (k % 3 == 2) {
+      double apart = 0;
+      for (Eigen::Index i = 0; i < expected[k].x.size(); i += 3)
+        apart = std::max(apart, (expected[k].x - expected[k - 2].x).segment<3>(i).norm());
+      CHECK(apart > 0);
+      CHECK(*row.same_run_distance == Approx(apart));
+    }
+    not_converged += row.steps_not_converged;
+  }
+  CHECK(not_converged > 0);
+}
+
 TEST_CASE("an integrator that fails is a row, not an end", "[compare]") {
   const Scene scene = read_scene(
       on_ball, {parse_setting("cloth.0.stretch=1e300"), parse_setting("simulation.linear_solver=\"mpcg\"")});
@@ -165,6 +337,31 @@ TEST_CASE("an integrator that fails is a row, not an end", "[compare]") {
     CHECK_THAT(row.failure, StartsWith("step "));
     CHECK_FALSE(row.max_distance);
   }
+}
+
+TEST_CASE("options are put in order, and what is not said follows from what is", "[compare]") {
+  CompareWords words;
+  words.at = "9,2,5";
+  words.integrators = "bdf2";
+  words.time_steps = "5ms,0.02,10 ms";
+  CHECK(compare_options(words).at == std::vector<int>{2, 5, 9});
+  CHECK(compare_options(words).time_steps == std::vector<double>{0.02, 0.01, 0.005});
+  words = {};
+  words.sizes = "1M,2.5k,16";
+  CHECK(compare_options(words).sizes == std::vector<int>{16, 2500, 1000000});
+
+  Desk desk;
+  const auto steps = [&](const std::string& more) {
+    CHECK(desk.run("'" + on_ball + "' --solvers mpcg --repeats 1 --out o " + more) == 0);
+    return std::pair(desk.json()["steps"].get<int>(), desk.json()["at"].get<std::vector<int>>());
+  };
+  CHECK(steps("--at 2,4") == std::pair(4, std::vector<int>{2, 4}));
+  CHECK(steps("--steps 5") == std::pair(5, std::vector<int>{1, 3, 5}));
+  CHECK(steps("--steps 1") == std::pair(1, std::vector<int>{1}));
+  CHECK(steps("") == std::pair(50, std::vector<int>{1, 25, 50}));  // the scene has 400
+  CHECK(steps("--set simulation.duration=0.04") == std::pair(4, std::vector<int>{1, 2, 4}));
+  for (const JsonValue json = desk.json(); const JsonValue& row : json["rows"])
+    CHECK(row["time"].get<double>() == Approx(0.01 * row["step"].get<int>()));
 }
 
 TEST_CASE("peak memory sees a block that has been freed again", "[compare]") {
@@ -228,6 +425,11 @@ TEST_CASE("a path that fails, an interrupt, a full disk", "[compare]") {
   CHECK(desk.json()["agree"] == false);
   fs::remove_all(desk.path / "o");
 
+  CHECK(desk.run("--sizes 16,36 --set cloth.0.stretch=1e300 --out o --quiet") == 1);  // ends with the first
+  CHECK_THAT(desk.err, Contains("error: step 1 "));
+  CHECK(desk.json()["sizes"] == JsonValue({16}));
+  fs::remove_all(desk.path / "o");
+
   CHECK(desk.run(scene + "--at 100000", "timeout --preserve-status -s INT 2") == 130);
   CHECK(desk.out.empty());
   CHECK(fs::is_empty(desk.path / "o"));
@@ -239,9 +441,23 @@ TEST_CASE("a path that fails, an interrupt, a full disk", "[compare]") {
 
 TEST_CASE("a scene decides how the sheets of --sizes are solved", "[compare]") {
   Desk desk;
-  CHECK(desk.run("'" + on_ball +
-                 "' --sizes 100 --steps 2 --solvers mpcg --linear-solver eigen-ldlt --out o") == 0);
+  CHECK(desk.run(
+            "'" + on_ball +
+            "' --sizes 100 --steps 2 --solvers mpcg --linear-solver eigen-ldlt --integrator bdf2 --threads 3 "
+            "--out o") == 0);
+  CHECK(desk.json()["integrator"] == "bdf2");
+  CHECK(desk.json()["threads"] == 3);
   CHECK(desk.json()["linear_solver"] == "eigen-ldlt");
   CHECK(desk.json()["tolerance"] == 1e-4);
   CHECK(desk.json()["rows"][0]["vertices"] == 100);
+}
+
+TEST_CASE("the hung sheet hangs by two corners, and falls as it is told", "[compare]") {
+  const Scene scene = hung_sheet_scene({parse_setting("simulation.gravity=[0,-1,2]")});
+  const Simulation sheet = make_hung_sheet(scene, 7);
+  CHECK(sheet.constraints->pinned() == std::vector<int>{0, 6});
+  CHECK(sheet.system->gravity_acceleration() == Vec3(0, -1, 2));
+  CHECK(sheet.state.particles() == 49);
+  for (const int vertices : {16, 400, 1000, 40000})
+    CHECK(std::abs(std::sqrt(vertices) - sheet_side(vertices)) <= 0.5);
 }

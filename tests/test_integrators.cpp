@@ -240,8 +240,27 @@ TEST_CASE("an explicit step that leaves the numbers is a failure that says what 
     CHECK_FALSE(report.done);
     CHECK_THAT(report.failure.what, Catch::Contains("shorter time step"));
     CHECK(report.failure.particle >= 0);
+    CHECK_FALSE(report.failure.force.empty());
+    CHECK((before.x.allFinite() && before.v.allFinite()));  // what came before it was no failure
     CHECK(state.x == before.x);
     CHECK(state.time == before.time);
+  }
+}
+
+TEST_CASE("a time step that is none and the state of another system are refused", "[integrators]") {
+  for (const std::string& name : integrator_names()) {
+    INFO(name);
+    Motion m = pendulum();
+    auto stepper = make_integrator(name, m.system, m.constraints, make_linear_solver("mpcg"));
+    State state = m.start;
+    for (const double h : {0.0, -0.01, std::nan(""), std::numeric_limits<double>::infinity()})
+      CHECK_THROWS_WITH(stepper->advance(state, h), Catch::Contains("time step"));
+    State larger{0, VecX::Zero(9), VecX::Zero(9)}, uneven = m.start;
+    uneven.v.setZero(3);
+    CHECK_THROWS_AS(stepper->advance(larger, 0.01), InputError);
+    CHECK_THROWS_AS(stepper->advance(uneven, 0.01), InputError);
+    CHECK(state.x == m.start.x);
+    CHECK(state.time == 0);
   }
 }
 

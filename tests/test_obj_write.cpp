@@ -84,6 +84,6 @@ TEST_CASE("files that cannot be read or written say so in one line", "[obj]") {
   if (fs::exists("/dev/full"))
     CHECK_THROWS_WITH(write_obj("/dev/full", mesh, mesh.positions), Contains("space"));
   CHECK_THROWS_AS(write_obj(folder / "grid.obj", mesh, {}), InputError);
-  CHECK(read_obj(folder / "grid.obj").positions == mesh.positions);  // the older one is still there
+  CHECK(read_obj(folder / "grid.obj").positions == mesh.positions);       // the older one is still there
   CHECK(desk.files() == std::set<std::string>{"empty.obj", "grid.obj"});  // no temporary files left
 }

@@ -5,6 +5,11 @@
 #include "solver/linear/preconditioner.h"
 #include "tests/tables.h"
 
+namespace drape {
+std::unique_ptr<LinearSolver> make_pcg(std::string name, bool prefiltered,
+                                       std::unique_ptr<Preconditioner> preconditioner);
+}  // namespace drape
+
 using namespace drape;
 using namespace drape::test;
 
@@ -52,6 +57,36 @@ struct FallingSheet : HungSheet {
     f.renumber(stepper.matrix().pattern().row_of());
     return f;
   }
+};
+
+// Block-jacobi that after some iterations acts as a negative definite matrix, until it is made safer, if it
+// can be.
+class Failing final : public Preconditioner {
+ public:
+  struct Told {
+    int safer = 0, learnt = 0;
+  };
+  Failing(int sound, bool can_be_safer, Told& told)
+      : sound_(sound), can_be_safer_(can_be_safer), told_(told) {}
+  std::string_view name() const override { return "failing"; }
+  bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
+    return inner_->prepare(A, filter, report);
+  }
+  void apply(const VecX& r, VecX& s) override {
+    inner_->apply(r, s);
+    if (told_.safer == 0 && --sound_ < 0) s = -s;
+  }
+  bool make_safer(const BlockMatrix&, const Filter&, LinearReport&) override {
+    told_.safer += can_be_safer_ ? 1 : 0;
+    return can_be_safer_;
+  }
+  void learn(int iterations) override { told_.learnt = iterations; }
+
+ private:
+  std::unique_ptr<Preconditioner> inner_ = make_block_jacobi();
+  int sound_;
+  bool can_be_safer_;
+  Told& told_;
 };
 
 const std::vector<std::string> names = {"block-jacobi", "block-ic0", "multigrid"};
@@ -137,4 +172,30 @@ TEST_CASE("an incomplete factor that breaks down is built safer, and says so", "
   REQUIRE(preconditioner->prepare(sheet.stepper.matrix(), sheet.filter, report));
   REQUIRE(preconditioner->make_safer(sheet.stepper.matrix(), sheet.filter, report));
   CHECK_THAT(report.note, Catch::Contains("broke down"));
+}
+
+TEST_CASE("a preconditioner that fails is made safer and the solve begun again, or it is told", "[solvers]") {
+  const FallingSheet sheet(17, 15);
+  Filter filter = sheet.held({3, 50, 99});
+  filter.constrain(120, Mat3::Zero(), Vec3(0.1, -0.2, 0.3));
+  VecX expected = VecX::Zero(sheet.b.size());
+  make_linear_solver("eigen-ldlt")->solve(sheet.stepper.matrix(), sheet.b, filter, {}, expected);
+  for (const bool prefiltered : {false, true})
+    for (const bool can_be_safer : {true, false}) {
+      INFO((prefiltered ? "ppcg" : "mpcg") << (can_be_safer ? ", can be made safer" : ""));
+      Failing::Told told;
+      const auto solver = make_pcg("pcg", prefiltered, std::make_unique<Failing>(4, can_be_safer, told));
+      VecX dv = random_vector(sheet.b.size(), 1, 4);
+      const LinearReport report =
+          solver->solve(sheet.stepper.matrix(), sheet.b, filter, {.tolerance = 1e-10}, dv);
+      if (can_be_safer) {
+        CHECK(report.reason == StopReason::converged);
+        CHECK((dv - expected).norm() <= 1e-5 * expected.norm());
+        CHECK(told.safer == 1);
+        CHECK(told.learnt <= report.iterations);
+      } else {
+        CHECK(report.reason == StopReason::indefinite);
+        CHECK(told.learnt > 1000000);  // so that one that is kept is not kept for the next system
+      }
+    }
 }
