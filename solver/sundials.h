@@ -59,7 +59,9 @@ SUNLinearSolver our_solver(Owner& owner, SUNContext context) {
   solver->content = &owner;
   solver->ops->gettype = [](SUNLinearSolver) { return type; };
   solver->ops->solve = [](SUNLinearSolver s, SUNMatrix, N_Vector x, N_Vector b, realtype) {
-    return static_cast<Owner*>(s->content)->solve_linear(x, b);
+    const int failed = static_cast<Owner*>(s->content)->solve_linear(x, b);
+    // A number that SUNDIALS does not know it takes for success.
+    return failed > 0 ? SUNLS_CONV_FAIL : failed < 0 ? SUNLS_PACKAGE_FAIL_UNREC : SUNLS_SUCCESS;
   };
   return solver;
 }

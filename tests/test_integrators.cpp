@@ -108,6 +108,7 @@ TEST_CASE("inner steps are bounded, and the failure says what to do", "[integrat
     const StepReport report = stepper->advance(chain.state, 0.1);
     INFO(name);
     CHECK_FALSE(report.done);
+    CHECK_FALSE(report.converged);
     CHECK_THAT(report.failure.what, Catch::Contains("50 inner steps") && Catch::Contains("cvode-bdf"));
     CHECK(chain.state.x == before.x);
   }
