@@ -94,6 +94,33 @@ TEST_CASE("in a corner the wall lets go that would pull", "[contact]") {
   }
 }
 
+TEST_CASE("a sheet at rest resists at once, however it lies, and an edge that is slack does not",
+          "[forces]") {
+  const TriangleMesh mesh = grid(7, 7, 0.7, 0.7);
+  System system(lumped_mass(mesh, 0.2));
+  system.add(noh_jung(mesh, {.stretch = 300, .bend = 0}));
+  BlockMatrix A(system.bind());
+  const VecX x = stacked(mesh.positions), none = VecX::Zero(x.size()), y = random_vector(x.size(), 1, 3);
+  const auto stiffness_times = [&](const VecX& at, const VecX& direction) {
+    VecX b = none;
+    for (const auto& force : system.forces())
+      force->add_linearised(at, none, direction, 1, Stiffness::tangent, A, b);
+    return b;
+  };
+  const VecX expected = stiffness_times(x, y);
+  CHECK(expected.norm() > 100);
+  for (int k = 1; k <= 5; ++k) {  // lengths to round-off
+    const Mat3 R = rotation(k, Vec3(1, k, -2));
+    const VecX turned = moved_rigidly(x, R, Vec3(k, -3, 2));
+    CHECK((stiffness_times(turned, moved_rigidly(y, R, Vec3::Zero())) -
+           moved_rigidly(expected, R, Vec3::Zero()))
+              .norm() < 1e-9 * expected.norm());
+  }
+  const TensionSpring::Rest edge{0.1, 300};
+  CHECK(TensionSpring::tension(edge, 0.1 * (1 - 1e-9)).t == 0);
+  CHECK(TensionSpring::tension(edge, 0.1 * (1 - 1e-9)).dt == 0);
+}
+
 TEST_CASE("damping forces are the slope of the dissipation", "[forces]") {
   for (DampingKind kind : {DampingKind::relative, DampingKind::axial}) {
     PairDamping damping({{0, 1}, {1, 2}}, 0.4, kind);
