@@ -36,8 +36,8 @@ struct Contact {
   int planes = 0;                     // 1 to 3; 0: released in this step
   std::array<ContactPlane, 3> plane;  // deepest first
   Grip grip = Grip::stick;
-  int changes = 0;                       // of the grip within this step
-  double normal_impulse = 0;             // N s, the sum over the planes, of the last solve
+  int changes = 0;            // of the grip within this step
+  double normal_impulse = 0;  // N s, sum over the planes, of the last solve; between steps less its impact
   Vec3 friction_impulse = Vec3::Zero();  // N s, while breaking loose
   Vec3 slip = Vec3::Zero();  // m/s, tangential velocity against the body: expected at the end of this step
   Vec3 last_slip = Vec3::Zero();  // m/s, at the end of the step before

@@ -45,11 +45,7 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
   if (!constraints_.obstacles().empty()) {
     set_free(v, h);
     solve_contacts(state, x, v, h, options, report);
-    const Stopwatch watch(report.collide_ms);
-    const ContactReport contact = constraints_.end_step(x_new_, v_new_);
-    report.contacts = contact.contacts;
-    report.guarded += contact.guarded;
-    report.penetration = std::max(report.penetration, contact.deepest);
+    end_step(constraints_, x_new_, v_new_, report);
   }
   state.x = x_new_;
   state.v = v_new_;

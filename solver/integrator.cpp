@@ -1,10 +1,12 @@
 #include "solver/integrator.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mesh/obj.h"
 #include "solver/bdf.h"
 #include "solver/explicit.h"
+#include "solver/stopwatch.h"
 #include "solver/sundials_integrators.h"
 
 namespace drape {
@@ -15,6 +17,14 @@ void check_step(const System& system, const State& state, double h) {
   if (state.particles() != system.particles() || state.v.size() != state.x.size())
     throw InputError("state: " + std::to_string(state.particles()) + " particles, but the system has " +
                      std::to_string(system.particles()));
+}
+
+void end_step(Constraints& constraints, VecX& x, VecX& v, StepReport& report) {
+  const Stopwatch watch(report.collide_ms);
+  const ContactReport contact = constraints.end_step(x, v);
+  report.contacts = contact.contacts;
+  report.guarded += contact.guarded;
+  report.penetration = std::max(report.penetration, contact.deepest);
 }
 
 std::vector<IntegratorInfo> integrators() {

@@ -62,6 +62,9 @@ class Integrator {
 // Throws InputError unless h is a time step and the state is one of the system.
 void check_step(const System& system, const State& state, double h);
 
+// Lets the constraints end a step at x, v, which they may change, and notes in the report what they found.
+void end_step(Constraints& constraints, VecX& x, VecX& v, StepReport& report);
+
 // "implicit-euler". Throws InputError for a name that integrators() does not list.
 std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,
                                             std::unique_ptr<LinearSolver> solver,

@@ -29,8 +29,7 @@ class NewtonKinsol final : public Integrator {
     one_.setOnes();
     sundials::View u(v_, context_);
     kinsol_ = KINCreate(context_);
-    KINSetErrHandlerFn(
-        kinsol_, [](int, const char*, const char*, char*, void*) {}, nullptr);
+    KINSetErrHandlerFn(kinsol_, sundials::say_nothing, nullptr);
     KINSetUserData(kinsol_, this);
     KINInit(
         kinsol_,
@@ -46,8 +45,6 @@ class NewtonKinsol final : public Integrator {
     });
     KINSetMaxSetupCalls(kinsol_, 1);  // a new matrix for every direction
   }
-  NewtonKinsol(const NewtonKinsol&) = delete;
-  NewtonKinsol& operator=(const NewtonKinsol&) = delete;
   ~NewtonKinsol() override {
     KINFree(&kinsol_);
     SUNLinSolFreeEmpty(linear_);
@@ -150,11 +147,7 @@ bool NewtonKinsol::attempt(State& state, double h) {
   }
   x_ = x_bar_ + h * v_;
   if (!x_.allFinite()) return fail("the new positions are not finite numbers");
-  const Stopwatch watch(report_.collide_ms);
-  const ContactReport contact = constraints_.end_step(x_, v_);
-  report_.contacts = contact.contacts;
-  report_.guarded += contact.guarded;
-  report_.penetration = std::max(report_.penetration, contact.deepest);
+  end_step(constraints_, x_, v_, report_);
   state.x = x_;
   state.v = v_;
   state.time += h;
@@ -189,10 +182,7 @@ bool NewtonKinsol::solve() {
     report_.converged = report_.converged && norm <= wanted;
     return true;
   }
-  char* text = KINGetReturnFlagName(flag);
-  const std::string reason = text;
-  std::free(text);
-  return fail("KINSOL: " + reason + "; a shorter time step may help");
+  return fail("KINSOL: " + sundials::taken(KINGetReturnFlagName(flag)) + "; a shorter time step may help");
 }
 
 // F = M (v - v_n) - h f(x_bar + h v, v) + friction, not filtered.

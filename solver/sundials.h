@@ -7,11 +7,14 @@
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_linearsolver.h>
 
+#include <cstdlib>
+#include <string>
+
 #include "solver/integrator.h"
 
 namespace drape::sundials {
 
-class Context {
+class Context {  // its owners cannot be copied either
  public:
   Context() { SUNContext_Create(nullptr, &context_); }
   Context(const Context&) = delete;
@@ -38,6 +41,16 @@ class View {
 
 inline Eigen::Map<VecX> numbers(N_Vector v) { return {N_VGetArrayPointer(v), N_VGetLength(v)}; }
 
+// What is reported stands in the flag, too.
+inline void say_nothing(int, const char*, const char*, char*, void*) {}
+
+// The name of a flag, which SUNDIALS leaves to the caller to free.
+inline std::string taken(char* text) {
+  std::string copy = text;
+  std::free(text);
+  return copy;
+}
+
 // The linear solver that calls owner.solve_linear(x, b): 0, or 1 when a smaller step may help, or -1.
 // type: matrix-embedded, or direct for KINSOL, which asks for a matrix (there it is an empty one).
 template <class Owner, SUNLinearSolver_Type type>
@@ -46,7 +59,9 @@ SUNLinearSolver our_solver(Owner& owner, SUNContext context) {
   solver->content = &owner;
   solver->ops->gettype = [](SUNLinearSolver) { return type; };
   solver->ops->solve = [](SUNLinearSolver s, SUNMatrix, N_Vector x, N_Vector b, realtype) {
-    return static_cast<Owner*>(s->content)->solve_linear(x, b);
+    const int failed = static_cast<Owner*>(s->content)->solve_linear(x, b);
+    // A number that SUNDIALS does not know it takes for success.
+    return failed > 0 ? SUNLS_CONV_FAIL : failed < 0 ? SUNLS_PACKAGE_FAIL_UNREC : SUNLS_SUCCESS;
   };
   return solver;
 }

@@ -32,8 +32,6 @@ class SundialsOde final : public Integrator {
  public:
   SundialsOde(std::string_view name, System& system, Constraints& constraints,
               std::unique_ptr<LinearSolver> solver, const StepOptions& options);
-  SundialsOde(const SundialsOde&) = delete;
-  SundialsOde& operator=(const SundialsOde&) = delete;
   ~SundialsOde() override;
 
   std::string_view name() const override { return name_; }
@@ -96,8 +94,7 @@ SundialsOde::SundialsOde(std::string_view name, System& system, Constraints& con
 
 void SundialsOde::make_cvode(N_Vector y, N_Vector tolerance) {
   memory_ = CVodeCreate(implicit_ ? CV_BDF : CV_ADAMS, context_);
-  CVodeSetErrHandlerFn(
-      memory_, [](int, const char*, const char*, char*, void*) {}, nullptr);
+  CVodeSetErrHandlerFn(memory_, sundials::say_nothing, nullptr);
   CVodeInit(memory_, derivative_of, 0, y);
   CVodeSetUserData(memory_, this);
   CVodeSVtolerances(memory_, options_.relative_tolerance, tolerance);
@@ -114,8 +111,7 @@ void SundialsOde::make_cvode(N_Vector y, N_Vector tolerance) {
 void SundialsOde::make_arkode(N_Vector y, N_Vector tolerance) {
   memory_ =
       ARKStepCreate(implicit_ ? nullptr : derivative_of, implicit_ ? derivative_of : nullptr, 0, y, context_);
-  ARKStepSetErrHandlerFn(
-      memory_, [](int, const char*, const char*, char*, void*) {}, nullptr);
+  ARKStepSetErrHandlerFn(memory_, sundials::say_nothing, nullptr);
   ARKStepSetUserData(memory_, this);
   ARKStepSVtolerances(memory_, options_.relative_tolerance, tolerance);
   ARKStepSetMaxNumSteps(memory_, options_.max_inner_steps);
@@ -270,10 +266,8 @@ std::string SundialsOde::why(int flag) const {
     return std::to_string(options_.max_inner_steps) +
            " inner steps did not reach the end of the step: the cloth is stiff, take cvode-bdf or "
            "arkode-dirk";
-  char* text = cvode_ ? CVodeGetReturnFlagName(flag) : ARKStepGetReturnFlagName(flag);
-  const std::string reason = text;
-  std::free(text);
-  return reason + " of SUNDIALS: take a shorter time step or other tolerances";
+  return sundials::taken(cvode_ ? CVodeGetReturnFlagName(flag) : ARKStepGetReturnFlagName(flag)) +
+         " of SUNDIALS: take a shorter time step or other tolerances";
 }
 
 }  // namespace

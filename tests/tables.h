@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstring>
 #include <fstream>
 #include <random>
 #include <sstream>
@@ -9,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/threads.h"
 #include "solver/drape.h"
 #include "solver/tension_spring.h"
 
@@ -72,6 +74,46 @@ struct Chain {
     m.front() = m.back() = 0.5 * mass / links;
     return m;
   }
+};
+
+// A cloth of one fabric at rest, under gravity.
+struct Sheet {
+  TriangleMesh mesh;
+  System system;
+  Constraints constraints;
+  State state;
+
+  explicit Sheet(TriangleMesh m, const Fabric& fabric = {})
+      : mesh(std::move(m)), system(lumped_mass(mesh, fabric.area_density)), state(at_rest(mesh)) {
+    system.add(noh_jung(mesh, fabric));
+    system.add(Gravity{});
+  }
+
+  ImplicitEuler stepper(const StepOptions& options = {}) {
+    return {system, constraints, make_linear_solver("mpcg"), options};
+  }
+
+  double energy() const {  // J
+    return system.elastic_energy(state.x) + system.kinetic_energy(state.v) + system.gravity_energy(state.x);
+  }
+};
+
+// 1 m x 1 m, flat at first, hung by two neighbouring corners.
+struct HungSheet : Sheet {
+  HungSheet(int side, double stretch, double bend)
+      : Sheet(grid(side, side, 1, 1), {.area_density = 0.2, .stretch = stretch, .bend = bend}) {
+    constraints.pin({0, side - 1});
+  }
+};
+
+inline bool same_bits(const VecX& a, const VecX& b) {
+  return a.size() == b.size() &&
+         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+}
+
+struct ThreadsRestored {
+  int before = threads();
+  ~ThreadsRestored() { set_threads(before); }
 };
 
 inline double max_speed(const State& state) {

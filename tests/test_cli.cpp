@@ -1,20 +1,18 @@
 // The program as people run it: exit codes, files, messages, every kind of bad input, interrupted and failed
 // runs.
-#include <sys/wait.h>
-
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <string>
 
 #include "mesh/generate.h"
 #include "mesh/obj.h"
+#include "tests/folder.h"
 
 using namespace drape;
+using namespace drape::test;
 using Catch::Contains;
 using Catch::StartsWith;
 namespace fs = std::filesystem;
@@ -22,25 +20,9 @@ using Json = nlohmann::json;
 
 namespace {
 
-struct Outcome {
-  int exit_code;
-  std::string out, err;
-};
-
-std::string content(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 // A folder with a sheet of 13 x 13 vertices over a ball, in which the program runs.
-struct Workshop {
-  fs::path path;
-
+struct Workshop : Folder {
   Workshop() {
-    std::string name = (fs::temp_directory_path() / "drape-cli-XXXXXX").string();
-    REQUIRE(mkdtemp(name.data()));
-    path = name;
     TriangleMesh sheet = grid(13, 13, 1, 1);
     for (Vec3& x : sheet.positions) x[1] = 0.35;
     write_obj(path / "sheet.obj", sheet, sheet.positions);
@@ -49,34 +31,6 @@ struct Workshop {
     write("s.toml", cloth + "[simulation]\nduration = 0.3\n[[obstacle]]\nshape = \"sphere\"\nradius = 0.3\n");
     write("hung.toml", cloth + "pins = [{ vertices = [0, 12] }]\n[simulation]\nduration = 0.3\n");
   }
-  ~Workshop() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path / name, std::ios::binary) << text;
-  }
-
-  // `before`: shell words in front of the program.
-  Outcome run(const std::string& words, const std::string& before = "") const {
-    const std::string log = (path / ".log").string();
-    const std::string line = "cd '" + path.string() + "' && " + before + " '" DRAPE_PROGRAM "' " + words +
-                             " >'" + log + ".out' 2>'" + log + ".err' </dev/null";
-    const int status = std::system(line.c_str());
-    Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(log + ".out"),
-                    content(log + ".err")};
-    INFO(words);
-    return outcome;
-  }
-
-  std::set<std::string> files(const std::string& folder) const {
-    std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(path / folder))
-      names.insert(entry.path().filename().string());
-    return names;
-  }
-
   Json json(const std::string& name) const { return Json::parse(content(path / name)); }
 
   const std::string cloth = "[[cloth]]\nmesh = \"sheet.obj\"\nfabric = \"cotton-poplin\"\n";  // three lines
@@ -90,7 +44,7 @@ const std::set<std::string> usual_files = {"run.json", "sheet.obj", "sheet.pc2",
 
 TEST_CASE("a scene is simulated and everything is written", "[cli]") {
   const Workshop shop;
-  const Outcome run = shop.run("simulate s.toml --out o");
+  const Outcome run = shop.drape("simulate s.toml --out o");
   CHECK(run.exit_code == 0);
   CHECK_THAT(run.out, Contains("wrote o/sheet.obj") && Contains("wrote o/run.json"));
   CHECK_THAT(run.err, Contains(" 50 %"));
@@ -123,14 +77,14 @@ TEST_CASE("a scene is simulated and everything is written", "[cli]") {
 
 TEST_CASE("frames may be OBJ files or none, and only the last", "[cli]") {
   const Workshop shop;
-  CHECK(shop.run("simulate s.toml --out o --frames obj --quiet").exit_code == 0);
+  CHECK(shop.drape("simulate s.toml --out o --frames obj --quiet").exit_code == 0);
   CHECK(shop.files("o/frames").size() == 8);
   CHECK(shop.files("o/frames").contains("sheet_0001.obj"));
   CHECK(read_obj(shop.path / "o/frames/sheet_0001.obj").positions ==
         read_obj(shop.path / "sheet.obj").positions);
-  CHECK(shop.run("simulate s.toml --out n --frames none --quiet").exit_code == 0);
+  CHECK(shop.drape("simulate s.toml --out n --frames none --quiet").exit_code == 0);
   CHECK(shop.files("n") == std::set<std::string>{"run.json", "sheet.obj", "steps.csv"});
-  CHECK(shop.run("simulate s.toml --out l --set simulation.frame_rate=0 --quiet").exit_code == 0);
+  CHECK(shop.drape("simulate s.toml --out l --set simulation.frame_rate=0 --quiet").exit_code == 0);
   CHECK(fs::file_size(shop.path / "l/sheet.pc2") == 32 + 169 * 12);
 }
 
@@ -139,7 +93,7 @@ TEST_CASE("several cloths run together, each with its own files", "[cli]") {
   shop.write("two.toml", shop.cloth +
                              "name = \"upper\"\ntranslate = [0, 1, 0]\npins = [{ vertices = [84] }]\n" +
                              shop.cloth + "scale = 0.5\n[simulation]\nduration = 0.1\n");
-  REQUIRE(shop.run("simulate two.toml --out o").exit_code == 0);
+  REQUIRE(shop.drape("simulate two.toml --out o").exit_code == 0);
   CHECK(shop.files("o") ==
         std::set<std::string>{"run.json", "steps.csv", "sheet.obj", "sheet.pc2", "upper.obj", "upper.pc2"});
   const TriangleMesh start = read_obj(shop.path / "sheet.obj"), upper = read_obj(shop.path / "o/upper.obj"),
@@ -151,14 +105,14 @@ TEST_CASE("several cloths run together, each with its own files", "[cli]") {
 
 TEST_CASE("quiet says nothing, a settled cloth stops a run, the last step meets the duration", "[cli]") {
   const Workshop shop;
-  const Outcome run = shop.run("simulate s.toml --out o --quiet --duration '95 ms' --time-step 0.02");
+  const Outcome run = shop.drape("simulate s.toml --out o --quiet --duration '95 ms' --time-step 0.02");
   CHECK(run.exit_code == 0);
   CHECK(run.out + run.err == "");
   CHECK(shop.json("o/run.json")["steps"] == 5);
   CHECK(shop.json("o/run.json")["simulated_seconds"].get<double>() == Approx(0.095).epsilon(1e-12));
 
   const std::string still = " --set simulation.gravity=[0,0,0] simulation.stop_when_settled=true";
-  CHECK(shop.run("simulate hung.toml --out q" + still).exit_code == 0);
+  CHECK(shop.drape("simulate hung.toml --out q" + still).exit_code == 0);
   CHECK(shop.json("q/run.json")["state"] == "settled");
   CHECK(shop.json("q/run.json")["steps"].get<int>() <= 22);
 }
@@ -167,7 +121,7 @@ TEST_CASE("a run gives the same bits with any number of threads", "[cli]") {
   const Workshop shop;
   std::set<std::string> hashes;
   for (const char* threads : {"1", "2", "7", "7"}) {
-    REQUIRE(shop.run(std::string("simulate s.toml --out o --quiet --threads ") + threads).exit_code == 0);
+    REQUIRE(shop.drape(std::string("simulate s.toml --out o --quiet --threads ") + threads).exit_code == 0);
     hashes.insert(shop.json("o/run.json")["state_hash"].get<std::string>());
   }
   CHECK(hashes.size() == 1);
@@ -178,23 +132,24 @@ TEST_CASE("a cloth is dropped onto shapes, meshes and the floor", "[cli]") {
   for (const char* onto :
        {"sphere:0.3", "sphere:30cm", "box:0.4x0.2x0.4", "capsule:0.1x0.4", "bowl:0.3", "plane", "ball.obj"}) {
     INFO(onto);
-    const Outcome run = shop.run(std::string("drop sheet.obj --floor --duration 0.1 --out o --onto ") + onto);
+    const Outcome run =
+        shop.drape(std::string("drop sheet.obj --floor --duration 0.1 --out o --onto ") + onto);
     CHECK(run.exit_code == 0);
     CHECK_THAT(run.err, !Contains("warning"));
     CHECK(shop.files("o") == usual_files);
   }
   CHECK_THAT(shop.json("o/run.json")["scene"].get<std::string>(), StartsWith("drape drop sheet.obj --floor"));
-  CHECK(shop.run("drop sheet.obj --duration 0.05").exit_code == 0);
+  CHECK(shop.drape("drop sheet.obj --duration 0.05").exit_code == 0);
   CHECK(shop.files("out/sheet") == usual_files);
-  CHECK(shop.run("drop sheet.obj --onto sphere:0.3 --friction 0.1 --margin '3 mm' --fabric polyester-plain "
-                 "--scale 0.5 "
-                 "--duration 0.05 --set obstacle.0.friction=0.2 --set cloth.0.bend='5 uN.m' --out p")
+  CHECK(shop.drape("drop sheet.obj --onto sphere:0.3 --friction 0.1 --margin '3 mm' --fabric polyester-plain "
+                   "--scale 0.5 "
+                   "--duration 0.05 --set obstacle.0.friction=0.2 --set cloth.0.bend='5 uN.m' --out p")
             .exit_code == 0);
 }
 
 TEST_CASE("a cloth that starts inside a body is warned of and brought out", "[cli]") {
   const Workshop shop;
-  const Outcome run = shop.run("simulate s.toml --out o --set cloth.0.translate=[0,-0.1,0] --duration 1");
+  const Outcome run = shop.drape("simulate s.toml --out o --set cloth.0.translate=[0,-0.1,0] --duration 1");
   CHECK(run.exit_code == 0);
   CHECK_THAT(run.err,
              Contains("vertices of sheet start inside the sphere, the deepest (vertex 84) by 50 mm"));
@@ -208,16 +163,14 @@ TEST_CASE("a cloth that starts inside a body is warned of and brought out", "[cl
 TEST_CASE("check and list change nothing", "[cli]") {
   const Workshop shop;
   const std::set<std::string> before = shop.files(".");
-  const Outcome scene = shop.run("check s.toml"), mesh = shop.run("check sheet.obj"), list = shop.run("list");
+  const Outcome scene = shop.drape("check s.toml"), mesh = shop.drape("check sheet.obj"),
+                list = shop.drape("list");
   CHECK(scene.exit_code + mesh.exit_code + list.exit_code == 0);
   CHECK_THAT(scene.out, Contains("169 vertices") && Contains("obstacle sphere"));
   CHECK_THAT(mesh.out, Contains("288 triangles") && Contains("1 boundary loop"));
   CHECK_THAT(list.out, Contains("cotton-poplin") && Contains("capsule") && Contains("implicit-euler") &&
                            Contains("mpcg"));
-  std::set<std::string> after = shop.files(".");
-  after.erase(".log.out");
-  after.erase(".log.err");
-  CHECK(after == before);
+  CHECK(shop.files(".") == before);
 }
 
 TEST_CASE("help and version end well", "[cli]") {
@@ -225,12 +178,12 @@ TEST_CASE("help and version end well", "[cli]") {
   for (const char* words :
        {"--help", "--version", "simulate --help", "drop --help", "check --help", "list --help"}) {
     INFO(words);
-    const Outcome run = shop.run(words);
+    const Outcome run = shop.drape(words);
     CHECK(run.exit_code == 0);
     CHECK_FALSE(run.out.empty());
     CHECK(run.err.empty());
   }
-  CHECK_THAT(shop.run("--version").out, StartsWith("drape "));
+  CHECK_THAT(shop.drape("--version").out, StartsWith("drape "));
 }
 
 TEST_CASE("bad input: one line, exit code 2, nothing written", "[cli]") {
@@ -310,16 +263,13 @@ TEST_CASE("bad input: one line, exit code 2, nothing written", "[cli]") {
   };
   for (const Mistake& mistake : table) {
     INFO(mistake.words);
-    const Outcome run = shop.run(mistake.words);
+    const Outcome run = shop.drape(mistake.words);
     CHECK(run.exit_code == 2);
     CHECK(run.out == "");
     CHECK(lines_of(run.err) == 1);
     CHECK_THAT(run.err, StartsWith("error: ") && Contains(mistake.message));
   }
-  std::set<std::string> after = shop.files(".");
-  after.erase(".log.out");
-  after.erase(".log.err");
-  CHECK(after == before);
+  CHECK(shop.files(".") == before);
 }
 
 TEST_CASE("an output folder without permission is refused", "[cli]") {
@@ -330,7 +280,7 @@ TEST_CASE("an output folder without permission is refused", "[cli]") {
     WARN("skipped: this user may write everywhere");
     return;
   }
-  const Outcome run = shop.run("simulate s.toml --quiet --out locked");
+  const Outcome run = shop.drape("simulate s.toml --quiet --out locked");
   CHECK(run.exit_code == 2);
   CHECK_THAT(run.err, Contains("locked") && Contains("cannot"));
 }
@@ -338,7 +288,7 @@ TEST_CASE("an output folder without permission is refused", "[cli]") {
 TEST_CASE("a disk that fills up during a run leaves nothing half written", "[cli]") {
   const Workshop shop;
   const Outcome run =
-      shop.run("simulate s.toml --out o --quiet --duration 2", "ulimit -f 20;");  // 10 or 20 kB
+      shop.drape("simulate s.toml --out o --quiet --duration 2", "ulimit -f 20;");  // 10 or 20 kB
   CHECK(run.exit_code == 2);
   CHECK(lines_of(run.err) == 1);
   CHECK_THAT(run.err, StartsWith("error: o/") && Contains("cannot write: File too large"));
@@ -347,9 +297,9 @@ TEST_CASE("a disk that fills up during a run leaves nothing half written", "[cli
 
 TEST_CASE("a disk that fills up leaves the results of the run before", "[cli]") {
   const Workshop shop;
-  REQUIRE(shop.run("simulate s.toml --out o --quiet").exit_code == 0);
+  REQUIRE(shop.drape("simulate s.toml --out o --quiet").exit_code == 0);
   const std::string before = content(shop.path / "o/sheet.obj") + content(shop.path / "o/run.json");
-  CHECK(shop.run("simulate s.toml --out o --quiet --duration 2", "ulimit -f 20;").exit_code == 2);
+  CHECK(shop.drape("simulate s.toml --out o --quiet --duration 2", "ulimit -f 20;").exit_code == 2);
   CHECK(shop.files("o") == usual_files);
   CHECK(content(shop.path / "o/sheet.obj") + content(shop.path / "o/run.json") == before);
 }
@@ -358,8 +308,9 @@ TEST_CASE("an interrupted run leaves complete files", "[cli]") {
   const Workshop shop;
   for (const char* signal : {"INT", "TERM"}) {
     INFO(signal);
-    const Outcome run = shop.run("simulate hung.toml --out o --duration 100000 --set simulation.frame_rate=1",
-                                 std::string("timeout --preserve-status -s ") + signal + " 2");
+    const Outcome run =
+        shop.drape("simulate hung.toml --out o --duration 100000 --set simulation.frame_rate=1",
+                   std::string("timeout --preserve-status -s ") + signal + " 2");
     CHECK(run.exit_code == 130);
     CHECK_THAT(run.out, Contains("interrupted after"));
     CHECK(shop.files("o") == usual_files);
@@ -376,7 +327,7 @@ TEST_CASE("a failed computation says where, ends with 1 and keeps what went befo
   const Workshop shop;
   for (const char* absurd : {"stretch=1e300", "stretch_spring=1e305"}) {
     INFO(absurd);
-    const Outcome run = shop.run(std::string("simulate hung.toml --out o --quiet --set cloth.0.") + absurd);
+    const Outcome run = shop.drape(std::string("simulate hung.toml --out o --quiet --set cloth.0.") + absurd);
     CHECK(run.exit_code == 1);
     CHECK(lines_of(run.err) == 1);
     CHECK_THAT(run.err, StartsWith("error: step ") && Contains(" of sheet (at ") &&
@@ -389,7 +340,7 @@ TEST_CASE("a failed computation says where, ends with 1 and keeps what went befo
     CHECK(lines_of(content(shop.path / "o/steps.csv")) == json["steps"].get<long>() + 1);
   }
   const Outcome far =
-      shop.run("simulate s.toml --out o --quiet --duration 2 --set simulation.gravity=[0,-1e308,0]");
+      shop.drape("simulate s.toml --out o --quiet --duration 2 --set simulation.gravity=[0,-1e308,0]");
   CHECK(far.exit_code == 1);
   CHECK_THAT(far.err, StartsWith("error: step "));
 }

@@ -1,70 +1,22 @@
-// drape compare: systems taken out of a run, verdicts, tables and files, exit codes of the real program.
-#include <sys/wait.h>
-
+// drape compare: systems taken out of a run, verdicts, integrators, exit codes of the real program.
+#include <Eigen/Dense>
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
-#include "app/compare/files.h"
-#include "app/compare/html.h"
 #include "app/compare/hung_sheet.h"
 #include "app/compare/integrators.h"
 #include "app/compare/options.h"
 #include "app/compare/solvers.h"
 #include "app/peak_memory.h"
+#include "tests/desk.h"
 
 using namespace drape;
+using namespace drape::test;
 using Catch::Contains;
 using Catch::StartsWith;
 namespace fs = std::filesystem;
-using JsonValue = nlohmann::json;
 
 namespace {
-
-const std::string scenes = DRAPE_SOURCE_DIR "/data/scenes/";
-const std::string on_ball = scenes + "sheet-on-ball.toml";
-
-std::string content(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
-
-long count(const std::string& text, const std::string& what) {
-  long found = 0;
-  for (std::size_t at = text.find(what); at != text.npos; at = text.find(what, at + what.size())) ++found;
-  return found;
-}
-
-// An empty folder in which `drape compare` runs.
-struct Desk {
-  fs::path path;
-  Desk() {
-    std::string name = (fs::temp_directory_path() / "drape-compare-XXXXXX").string();
-    REQUIRE(mkdtemp(name.data()));
-    path = name;
-  }
-  ~Desk() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-
-  int run(const std::string& words, const std::string& before = "") {
-    const std::string line = "cd '" + path.string() + "' && " + before + " '" DRAPE_PROGRAM "' compare " +
-                             words + " >.out 2>.err </dev/null";
-    const int status = std::system(line.c_str());
-    out = content(path / ".out");
-    err = content(path / ".err");
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  JsonValue json() const { return JsonValue::parse(content(path / "o/compare.json")); }
-
-  std::string out, err;
-};
 
 // A hung sheet whose steps are recorded.
 struct Recorded {
@@ -77,21 +29,6 @@ struct Recorded {
   Recording recording;
   Simulation simulation;
 };
-
-// The cells of one line of CSV.
-Names cells(const std::string& line) {
-  Names all(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      all.emplace_back();
-    else
-      all.back() += c;
-  }
-  return all;
-}
 
 }  // namespace
 
@@ -192,6 +129,90 @@ TEST_CASE("a solve that meets the tolerance differs by no more than is allowed",
   }
 }
 
+TEST_CASE("a row holds what dense algebra says of its solution", "[compare]") {
+  const Scene scene = hung_sheet_scene({});
+  Recorded run(scene, make_hung_sheet(scene, 6));
+  run.recording.on = true;
+  for (int k = 0; k < 8; ++k) run.simulation.integrator->advance(run.simulation.state, 0.01);
+  LinearSystem system = *run.recording.last;
+  const BlockPattern& pattern = system.A.pattern();
+  const Eigen::Index n = system.b.size();
+  Eigen::MatrixXd D(n, n), S = Eigen::MatrixXd::Identity(n, n);
+  VecX z = VecX::Zero(n), column(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    system.A.multiply(VecX::Unit(n, k), column);
+    D.col(k) = column;
+  }
+  system.filter.clear();
+  for (int row = 0; row < 36; row += 5) {  // locked, or sliding and moved along
+    const Vec3 p = Vec3(1, 2 + row, -1).normalized();
+    const bool locked = row % 2 == 0;
+    system.filter.constrain(row, locked ? Mat3(Mat3::Zero()) : Mat3(Mat3::Identity() - p * p.transpose()),
+                            0.1 * p);
+    S.block<3, 3>(3 * row, 3 * row) = system.filter.entries().back().S;
+    z.segment<3>(3 * row) = 0.1 * p;
+  }
+  const double reference = 2 * (S * (system.b - D * z)).norm();
+  system.options.scale = reference;         // which is the larger then
+  Simulation& simulation = run.simulation;  // as if it were two cloths
+  Cloth upper, lower;
+  upper.name = "upper", lower.name = "lower";
+  upper.mesh.positions.resize(1), lower.mesh.positions.resize(35);
+  lower.first_particle = 1;
+  simulation.cloths = {upper, lower};
+
+  VecX loose = system.guess, best = system.guess;
+  LinearOptions options = system.options;
+  options.tolerance = 1e-2;
+  make_linear_solver("mpcg")->solve(system.A, system.b, system.filter, options, loose);
+  options.tolerance = 1e-4;
+  make_linear_solver("mpcg")->solve(system.A, system.b, system.filter, options, best);
+  int worst = 0;
+  const auto apart = [&](int row) { return (loose - best).segment<3>(3 * row).norm(); };
+  for (int row = 1; row < 36; ++row)
+    if (apart(row) > apart(worst)) worst = row;
+  VecX Su = VecX::Zero(n);
+  Su.segment<3>(3 * worst) = (loose - best).segment<3>(3 * worst).normalized();
+  Su = S * Su;
+  const VecX g = (S * D * S + Eigen::MatrixXd::Identity(n, n) - S).ldlt().solve(Su);
+  const double r_best = (S * (system.b - D * best)).norm() / reference;
+
+  SolverBench bench({{"mpcg@1e-2", "mpcg", 1e-2}, {"mpcg@1e-4", "mpcg", 1e-4}}, 1e-4, 1);
+  const std::vector<SolverRow> rows = bench.compare(system, 8, simulation);
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[1].most_accurate);
+  CHECK(rows[0].residual == Approx((S * (system.b - D * loose)).norm() / reference));
+  CHECK(rows[1].residual == Approx(r_best));
+  CHECK(rows[0].difference == Approx(apart(worst)));
+  CHECK(*rows[0].allowed == Approx(g.norm() * reference * (1.05e-4 + r_best)).epsilon(1e-4));
+  const int particle = pattern.particle_of()[static_cast<std::size_t>(worst)];
+  CHECK(rows[0].cloth == (particle == 0 ? "upper" : "lower"));
+  CHECK(rows[0].vertex == (particle == 0 ? 0 : particle - 1));
+
+  // Missing the tolerance is enough to differ, where the place that differs most would be allowed, too.
+  std::vector<SolverChoice> choices = {{"mpcg@1e-9", "mpcg", 1e-9}};
+  for (double t = 1e-4; t < 1e-3; t *= 1.2) choices.push_back({"mpcg@" + std::to_string(t), "mpcg", t});
+  int missed = 0;
+  for (const SolverRow& row : SolverBench(choices, 1e-4, 1).compare(system, 8, simulation)) {
+    const bool meets = row.residual <= 1.05e-4, allowed = !row.allowed || row.difference <= *row.allowed;
+    CHECK(row.agrees == (meets && allowed));
+    CHECK((allowed || !meets));
+    missed += allowed && !meets;
+  }
+  CHECK(missed > 0);
+
+  // The memory of what is already there is not that of a solver.
+  const std::vector<SolverRow> again = bench.compare(system, 8, simulation);
+  CHECK((rows[0].first_solve && rows[1].first_solve));
+  CHECK_FALSE((again[0].first_solve || again[0].peak_bytes));
+
+  VecX off = best;
+  off.segment<3>(0) += Vec3(0, 0.25, 0);  // of a locked one
+  CHECK(constraint_violation(system, off) == Approx(0.25));
+  off[3 * 35] = std::nan("");
+  CHECK_FALSE(constraint_violation(system, off) <= 1e300);
+}
+
 TEST_CASE("integrators: what differs by linear algebra, what by time integration", "[compare]") {
   Desk desk;
   REQUIRE(desk.run("'" + on_ball +
@@ -214,6 +235,93 @@ TEST_CASE("integrators: what differs by linear algebra, what by time integration
   CHECK(count(content(desk.path / "o/compare.html"), "<svg") == 2);
 }
 
+namespace {
+
+// A run done by hand, and its sums.
+struct ByHand {
+  VecX x;
+  double drift = 0;  // J
+  int steps = 0, not_converged = 0;
+  long iterations = 0;
+
+  ByHand(const Scene& scene, const std::string& integrator, const std::vector<double>& time_steps,
+         double tolerance) {
+    Simulation s = make_simulation(scene);
+    StepOptions options = scene.simulation.step;
+    options.tolerance = tolerance;
+    const auto stepper =
+        make_integrator(integrator, *s.system, *s.constraints, make_linear_solver("mpcg"), options);
+    const auto energy = [&] {
+      return s.system->kinetic_energy(s.state.v) + s.system->elastic_energy(s.state.x) +
+             s.system->gravity_energy(s.state.x);
+    };
+    const double start = energy();
+    for (const double h : time_steps) {
+      const StepReport report = stepper->advance(s.state, h);
+      ++steps;
+      not_converged += report.converged ? 0 : 1;
+      iterations += report.linear_iterations;
+    }
+    x = s.state.x;
+    drift = energy() - start;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the rows of integrators are those of the same runs done by hand", "[compare]") {
+  const double tolerance = 1e-6;
+  const Scene scene =
+      read_scene(scenes + "flag.toml", {parse_setting("simulation.linear_solver=\"mpcg\""),
+                                        parse_setting("simulation.tolerance=1e-6"),
+                                        parse_setting("simulation.max_linear_iterations=12")});
+  CompareWords words;
+  words.solvers = "mpcg@1e-2";
+  words.integrators = "implicit-euler,bdf2";
+  words.time_steps = "10ms,20ms";
+  Comparison comparison;
+  REQUIRE(compare_integrators(scene, compare_options(words), 0.05, true, comparison));
+  REQUIRE(comparison.runs.size() == 6);
+  const std::vector<double> coarse = {0.02, 0.02, 0.01}, fine(5, 0.01);
+  std::vector<ByHand> expected;
+  for (const char* integrator : {"implicit-euler", "bdf2"}) {
+    expected.emplace_back(scene, integrator, coarse, tolerance);
+    expected.emplace_back(scene, integrator, fine, tolerance);
+    expected.emplace_back(scene, integrator, coarse, 1e-2);
+  }
+  int not_converged = 0;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const IntegratorRow& row = comparison.runs[k];
+    INFO(row.integrator << " at " << row.time_step << " s with " << row.solver);
+    CHECK(row.reference == (k == 1));
+    CHECK(row.end == Approx(0.05));
+    CHECK(row.steps == expected[k].steps);
+    CHECK(row.linear_iterations == expected[k].iterations);
+    CHECK(row.steps_not_converged == expected[k].not_converged);
+    CHECK(row.energy_drift == Approx(expected[k].drift));
+    CHECK(*row.energy_error == Approx(expected[k].drift - expected[1].drift).margin(1e-15));
+    double most = 0, squares = 0;
+    for (Eigen::Index i = 0; i < expected[k].x.size(); i += 3) {
+      const double d = (expected[k].x - expected[1].x).segment<3>(i).norm();
+      most = std::max(most, d);
+      squares += d * d;
+    }
+    CHECK(*row.max_distance == Approx(most).margin(1e-15));
+    CHECK(*row.rms_distance ==
+          Approx(std::sqrt(3 * squares / static_cast<double>(expected[k].x.size()))).margin(1e-15));
+    REQUIRE(row.same_run_distance.has_value() == (k % 3 == 2));
+    if (k % 3 == 2) {
+      double apart = 0;
+      for (Eigen::Index i = 0; i < expected[k].x.size(); i += 3)
+        apart = std::max(apart, (expected[k].x - expected[k - 2].x).segment<3>(i).norm());
+      CHECK(apart > 0);
+      CHECK(*row.same_run_distance == Approx(apart));
+    }
+    not_converged += row.steps_not_converged;
+  }
+  CHECK(not_converged > 0);
+}
+
 TEST_CASE("an integrator that fails is a row, not an end", "[compare]") {
   const Scene scene = read_scene(
       on_ball, {parse_setting("cloth.0.stretch=1e300"), parse_setting("simulation.linear_solver=\"mpcg\"")});
@@ -231,125 +339,29 @@ TEST_CASE("an integrator that fails is a row, not an end", "[compare]") {
   }
 }
 
-TEST_CASE("compare.json, compare.csv and compare.html hold it all", "[compare]") {
+TEST_CASE("options are put in order, and what is not said follows from what is", "[compare]") {
+  CompareWords words;
+  words.at = "9,2,5";
+  words.integrators = "bdf2";
+  words.time_steps = "5ms,0.02,10 ms";
+  CHECK(compare_options(words).at == std::vector<int>{2, 5, 9});
+  CHECK(compare_options(words).time_steps == std::vector<double>{0.02, 0.01, 0.005});
+  words = {};
+  words.sizes = "1M,2.5k,16";
+  CHECK(compare_options(words).sizes == std::vector<int>{16, 2500, 1000000});
+
   Desk desk;
-  REQUIRE(desk.run("--sizes 100,400 --steps 4 --repeats 1 --solvers mpcg,eigen-ldlt,mpcg@1e-1 --out o") == 1);
-  std::set<std::string> names;
-  for (const auto& entry : fs::directory_iterator(desk.path / "o")) names.insert(entry.path().filename());
-  CHECK(names == std::set<std::string>{"compare.csv", "compare.html", "compare.json"});
-
-  const JsonValue json = desk.json();
-  for (const char* key : {"drape_version", "scene", "integrator", "linear_solver", "time_step", "tolerance",
-                          "threads", "steps", "at", "repeats", "sizes", "solvers", "agree", "verdicts",
-                          "failure", "rows", "growth", "run_duration", "runs"}) {
-    INFO(key);
-    CHECK(json.contains(key));
-  }
-  CHECK(json["sizes"] == JsonValue({100, 400}));
-  CHECK(json["growth"].size() == 3);
-  REQUIRE(json["rows"].size() == 6);
-
-  std::istringstream csv(content(desk.path / "o/compare.csv"));
-  std::string line;
-  std::getline(csv, line);
-  const Names header = cells(line);
-  for (const char* key : {"vertices", "step", "solver", "iterations", "residual", "reported_residual",
-                          "constraint_violation", "setup_ms", "solve_ms", "first_ms", "peak_memory_bytes",
-                          "difference", "allowed", "cloth", "vertex", "stopped", "verdict"})
-    CHECK(std::find(header.begin(), header.end(), key) != header.end());
-  for (const JsonValue& row : json["rows"]) {
-    REQUIRE(std::getline(csv, line));
-    const Names found = cells(line);
-    REQUIRE(found.size() == header.size());
-    for (std::size_t k = 0; k < header.size(); ++k) {
-      INFO(header[k]);
-      const JsonValue& value = row[header[k]];
-      if (value.is_string()) CHECK(found[k] == value.get<std::string>());
-      if (value.is_number()) CHECK(std::stod(found[k]) == Approx(value.get<double>()));
-      if (value.is_null()) CHECK(found[k].empty());
-    }
-  }
-
-  const std::string html = content(desk.path / "o/compare.html");
-  for (const char* outside : {"http", "src=", "<script", "<link", "@import", "url("})
-    CHECK(count(html, outside) == 0);
-  CHECK(count(html, "<svg") == 4);  // time, iterations, convergence of two sizes
-  CHECK(count(html, "<title>") == 5);
-  CHECK(count(html, "<table>") == count(html, "</table>"));
-  CHECK_THAT(html, Contains("mpcg@1e-1: differ: sheet of 100 vertices"));
-}
-
-TEST_CASE("a long history is thinned out for the plot, not in compare.json", "[compare]") {
-  Comparison comparison;
-  comparison.tolerance = 1e-6;
-  SolverRow row;
-  row.vertices = 9, row.step = 1, row.solver = "long", row.agrees = true, row.report.iterations = 4999;
-  for (int k = 0; k < 5000; ++k) row.history.push_back(std::exp(-0.01 * k));
-  comparison.rows = {row};
-  const std::vector<Plot> plots = plots_of(comparison);
-  REQUIRE(plots.size() == 1);
-  CHECK(plots[0].series[0].x.size() < 300);
-  CHECK(plots[0].series[0].x.back() == 4999);
-  CHECK(plots[0].series[0].y.back() == row.history.back());
-  CHECK(JsonValue::parse(compare_json(comparison))["rows"][0]["history"].size() == 5000);
-}
-
-TEST_CASE("the script plots several compare.json", "[compare]") {
-  const std::string python = "/usr/bin/python3 ",
-                    script = python + "'" DRAPE_SOURCE_DIR "/tests/compare/plot_compare.py' ";
-  if (std::system((python + "-c 'import matplotlib' 2>/dev/null").c_str()) != 0) {
-    WARN("skipped: there is no matplotlib");
-    return;
-  }
-  Desk desk;
-  const auto plot = [&](const std::string& words) {
-    const int status =
-        std::system(("cd '" + desk.path.string() + "' && " + script + words + " >.out 2>.err").c_str());
-    desk.err = content(desk.path / ".err");
-    return WEXITSTATUS(status);
+  const auto steps = [&](const std::string& more) {
+    CHECK(desk.run("'" + on_ball + "' --solvers mpcg --repeats 1 --out o " + more) == 0);
+    return std::pair(desk.json()["steps"].get<int>(), desk.json()["at"].get<std::vector<int>>());
   };
-  REQUIRE(desk.run("--sizes 16,36 --steps 2 --solvers mpcg --out o") == 0);
-  REQUIRE(desk.run("'" + on_ball + "' --steps 2 --solvers mpcg --integrators implicit-euler --out p") == 0);
-  JsonValue with_history = desk.json();
-  with_history["rows"][0]["history"] = {1, 0.1, 0.01};
-  std::ofstream(desk.path / "o/compare.json") << with_history;
-  CHECK(plot("o/compare.json p/compare.json --out plots --format svg") == 0);
-  INFO(desk.err);
-  for (const char* name : {"time-against-vertices.svg", "convergence-o-16-step-2.svg", "work-precision.svg"})
-    CHECK(fs::exists(desk.path / "plots" / name));
-
-  std::ofstream(desk.path / "other.json") << "{}";
-  for (const char* wrong : {"none.json", "other.json", ".out", "o"}) {
-    INFO(wrong);
-    CHECK(plot(wrong) == 2);
-    CHECK_THAT(desk.err, StartsWith("error: ") && Contains(wrong));
-    CHECK(count(desk.err, "\n") == 1);
-  }
-}
-
-TEST_CASE("the growth is fitted", "[compare]") {
-  Comparison comparison;
-  comparison.at = {3};
-  comparison.solvers = {"direct", "alone"};
-  for (const int n : {1000, 4000, 16000}) {
-    SolverRow row;
-    row.vertices = n, row.step = 3, row.solver = "direct", row.solve_ms = 1e-3 * std::pow(n, 1.5);
-    comparison.rows.push_back(row);
-  }
-  const std::vector<Growth> growth = growth_of(comparison);
-  REQUIRE(growth.size() == 1);
-  CHECK(growth[0].time == Approx(1.5));
-  CHECK_FALSE(growth[0].iterations);
-}
-
-TEST_CASE("a plot leaves out what an axis cannot show", "[compare]") {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::string text =
-      svg({"a < b", "x", "y", true, true, {{"one & two", {1, 10, 100, 0, 5}, {1e-3, 1, nan, 1, -1}}}});
-  CHECK(count(text, "<circle") == 2 + 1);  // and the legend's
-  CHECK_THAT(text, Contains("a &lt; b") && Contains("one &amp; two") && !Contains("nan"));
-  CHECK_THAT(svg({"empty", "x", "y", true, true, {{"zero", {0}, {0}}}}), Contains("nothing to plot"));
-  CHECK_THAT(svg({"point", "x", "y", false, false, {{"one", {3}, {3}}}}), Contains("<circle"));
+  CHECK(steps("--at 2,4") == std::pair(4, std::vector<int>{2, 4}));
+  CHECK(steps("--steps 5") == std::pair(5, std::vector<int>{1, 3, 5}));
+  CHECK(steps("--steps 1") == std::pair(1, std::vector<int>{1}));
+  CHECK(steps("") == std::pair(50, std::vector<int>{1, 25, 50}));  // the scene has 400
+  CHECK(steps("--set simulation.duration=0.04") == std::pair(4, std::vector<int>{1, 2, 4}));
+  for (const JsonValue json = desk.json(); const JsonValue& row : json["rows"])
+    CHECK(row["time"].get<double>() == Approx(0.01 * row["step"].get<int>()));
 }
 
 TEST_CASE("peak memory sees a block that has been freed again", "[compare]") {
@@ -401,8 +413,6 @@ TEST_CASE("bad input to compare: one line, exit code 2, nothing written", "[comp
     CHECK(count(desk.err, "\n") == 1);
     CHECK_THAT(desk.err, StartsWith("error: ") && Contains(message));
   }
-  fs::remove(desk.path / ".out");
-  fs::remove(desk.path / ".err");
   CHECK(fs::is_empty(desk.path));
 }
 
@@ -413,6 +423,11 @@ TEST_CASE("a path that fails, an interrupt, a full disk", "[compare]") {
   CHECK_THAT(desk.err, Contains("error: step 1 of the run with mpcg+block-ic0 failed: "));
   CHECK(desk.json()["failure"].is_string());
   CHECK(desk.json()["agree"] == false);
+  fs::remove_all(desk.path / "o");
+
+  CHECK(desk.run("--sizes 16,36 --set cloth.0.stretch=1e300 --out o --quiet") == 1);  // ends with the first
+  CHECK_THAT(desk.err, Contains("error: step 1 "));
+  CHECK(desk.json()["sizes"] == JsonValue({16}));
   fs::remove_all(desk.path / "o");
 
   CHECK(desk.run(scene + "--at 100000", "timeout --preserve-status -s INT 2") == 130);
@@ -426,9 +441,23 @@ TEST_CASE("a path that fails, an interrupt, a full disk", "[compare]") {
 
 TEST_CASE("a scene decides how the sheets of --sizes are solved", "[compare]") {
   Desk desk;
-  CHECK(desk.run("'" + on_ball +
-                 "' --sizes 100 --steps 2 --solvers mpcg --linear-solver eigen-ldlt --out o") == 0);
+  CHECK(desk.run(
+            "'" + on_ball +
+            "' --sizes 100 --steps 2 --solvers mpcg --linear-solver eigen-ldlt --integrator bdf2 --threads 3 "
+            "--out o") == 0);
+  CHECK(desk.json()["integrator"] == "bdf2");
+  CHECK(desk.json()["threads"] == 3);
   CHECK(desk.json()["linear_solver"] == "eigen-ldlt");
   CHECK(desk.json()["tolerance"] == 1e-4);
   CHECK(desk.json()["rows"][0]["vertices"] == 100);
+}
+
+TEST_CASE("the hung sheet hangs by two corners, and falls as it is told", "[compare]") {
+  const Scene scene = hung_sheet_scene({parse_setting("simulation.gravity=[0,-1,2]")});
+  const Simulation sheet = make_hung_sheet(scene, 7);
+  CHECK(sheet.constraints->pinned() == std::vector<int>{0, 6});
+  CHECK(sheet.system->gravity_acceleration() == Vec3(0, -1, 2));
+  CHECK(sheet.state.particles() == 49);
+  for (const int vertices : {16, 400, 1000, 40000})
+    CHECK(std::abs(std::sqrt(vertices) - sheet_side(vertices)) <= 0.5);
 }

@@ -1,6 +1,5 @@
 // Constraints hold in every integrator of the build: pins, contact, friction; and the same bits everywhere.
-#include <cstring>
-
+#include "solver/held_motion.h"
 #include "tests/integrators.h"
 
 using namespace drape;
@@ -29,11 +28,6 @@ double step_for(std::string_view name) { return is_explicit(name) ? 4e-4 : 0.01;
 int steps_for(std::string_view name, double duration) {
   return static_cast<int>(std::lround(duration / step_for(name)));
 }
-
-struct ThreadsRestored {
-  int before = threads();
-  ~ThreadsRestored() { set_threads(before); }
-};
 
 }  // namespace
 
@@ -158,6 +152,115 @@ TEST_CASE("a particle on an incline sticks below the angle of friction and slide
   }
 }
 
+TEST_CASE("friction takes its share of the impact, too, and once", "[integrators]") {
+  // A particle thrown at the surface it touches: the plane bears m (w + g h) in the step of the impact and
+  // m g h in others, and friction takes mu of that, or all there is.
+  const double mu = 0.3, w = 1, g = 9.81, h = 0.005;  // w [m/s]: onto the plane
+  for (const std::string& name : integrator_names()) {
+    for (const double u : {2.0, 0.2}) {
+      INFO(name << ", thrown along the plane with " << u << " m/s");
+      System system({0.1});
+      system.add(Gravity{});
+      Constraints constraints;
+      constraints.add(Obstacle{.shape = Plane{}, .friction = mu, .margin = 0.001});
+      State state{0, VecX(Vec3(0, 0.001 - 1e-9, 0)), VecX(Vec3(u, -w, 0))};
+      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+      for (int n = 1; n <= 20; ++n) {
+        REQUIRE(stepper->advance(state, h).done);
+        CHECK(state.v[0] ==
+              Approx(std::max(u - mu * (w + g * h * n), 0.0)).margin(n == 1 ? 1e-6 : mu * g * h));
+        CHECK(std::abs(state.v[1]) < 1e-9);
+        CHECK(state.x[1] == Approx(0.001).margin(1e-8));
+      }
+    }
+  }
+}
+
+TEST_CASE("what falls onto a surface loses mu g of its sliding a second, wherever in a step it lands",
+          "[integrators]") {
+  // All that gravity gave it the surface has taken, and friction mu of that.
+  const double mu = 0.3, g = 9.81;
+  for (const std::string& name : integrator_names()) {
+    const double h = is_explicit(name) ? 0.002 : 0.005;
+    for (const double height : {0.05, 0.051, 0.0525, 0.054, 0.0557}) {
+      INFO(name << " from " << height << " m");
+      System system({0.1});
+      system.add(Gravity{});
+      Constraints constraints;
+      constraints.add(Obstacle{.shape = Plane{}, .friction = mu, .margin = 0.001});
+      State state{0, VecX(Vec3(0, height, 0)), VecX(Vec3(2, 0, 0))};
+      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+      while (state.time < 0.3 - 1e-9) REQUIRE(stepper->advance(state, h).done);
+      const double impact = std::sqrt(2 * g * height);  // m/s
+      CHECK(state.v[0] == Approx(2 - mu * g * 0.3).margin(0.2 * mu * impact));
+    }
+  }
+}
+
+TEST_CASE("what starts inside a body is told, and comes out at the recovery speed", "[integrators]") {
+  for (const std::string& name : integrator_names()) {
+    INFO(name);
+    System system({0.1});
+    system.add(Gravity{});
+    Constraints constraints({.recovery_speed = 0.25});
+    constraints.add(Obstacle{.shape = Plane{}, .friction = 0.3, .margin = 0});
+    State state{0, VecX(Vec3(0, -0.01, 0)), VecX::Zero(3)};
+    auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+    for (int n = 0; n < 12; ++n) {
+      const double depth = std::max(0.01 - 0.25 * 0.004 * n, 0.0);
+      const StepReport report = stepper->advance(state, 0.004);
+      CHECK(report.penetration == Approx(depth).margin(1e-12));
+      CHECK(report.contacts == 1);
+      CHECK(state.x[1] == Approx(-std::max(depth - 0.001, 0.0)).margin(1e-12));
+      CHECK(state.v.norm() < 1e-9);
+    }
+  }
+}
+
+TEST_CASE("a particle with no solve left is stopped at the surface all the same, and it is told",
+          "[integrators]") {
+  for (const std::string& name : integrator_names()) {
+    if (name == "implicit-euler" || name == "bdf2" || name == "newton-kinsol") continue;  // foresee it
+    INFO(name);
+    System system({0.1});
+    system.add(Gravity{});
+    Constraints constraints;
+    constraints.add(Obstacle{.shape = Box{.size = {1, 0.02, 1}}, .margin = 0.001});
+    State state{0, VecX(Vec3(0, 0.05, 0)), VecX(Vec3(0, -10, 0))};
+    StepOptions options;
+    options.max_contact_solves = 0;
+    auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), options);
+    const StepReport report = stepper->advance(state, 0.01);
+    CHECK(report.guarded == 1);
+    CHECK(state.x[1] >= 0.01);
+  }
+}
+
+TEST_CASE("what is held during a step neither moves nor accelerates where it is held", "[integrators]") {
+  System system({0.1, 0.1, 0.1});
+  system.add(Gravity{});
+  system.add(std::make_unique<PairForce<TensionSpring>>(
+      std::vector<PairForce<TensionSpring>::Element>{{0, 1, {0.5, 40}}, {1, 2, {0.5, 40}}}));
+  Constraints constraints;
+  constraints.pin(2);
+  constraints.add(Obstacle{.shape = Plane{}, .friction = 0.0, .margin = 0.001});
+  State state{0, VecX::Zero(9), VecX::Zero(9)};
+  state.x << 0, 0.0009, 0, 0.8, 0.5, 0, 1.6, 0.5, 0;
+  state.v << 0.4, -1, 0, 0.1, 0.2, 0.3, 5, 5, 5;
+  HeldMotion motion(system, constraints);
+  StepReport report;
+  motion.begin(state, 0.01, report);
+  const VecX& v = motion.start_velocity();
+  CHECK((v.segment<3>(0) - Vec3(0.4, 0, 0)).norm() < 1e-15);  // slides along the plane
+  CHECK(v.segment<3>(3) == state.v.segment<3>(3));
+  CHECK(v.segment<3>(6).norm() == 0);  // pinned
+  VecX a;
+  motion.acceleration(state.x, v, a);
+  CHECK(std::abs(a[1]) < 1e-14);
+  CHECK(a[0] > 1);
+  CHECK(a.segment<3>(6).norm() == 0);
+}
+
 TEST_CASE("every integrator gives the same bits with 1, 2 and 7 threads", "[integrators]") {
   const ThreadsRestored restored;
   const TriangleMesh mesh = grid(64, 64, 1, 1);  // above the size where threads begin
@@ -180,8 +283,7 @@ TEST_CASE("every integrator gives the same bits with 1, 2 and 7 threads", "[inte
       all << state.x, state.v;
       if (first.size() == 0) first = all;
       INFO(name << ", " << t << " threads");
-      CHECK(std::memcmp(all.data(), first.data(), static_cast<std::size_t>(all.size()) * sizeof(double)) ==
-            0);
+      CHECK(same_bits(all, first));
     }
   }
 }

@@ -3,9 +3,6 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 #include <csignal>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 
 #include "app/atomic_file.h"
 #include "app/units.h"
@@ -13,6 +10,7 @@
 #include "mesh/topology.h"
 #include "solver/buckling_spring.h"
 #include "solver/damping.h"
+#include "tests/folder.h"
 #include "tests/tables.h"
 
 using namespace drape;
@@ -20,15 +18,6 @@ using namespace drape::test;
 namespace fs = std::filesystem;
 
 namespace {
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string n = (fs::temp_directory_path() / "drape-line-XXXXXX").string();
-    REQUIRE(mkdtemp(n.data()));
-    path = n;
-  }
-  ~Folder() { fs::remove_all(path); }
-};
 std::vector<PairForce<BucklingSpring>::Element> bends(const std::vector<std::unique_ptr<Force>>& forces) {
   for (const auto& f : forces)
     if (const auto* b = dynamic_cast<const PairForce<BucklingSpring>*>(f.get())) return b->elements();
@@ -37,11 +26,8 @@ std::vector<PairForce<BucklingSpring>::Element> bends(const std::vector<std::uni
 int simulate(const Folder& d, const std::string& words) {
   const TriangleMesh sheet = grid(3, 3, 1, 1);
   write_obj(d.path / "sheet.obj", sheet, sheet.positions);
-  std::ofstream(d.path / "s.toml")
-      << "[[cloth]]\nmesh = \"sheet.obj\"\nfabric = \"cotton-poplin\"\n[simulation]\n";
-  return std::system(
-      ("cd '" + d.path.string() + "' && '" DRAPE_PROGRAM "' simulate s.toml --quiet --out o " + words)
-          .c_str());
+  d.write("s.toml", "[[cloth]]\nmesh = \"sheet.obj\"\nfabric = \"cotton-poplin\"\n[simulation]\n");
+  return d.drape("simulate s.toml --quiet --out o " + words).exit_code;
 }
 }  // namespace
 
@@ -106,6 +92,33 @@ TEST_CASE("in a corner the wall lets go that would pull", "[contact]") {
     CHECK(state.x[0] == Approx(std::max(g[0], 0.0) * way).margin(1e-12));
     CHECK(state.x[1] == Approx(std::max(g[1], 0.0) * way).margin(1e-12));
   }
+}
+
+TEST_CASE("a sheet at rest resists at once, however it lies, and an edge that is slack does not",
+          "[forces]") {
+  const TriangleMesh mesh = grid(7, 7, 0.7, 0.7);
+  System system(lumped_mass(mesh, 0.2));
+  system.add(noh_jung(mesh, {.stretch = 300, .bend = 0}));
+  BlockMatrix A(system.bind());
+  const VecX x = stacked(mesh.positions), none = VecX::Zero(x.size()), y = random_vector(x.size(), 1, 3);
+  const auto stiffness_times = [&](const VecX& at, const VecX& direction) {
+    VecX b = none;
+    for (const auto& force : system.forces())
+      force->add_linearised(at, none, direction, 1, Stiffness::tangent, A, b);
+    return b;
+  };
+  const VecX expected = stiffness_times(x, y);
+  CHECK(expected.norm() > 100);
+  for (int k = 1; k <= 5; ++k) {  // lengths to round-off
+    const Mat3 R = rotation(k, Vec3(1, k, -2));
+    const VecX turned = moved_rigidly(x, R, Vec3(k, -3, 2));
+    CHECK((stiffness_times(turned, moved_rigidly(y, R, Vec3::Zero())) -
+           moved_rigidly(expected, R, Vec3::Zero()))
+              .norm() < 1e-9 * expected.norm());
+  }
+  const TensionSpring::Rest edge{0.1, 300};
+  CHECK(TensionSpring::tension(edge, 0.1 * (1 - 1e-9)).t == 0);
+  CHECK(TensionSpring::tension(edge, 0.1 * (1 - 1e-9)).dt == 0);
 }
 
 TEST_CASE("damping forces are the slope of the dissipation", "[forces]") {

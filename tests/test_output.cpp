@@ -2,11 +2,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <string>
 
@@ -17,31 +14,14 @@
 #include "app/steps_csv.h"
 #include "mesh/generate.h"
 #include "mesh/obj.h"
+#include "tests/folder.h"
 
 using namespace drape;
+using namespace drape::test;
 using Catch::Contains;
 namespace fs = std::filesystem;
 
 namespace {
-
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "drape-output-XXXXXX").string();
-    REQUIRE(mkdtemp(name.data()));
-    path = name;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  long files() const { return std::distance(fs::directory_iterator(path), fs::directory_iterator()); }
-};
-
-std::string bytes_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 template <class T>
 T at(const std::string& bytes, std::size_t offset) {
@@ -66,7 +46,7 @@ TEST_CASE("a point cache has the layout that Blender reads", "[output]") {
     CHECK_FALSE(fs::exists(folder.path / "a.pc2"));
     cache.keep();
   }
-  const std::string bytes = bytes_of(folder.path / "a.pc2");
+  const std::string bytes = content(folder.path / "a.pc2");
   REQUIRE(bytes.size() == 32 + 3 * 2 * 12);
   CHECK(std::string(bytes.data(), 12) == std::string("POINTCACHE2\0", 12));
   CHECK(at<std::int32_t>(bytes, 12) == 1);  // version
@@ -86,20 +66,20 @@ TEST_CASE("a file appears only when it is complete", "[output]") {
     AtomicFile file(path);
     file.write("half");
   }
-  CHECK(folder.files() == 0);
+  CHECK(folder.files().empty());
   {
     AtomicFile file(path);
     file.write("whole");
     CHECK_FALSE(fs::exists(path));
     file.keep();
   }
-  CHECK(bytes_of(path) == "whole");
+  CHECK(content(path) == "whole");
   {
     AtomicFile file(path);
     file.write("another");
   }
-  CHECK(bytes_of(path) == "whole");
-  CHECK(folder.files() == 1);
+  CHECK(content(path) == "whole");
+  CHECK(folder.files().size() == 1);
 }
 
 TEST_CASE("a write that fails leaves nothing behind and says why", "[output]") {
@@ -108,7 +88,7 @@ TEST_CASE("a write that fails leaves nothing behind and says why", "[output]") {
                     Contains("a.txt: cannot write: No such file or directory"));
   fs::create_directory(folder.path / "d");
   CHECK_THROWS_WITH(AtomicFile(folder.path / "d"), Contains("Is a directory"));
-  CHECK(folder.files() == 1);
+  CHECK(folder.files().size() == 1);
 }
 
 TEST_CASE("a row of steps.csv has a number for every column", "[output]") {

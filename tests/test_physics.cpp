@@ -167,22 +167,13 @@ TEST_CASE("a spinning pair of masses loses spin as backward Euler must, not more
 }
 
 TEST_CASE("the energy of a hung sheet never grows", "[physics]") {
-  const TriangleMesh mesh = grid(16, 16, 1, 1);
-  System system(lumped_mass(mesh, 0.2));
-  system.add(noh_jung(mesh, {.area_density = 0.2, .stretch = 300, .bend = 0}));
-  system.add(Gravity{});
-  Constraints constraints;
-  constraints.pin({0, 15});
-  ImplicitEuler stepper(system, constraints, make_linear_solver("mpcg"),
+  HungSheet sheet(16, 300, 0);
+  ImplicitEuler stepper(sheet.system, sheet.constraints, make_linear_solver("mpcg"),
                         {.newton_iterations = 8, .newton_tolerance = 1e-9, .tolerance = 1e-9});
-  State state = at_rest(mesh);
-  const auto energy = [&] {
-    return system.elastic_energy(state.x) + system.kinetic_energy(state.v) + system.gravity_energy(state.x);
-  };
-  double before = energy();
+  double before = sheet.energy();
   for (int n = 0; n < 150; ++n) {
-    stepper.advance(state, 0.01);
-    const double after = energy();
+    stepper.advance(sheet.state, 0.01);
+    const double after = sheet.energy();
     CHECK(after <= before + 1e-7);
     before = after;
   }
@@ -228,14 +219,9 @@ TEST_CASE("buckling springs are a beam: the cantilever comes to the elastica", "
 TEST_CASE("a hung sheet passes half-way down at the same time on every mesh", "[physics]") {
   std::vector<double> times;
   for (int side : {32, 100, 200}) {
-    const TriangleMesh mesh = grid(side, side, 1, 1);
-    System system(lumped_mass(mesh, 0.2));
-    system.add(noh_jung(mesh, {.area_density = 0.2, .stretch = 1000, .bend = 1e-5}));
-    system.add(Gravity{});
-    Constraints constraints;
-    constraints.pin({0, side - 1});
-    ImplicitEuler stepper(system, constraints, make_linear_solver("mpcg"), {.tolerance = 1e-3});
-    State state = at_rest(mesh);
+    HungSheet sheet(side, 1000, 1e-5);
+    State& state = sheet.state;
+    ImplicitEuler stepper(sheet.system, sheet.constraints, make_linear_solver("mpcg"), {.tolerance = 1e-3});
     const int far = side * side - side / 2;  // middle of the free edge
     double before = 0, passed = 0;
     while (passed == 0 && state.time < 1) {

@@ -5,6 +5,11 @@
 #include "solver/linear/preconditioner.h"
 #include "tests/tables.h"
 
+namespace drape {
+std::unique_ptr<LinearSolver> make_pcg(std::string name, bool prefiltered,
+                                       std::unique_ptr<Preconditioner> preconditioner);
+}  // namespace drape
+
 using namespace drape;
 using namespace drape::test;
 
@@ -27,24 +32,15 @@ class Recorder final : public LinearSolver {
   VecX &b_, &guess_;
 };
 
-// A sheet hung by two corners after some steps: the matrix of a real fall, slack and taut edges in it.
-struct HungSheet {
-  TriangleMesh mesh;
-  System system;
-  Constraints constraints;
-  State state;
+// A hung sheet after some steps: the matrix of a real fall, slack and taut edges in it.
+struct FallingSheet : HungSheet {
   ImplicitEuler stepper;
   Filter filter;
   VecX b, guess;
 
-  HungSheet(int side, int steps, double stretch = 2000)
-      : mesh(grid(side, side, 1, 1)),
-        system(lumped_mass(mesh, 0.2)),
-        state(at_rest(mesh)),
+  FallingSheet(int side, int steps, double stretch = 2000)
+      : HungSheet(side, stretch, 1e-5),
         stepper(system, constraints, std::make_unique<Recorder>(b, guess), {.tolerance = 1e-3}) {
-    system.add(noh_jung(mesh, {.area_density = 0.2, .stretch = stretch, .bend = 1e-5}));
-    system.add(Gravity{});
-    constraints.pin({0, side - 1});
     for (int k = 0; k < steps; ++k) stepper.advance(state, 0.01);
     filter = held({0, side - 1});
   }
@@ -63,9 +59,41 @@ struct HungSheet {
   }
 };
 
+// Block-jacobi that after some iterations acts as a negative definite matrix, until it is made safer, if it
+// can be.
+class Failing final : public Preconditioner {
+ public:
+  struct Told {
+    int safer = 0, learnt = 0;
+    bool forgotten = false;
+  };
+  Failing(int sound, bool can_be_safer, Told& told)
+      : sound_(sound), can_be_safer_(can_be_safer), told_(told) {}
+  std::string_view name() const override { return "failing"; }
+  bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
+    return inner_->prepare(A, filter, report);
+  }
+  void apply(const VecX& r, VecX& s) override {
+    inner_->apply(r, s);
+    if (told_.safer == 0 && --sound_ < 0) s = -s;
+  }
+  bool make_safer(const BlockMatrix&, const Filter&, LinearReport&) override {
+    told_.safer += can_be_safer_ ? 1 : 0;
+    return can_be_safer_;
+  }
+  void learn(int iterations, double /*decades*/) override { told_.learnt = iterations; }
+  void forget() override { told_.forgotten = true; }
+
+ private:
+  std::unique_ptr<Preconditioner> inner_ = make_block_jacobi();
+  int sound_;
+  bool can_be_safer_;
+  Told& told_;
+};
+
 const std::vector<std::string> names = {"block-jacobi", "block-ic0", "multigrid"};
 
-std::vector<int> iterations_of(const HungSheet& sheet, double tolerance) {
+std::vector<int> iterations_of(const FallingSheet& sheet, double tolerance) {
   std::vector<int> iterations;
   for (const char* name : {"ppcg", "ppcg+block-ic0", "ppcg+multigrid"}) {
     VecX dv = sheet.guess;
@@ -82,9 +110,9 @@ std::vector<int> iterations_of(const HungSheet& sheet, double tolerance) {
 
 TEST_CASE("a preconditioner is symmetric and positive definite, the same bits on any number of threads",
           "[solvers]") {
-  const HungSheet sheet(60, 12);  // large enough for threads
+  const FallingSheet sheet(60, 12);  // large enough for threads
   const Filter filter = sheet.held({0, 59, 700, 701, 702, 1800, 1801, 1900, 2500});
-  const int before = threads();
+  const ThreadsRestored restored;
   for (const std::string& name : names) {
     INFO(name);
     VecX first;
@@ -107,13 +135,12 @@ TEST_CASE("a preconditioner is symmetric and positive definite, the same bits on
       CHECK(Pu == first);
     }
   }
-  set_threads(before);
 }
 
 TEST_CASE("better preconditioners need fewer iterations, multigrid as few on a finer sheet", "[solvers]") {
   std::vector<int> by_multigrid;
   for (int side : {33, 65, 150}) {
-    const HungSheet sheet(side, 6);
+    const FallingSheet sheet(side, 6);
     const std::vector<int> iterations = iterations_of(sheet, 1e-3);
     CHECK(2 * iterations[1] < iterations[0]);
     CHECK(iterations[2] < iterations[1]);
@@ -124,13 +151,13 @@ TEST_CASE("better preconditioners need fewer iterations, multigrid as few on a f
 
 TEST_CASE("multigrid bears a stiffness that is millions of times the mass", "[solvers]") {
   for (double stretch : {2e4, 2e5, 2e6}) {
-    const std::vector<int> iterations = iterations_of(HungSheet(65, 5, stretch), 1e-6);
+    const std::vector<int> iterations = iterations_of(FallingSheet(65, 5, stretch), 1e-6);
     CHECK(3 * iterations[2] < iterations[0]);
   }
 }
 
 TEST_CASE("contacts that come and go need no new analysis, and every solver still agrees", "[solvers]") {
-  const HungSheet sheet(17, 15);
+  const FallingSheet sheet(17, 15);
   for (const auto& info : linear_solvers()) {
     INFO(info.name);
     const auto solver = make_linear_solver(info.name);
@@ -152,10 +179,37 @@ TEST_CASE("contacts that come and go need no new analysis, and every solver stil
 }
 
 TEST_CASE("an incomplete factor that breaks down is built safer, and says so", "[solvers]") {
-  const HungSheet sheet(33, 15);
+  const FallingSheet sheet(33, 15);
   const auto preconditioner = make_preconditioner("block-ic0");
   LinearReport report;
   REQUIRE(preconditioner->prepare(sheet.stepper.matrix(), sheet.filter, report));
   REQUIRE(preconditioner->make_safer(sheet.stepper.matrix(), sheet.filter, report));
   CHECK_THAT(report.note, Catch::Contains("broke down"));
+}
+
+TEST_CASE("a preconditioner that fails is made safer and the solve begun again, or it is told", "[solvers]") {
+  const FallingSheet sheet(17, 15);
+  Filter filter = sheet.held({3, 50, 99});
+  filter.constrain(120, Mat3::Zero(), Vec3(0.1, -0.2, 0.3));
+  VecX expected = VecX::Zero(sheet.b.size());
+  make_linear_solver("eigen-ldlt")->solve(sheet.stepper.matrix(), sheet.b, filter, {}, expected);
+  for (const bool prefiltered : {false, true})
+    for (const bool can_be_safer : {true, false}) {
+      INFO((prefiltered ? "ppcg" : "mpcg") << (can_be_safer ? ", can be made safer" : ""));
+      Failing::Told told;
+      const auto solver = make_pcg("pcg", prefiltered, std::make_unique<Failing>(4, can_be_safer, told));
+      VecX dv = random_vector(sheet.b.size(), 1, 4);
+      const LinearReport report =
+          solver->solve(sheet.stepper.matrix(), sheet.b, filter, {.tolerance = 1e-10}, dv);
+      if (can_be_safer) {
+        CHECK(report.reason == StopReason::converged);
+        CHECK((dv - expected).norm() <= 1e-5 * expected.norm());
+        CHECK(told.safer == 1);
+        CHECK(told.learnt <= report.iterations);
+        CHECK_FALSE(told.forgotten);
+      } else {
+        CHECK(report.reason == StopReason::indefinite);
+        CHECK(told.forgotten);  // so that one that is kept is not kept for the next system
+      }
+    }
 }

@@ -8,36 +8,6 @@
 using namespace drape;
 using namespace drape::test;
 
-namespace {
-
-struct Sheet {
-  TriangleMesh mesh;
-  System system;
-  Constraints constraints;
-  State state;
-
-  explicit Sheet(TriangleMesh m, const Fabric& fabric = {})
-      : mesh(std::move(m)), system(lumped_mass(mesh, fabric.area_density)), state(at_rest(mesh)) {
-    system.add(noh_jung(mesh, fabric));
-    system.add(Gravity{});
-  }
-  ImplicitEuler stepper(const StepOptions& options = {}) {
-    return {system, constraints, make_linear_solver("mpcg"), options};
-  }
-};
-
-bool same_bits(const VecX& a, const VecX& b) {
-  return a.size() == b.size() &&
-         std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
-}
-
-struct ThreadsRestored {
-  int before = threads();
-  ~ThreadsRestored() { set_threads(before); }
-};
-
-}  // namespace
-
 TEST_CASE("free fall is exact, however loose or short the solve", "[step]") {
   for (const StepOptions& options :
        {StepOptions{}, StepOptions{.tolerance = 0.5}, StepOptions{.max_linear_iterations = 1},

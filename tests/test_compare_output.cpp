@@ -1,0 +1,368 @@
+// What drape compare writes: tables that agree with each other, plots, the fitted growth, the script over
+// several runs.
+#include <catch2/catch.hpp>
+#include <set>
+#include <sstream>
+
+#include "app/compare/files.h"
+#include "app/compare/html.h"
+#include "app/compare/tables.h"
+#include "tests/desk.h"
+
+using namespace drape;
+using namespace drape::test;
+using Catch::Contains;
+using Catch::StartsWith;
+namespace fs = std::filesystem;
+
+namespace {
+
+// The cells of one line of CSV.
+Names cells(const std::string& line) {
+  Names all(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      all.emplace_back();
+    else
+      all.back() += c;
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("compare.json, compare.csv and compare.html hold it all", "[compare]") {
+  Desk desk;
+  REQUIRE(desk.run("--sizes 100,400 --steps 4 --repeats 1 --solvers mpcg,eigen-ldlt,mpcg@1e-1 --out o") == 1);
+  CHECK(desk.files("o") == std::set<std::string>{"compare.csv", "compare.html", "compare.json"});
+
+  const JsonValue json = desk.json();
+  for (const char* key : {"drape_version", "scene", "integrator", "linear_solver", "time_step", "tolerance",
+                          "threads", "steps", "at", "repeats", "sizes", "solvers", "agree", "verdicts",
+                          "failure", "rows", "growth", "run_duration", "runs"}) {
+    INFO(key);
+    CHECK(json.contains(key));
+  }
+  CHECK(json["sizes"] == JsonValue({100, 400}));
+  CHECK(json["growth"].size() == 3);
+  REQUIRE(json["rows"].size() == 6);
+
+  std::istringstream csv(content(desk.path / "o/compare.csv"));
+  std::string line;
+  std::getline(csv, line);
+  const Names header = cells(line);
+  for (const char* key : {"vertices", "step", "solver", "iterations", "residual", "reported_residual",
+                          "constraint_violation", "setup_ms", "solve_ms", "first_ms", "peak_memory_bytes",
+                          "difference", "allowed", "cloth", "vertex", "stopped", "verdict"})
+    CHECK(std::find(header.begin(), header.end(), key) != header.end());
+  for (const JsonValue& row : json["rows"]) {
+    REQUIRE(std::getline(csv, line));
+    const Names found = cells(line);
+    REQUIRE(found.size() == header.size());
+    for (std::size_t k = 0; k < header.size(); ++k) {
+      INFO(header[k]);
+      const JsonValue& value = row[header[k]];
+      if (value.is_string()) CHECK(found[k] == value.get<std::string>());
+      if (value.is_number()) CHECK(std::stod(found[k]) == Approx(value.get<double>()));
+      if (value.is_null()) CHECK(found[k].empty());
+    }
+  }
+
+  const std::string html = content(desk.path / "o/compare.html");
+  for (const char* outside : {"http", "src=", "<script", "<link", "@import", "url("})
+    CHECK(count(html, outside) == 0);
+  CHECK(count(html, "<svg") == 4);  // time, iterations, convergence of two sizes
+  CHECK(count(html, "<title>") == 5);
+  CHECK(count(html, "<table>") == count(html, "</table>"));
+  CHECK_THAT(html, Contains("mpcg@1e-1: differ: sheet of 100 vertices"));
+}
+
+TEST_CASE("a long history is thinned out for the plot, not in compare.json", "[compare]") {
+  Comparison comparison;
+  comparison.tolerance = 1e-6;
+  SolverRow row;
+  row.vertices = 9, row.step = 1, row.solver = "long", row.agrees = true, row.report.iterations = 4999;
+  for (int k = 0; k < 5000; ++k) row.history.push_back(std::exp(-0.01 * k));
+  comparison.rows = {row};
+  const std::vector<Plot> plots = plots_of(comparison);
+  REQUIRE(plots.size() == 1);
+  CHECK(plots[0].series[0].x.size() < 300);
+  CHECK(plots[0].series[0].x.back() == 4999);
+  CHECK(plots[0].series[0].y.back() == row.history.back());
+  CHECK(JsonValue::parse(compare_json(comparison))["rows"][0]["history"].size() == 5000);
+}
+
+TEST_CASE("the script plots several compare.json", "[compare]") {
+  const std::string python = "/usr/bin/python3 ",
+                    script = python + "'" DRAPE_SOURCE_DIR "/tests/compare/plot_compare.py' ";
+  if (std::system((python + "-c 'import matplotlib' 2>/dev/null").c_str()) != 0) {
+    WARN("skipped: there is no matplotlib");
+    return;
+  }
+  Desk desk;
+  const auto plot = [&](const std::string& words) { return desk.said(desk.shell(script + words)); };
+  REQUIRE(desk.run("--sizes 16,36 --steps 2 --solvers mpcg --out o") == 0);
+  REQUIRE(desk.run("'" + on_ball + "' --steps 2 --solvers mpcg --integrators implicit-euler --out p") == 0);
+  JsonValue with_history = desk.json();
+  with_history["rows"][0]["history"] = {1, 0.1, 0.01};
+  desk.write("o/compare.json", with_history.dump());
+  CHECK(plot("o/compare.json p/compare.json --out plots --format svg") == 0);
+  INFO(desk.err);
+  for (const char* name : {"time-against-vertices.svg", "convergence-o-16-step-2.svg", "work-precision.svg"})
+    CHECK(fs::exists(desk.path / "plots" / name));
+
+  desk.write("other.json", "{}");
+  desk.write("text.json", "step 1");
+  for (const char* wrong : {"none.json", "other.json", "text.json", "o"}) {
+    INFO(wrong);
+    CHECK(plot(wrong) == 2);
+    CHECK_THAT(desk.err, StartsWith("error: ") && Contains(wrong));
+    CHECK(count(desk.err, "\n") == 1);
+  }
+}
+
+TEST_CASE("a name with commas, quotes and angles is the same in every file", "[compare]") {
+  Comparison comparison;
+  comparison.scene = "a<b>&\"c\".toml";
+  comparison.at = {1};
+  SolverRow row;
+  row.step = 1;
+  row.solver = "x,\"y\"";
+  row.verdict = "differ: <1, 2>\nand more";
+  row.report.note = "one\ntwo, \"three\"";
+  comparison.solvers = {row.solver};
+  comparison.rows = {row};
+  const JsonValue json = JsonValue::parse(compare_json(comparison));
+  CHECK(json["scene"] == comparison.scene);
+  CHECK(json["rows"][0]["note"] == row.report.note);
+
+  const std::string csv = compare_csv(comparison);
+  CHECK(count(csv, "\n") == 2);  // whatever is in a cell
+  const std::string quoted = "\"x,\"\"y\"\"\"", text = csv.substr(csv.find('\n') + 1);
+  CHECK_THAT(text, Contains("," + quoted + ","));
+  CHECK(cells(text).size() == cells(csv.substr(0, csv.find('\n'))).size());
+
+  const std::string html = compare_html(comparison);
+  CHECK(count(html, "<b>") + count(html, "<1") + count(html, "\"c\"") == 0);
+  CHECK(count(html, "a&lt;b&gt;&amp;&quot;c&quot;.toml") >= 2);
+  CHECK_THAT(html, Contains("<td class=\"bad\">differ</td>"));
+}
+
+TEST_CASE("every number stands under its own name", "[compare]") {
+  Comparison comparison;
+  SolverRow row;
+  row.vertices = 3, row.step = 4, row.constrained = 5, row.time = 0.5;
+  row.tolerance = 1.5, row.residual = 2.5, row.violation = 3.5;
+  row.setup_ms = 4.5, row.solve_ms = 5.25, row.first_ms = 6.5, row.difference = 7.5, row.allowed = 8.5;
+  row.peak_bytes = 9.5, row.vertex = 6;
+  row.report.iterations = 7, row.report.residual = 10.5, row.report.setup_ms = 11.5, row.report.analyses = 8;
+  IntegratorRow run;
+  run.time_step = 0.1, run.end = 0.2, run.steps = 1, run.steps_cut = 2, run.steps_not_converged = 3;
+  run.linear_iterations = 4, run.wall_ms = 0.3, run.max_distance = 0.4, run.rms_distance = 0.5;
+  run.energy_drift = 0.6, run.energy_error = 0.7, run.same_run_distance = 0.8;
+  run.failure = "step 2: no";
+  comparison.rows = {row};
+  comparison.runs = {run};
+  const JsonValue json = JsonValue::parse(compare_json(comparison)), solver = json["rows"][0],
+                  one = json["runs"][0];
+  const std::pair<const char*, double> of_solver[] = {{"vertices", 3},
+                                                      {"step", 4},
+                                                      {"constrained", 5},
+                                                      {"time", 0.5},
+                                                      {"tolerance", 1.5},
+                                                      {"residual", 2.5},
+                                                      {"constraint_violation", 3.5},
+                                                      {"setup_ms", 4.5},
+                                                      {"solve_ms", 5.25},
+                                                      {"total_ms", 9.75},
+                                                      {"first_ms", 6.5},
+                                                      {"difference", 7.5},
+                                                      {"allowed", 8.5},
+                                                      {"vertex", 6},
+                                                      {"peak_memory_bytes", 9.5},
+                                                      {"iterations", 7},
+                                                      {"reported_residual", 10.5},
+                                                      {"first_setup_ms", 11.5},
+                                                      {"analyses", 8}};
+  for (const auto& [key, value] : of_solver) {
+    INFO(key);
+    CHECK(solver[key] == value);
+  }
+  const std::pair<const char*, double> of_run[] = {{"time_step", 0.1},
+                                                   {"end", 0.2},
+                                                   {"steps", 1},
+                                                   {"steps_cut", 2},
+                                                   {"steps_not_converged", 3},
+                                                   {"linear_iterations", 4},
+                                                   {"wall_ms", 0.3},
+                                                   {"max_distance", 0.4},
+                                                   {"rms_distance", 0.5},
+                                                   {"energy_drift", 0.6},
+                                                   {"energy_error", 0.7},
+                                                   {"same_run_distance", 0.8}};
+  for (const auto& [key, value] : of_run) {
+    INFO(key);
+    CHECK(one[key] == value);
+  }
+  CHECK(one["done"] == false);
+  comparison.rows[0].vertex = -1;  // nothing differs
+  comparison.rows[0].allowed.reset();
+  const JsonValue none = JsonValue::parse(compare_json(comparison))["rows"][0];
+  CHECK((none["vertex"].is_null() && none["allowed"].is_null()));
+}
+
+TEST_CASE("a solver agrees when all its rows do, and a table is of one step and size", "[compare]") {
+  Comparison comparison;
+  comparison.solvers = {"both", "one", "none"};
+  for (const int n : {16, 36})
+    for (const char* solver : {"both", "one"}) {
+      SolverRow row;
+      row.vertices = n, row.step = 1, row.solver = solver,
+      row.agrees = solver == std::string("both") || n == 16;
+      row.verdict = row.agrees ? "agree" : "differ: a lot";
+      if (!row.agrees) row.report.note = "kernels of old";
+      comparison.rows.push_back(row);
+    }
+  IntegratorRow run;
+  run.integrator = "bdf2", run.failure = "step 7: the cloth is torn", run.steps_cut = 5;
+  comparison.runs = {run};
+  CHECK(verdicts(comparison) == Names{"both: agree", "one: differ: a lot"});
+  CHECK(tables_of(comparison).size() == 3);
+  const std::string text = text_of(comparison);
+  CHECK_THAT(text, Contains("one: kernels of old") && Contains("step 7: the cloth is torn") &&
+                       Contains("5 steps taken"));
+}
+
+TEST_CASE("seven series have seven colours", "[compare]") {
+  Plot plot{"t", "x", "y", false, false, {}};
+  for (int k = 0; k < 7; ++k) plot.series.push_back({std::to_string(k), {0, 1}, {0, 1.0 * k}});
+  const std::string text = svg(plot), mark = "<polyline fill=\"none\" stroke-width=\"1.8\" stroke=\"";
+  std::set<std::string> colours;
+  for (std::size_t at = text.find(mark); at != text.npos; at = text.find(mark, at + 1))
+    colours.insert(text.substr(at + mark.size(), 7));
+  CHECK(colours.size() == 7);
+}
+
+TEST_CASE("a solver looks the same in every plot", "[compare]") {
+  Comparison comparison;
+  comparison.at = {1};
+  comparison.sizes = {16, 36};
+  comparison.solvers = {"direct", "slow", "quick"};
+  for (const int n : comparison.sizes)
+    for (const std::string& solver : comparison.solvers) {
+      SolverRow row;
+      row.vertices = n, row.step = 1, row.solver = solver, row.solve_ms = n;
+      row.report.iterations = solver == "direct" ? 0 : n;
+      comparison.rows.push_back(row);
+    }
+  const std::vector<Plot> plots = plots_of(comparison);
+  REQUIRE(plots.size() == 4);
+  for (const Plot& plot : plots)
+    for (const Series& series : plot.series) {
+      INFO(plot.title << ": " << series.name);
+      if (series.dashed) continue;
+      REQUIRE(series.look >= 0);
+      CHECK(comparison.solvers[static_cast<std::size_t>(series.look)] == series.name);
+    }
+  CHECK(plots[1].series.size() == 2);  // a direct solver has no iterations to show
+}
+
+TEST_CASE("work and precision: seconds against metres, without the reference and what failed", "[compare]") {
+  Comparison comparison;
+  for (int k = 0; k < 4; ++k) {
+    IntegratorRow row;
+    row.integrator = "bdf2", row.wall_ms = 500 * (k + 1), row.reference = k == 1;
+    if (k != 2) row.max_distance = 0.1 * k;
+    if (k == 3) row.differs_by = DiffersBy::linear_algebra;
+    comparison.runs.push_back(row);
+  }
+  const std::vector<Plot> plots = plots_of(comparison);
+  REQUIRE(plots.size() == 1);
+  REQUIRE(plots[0].series.size() == 2);
+  CHECK(plots[0].series[0].x == std::vector<double>{0.5});
+  CHECK(plots[0].series[1].x == std::vector<double>{2});
+  CHECK(plots[0].series[1].y[0] == Approx(0.3));
+}
+
+namespace {
+
+// Where the circles of a plot are, but for the legend's.
+std::vector<std::pair<double, double>> circles(const std::string& text) {
+  std::vector<std::pair<double, double>> all;
+  const auto number_behind = [&](const char* what, std::size_t from) {
+    return std::stod(text.substr(text.find(what, from) + 4));
+  };
+  for (std::size_t at = text.find("<circle"); at != text.npos; at = text.find("<circle", at + 1))
+    all.emplace_back(number_behind("cx=\"", at), number_behind("cy=\"", at));
+  all.pop_back();
+  return all;
+}
+
+// Where a label of an axis stands.
+double label_at(const std::string& text, const std::string& label, const char* coordinate) {
+  const std::size_t end = text.find(">" + label + "</text>");
+  REQUIRE(end != text.npos);
+  return std::stod(text.substr(text.find(coordinate, text.rfind("<text", end)) + 3));
+}
+
+}  // namespace
+
+TEST_CASE("points lie where the axes say", "[compare]") {
+  for (const bool logarithmic : {false, true}) {
+    const std::vector<double> x =
+        logarithmic ? std::vector<double>{1, 10, 1000} : std::vector<double>{10, 20, 40};
+    const std::vector<double> y =
+        logarithmic ? std::vector<double>{0.01, 1, 0.1} : std::vector<double>{3, 1, 2};
+    const std::string text = svg({"t", "x", "y", logarithmic, logarithmic, {{"s", x, y}}});
+    const auto at = circles(text);
+    REQUIRE(at.size() == 3);
+    CHECK((at[1].first - at[0].first) / (at[2].first - at[0].first) == Approx(1.0 / 3).epsilon(0.01));
+    CHECK((at[2].second - at[0].second) / (at[1].second - at[0].second) == Approx(0.5).epsilon(0.01));
+    CHECK((at[1].second < at[0].second) == (y[1] > y[0]));  // up is more
+    const char* labels[][2] = {{"20", "2"}, {"10", "0.1"}};
+    std::istringstream line(text.substr(text.find(" points=\"") + 9));  // goes through the same points
+    for (const auto& [px, py] : at) {
+      double lx = 0, ly = 0;
+      char comma = 0;
+      line >> lx >> comma >> ly;
+      CHECK((lx == px && ly == py));
+    }
+    CHECK(label_at(text, labels[logarithmic][0], "x=\"") == Approx(at[1].first));
+    CHECK(label_at(text, labels[logarithmic][1], "y=\"") == Approx(at[2].second + 4));  // half a letter
+    for (const auto& [px, py] : at) CHECK((px >= 80 && px <= 510 && py >= 34 && py <= 324));
+  }
+}
+
+TEST_CASE("the growth is fitted", "[compare]") {
+  Comparison comparison;
+  comparison.at = {3};
+  comparison.solvers = {"direct", "alone"};
+  for (const int n : {1000, 4000, 16000}) {
+    SolverRow row;
+    row.vertices = n, row.step = 3, row.solver = "direct", row.solve_ms = 1e-3 * std::pow(n, 1.5);
+    comparison.rows.push_back(row);
+  }
+  for (const int n : {1000, 4000, 16000}) {  // of another step: does not count
+    SolverRow row;
+    row.vertices = n, row.step = 1, row.solver = "direct", row.solve_ms = 1e-6 * std::pow(n, 3);
+    comparison.rows.push_back(row);
+  }
+  const std::vector<Growth> growth = growth_of(comparison);
+  REQUIRE(growth.size() == 1);
+  CHECK(growth[0].time == Approx(1.5));
+  CHECK_FALSE(growth[0].iterations);
+}
+
+TEST_CASE("a plot leaves out what an axis cannot show", "[compare]") {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::string text =
+      svg({"a < b", "x", "y", true, true, {{"one & two", {1, 10, 100, 0, 5}, {1e-3, 1, nan, 1, -1}}}});
+  CHECK(count(text, "<circle") == 2 + 1);  // and the legend's
+  CHECK_THAT(text, Contains("a &lt; b") && Contains("one &amp; two") && !Contains("nan"));
+  CHECK_THAT(svg({"empty", "x", "y", true, true, {{"zero", {0}, {0}}}}), Contains("nothing to plot"));
+  CHECK_THAT(svg({"point", "x", "y", false, false, {{"one", {3}, {3}}}}),
+             Contains("<circle") && !Contains("nan"));
+}
