@@ -19,6 +19,7 @@
 
 using namespace drape;
 using Catch::Contains;
+using Catch::EndsWith;
 using Catch::StartsWith;
 namespace fs = std::filesystem;
 using JsonValue = nlohmann::json;
@@ -91,6 +92,29 @@ Names cells(const std::string& line) {
       all.back() += c;
   }
   return all;
+}
+
+// A CSV file holds what the rows of compare.json do.
+void check_same_table(const std::string& text, const JsonValue& rows) {
+  std::istringstream csv(text);
+  std::string line;
+  std::getline(csv, line);
+  const Names header = cells(line);
+  for (const JsonValue& row : rows) {
+    REQUIRE(std::getline(csv, line));
+    const Names found = cells(line);
+    REQUIRE(found.size() == header.size());
+    for (std::size_t k = 0; k < header.size(); ++k) {
+      INFO(header[k]);
+      REQUIRE(row.contains(header[k]));
+      const JsonValue& value = row[header[k]];
+      if (value.is_string()) CHECK(found[k] == value.get<std::string>());
+      if (value.is_boolean()) CHECK(found[k] == (value.get<bool>() ? "1" : "0"));
+      if (value.is_number()) CHECK(std::stod(found[k]) == Approx(value.get<double>()));
+      if (value.is_null()) CHECK(found[k].empty());
+    }
+  }
+  CHECK_FALSE(std::getline(csv, line));
 }
 
 }  // namespace
@@ -211,6 +235,23 @@ TEST_CASE("integrators: what differs by linear algebra, what by time integration
                                              "time integration"});
   CHECK(json["runs"][0]["max_distance"].get<double>() > json["runs"][1]["max_distance"].get<double>());
   CHECK_THAT(desk.out, Contains("the reference: implicit-euler at 0.0025 s with mpcg"));
+  for (const JsonValue& run : json["runs"]) {  // the same in words, on the screen and in both files
+    const std::string who = "implicit-euler at " +
+                            std::string(run["time_step"] == 0.01    ? "0.01"
+                                        : run["time_step"] == 0.005 ? "0.005"
+                                                                    : "0.0025") +
+                            " s with " + run["solver"].get<std::string>();
+    const std::string verdict = run["verdict"], cause = run["differs_by"];
+    const bool same = run["same_run_distance"] == 0;  // chance: to the last bit
+    CHECK_THAT(verdict, StartsWith(run["reference"] == true ? "the reference"
+                                   : same                   ? "no difference from the same run"
+                                                            : "differs by " + cause + ": "));
+    CHECK_THAT(desk.out, Contains(who + ": " + verdict + "\n"));
+    if (cause == "linear algebra only") CHECK_THAT(verdict, EndsWith(" from the same run with mpcg"));
+    CHECK(run["inner_steps"] == 0);
+  }
+  CHECK(json["verdicts"].size() == 2 + 4);
+  check_same_table(content(desk.path / "o/compare-integrators.csv"), json["runs"]);
   CHECK(count(content(desk.path / "o/compare.html"), "<svg") == 2);
 }
 
@@ -236,7 +277,8 @@ TEST_CASE("compare.json, compare.csv and compare.html hold it all", "[compare]")
   REQUIRE(desk.run("--sizes 100,400 --steps 4 --repeats 1 --solvers mpcg,eigen-ldlt,mpcg@1e-1 --out o") == 1);
   std::set<std::string> names;
   for (const auto& entry : fs::directory_iterator(desk.path / "o")) names.insert(entry.path().filename());
-  CHECK(names == std::set<std::string>{"compare.csv", "compare.html", "compare.json"});
+  CHECK(names ==
+        std::set<std::string>{"compare-integrators.csv", "compare.csv", "compare.html", "compare.json"});
 
   const JsonValue json = desk.json();
   for (const char* key : {"drape_version", "scene", "integrator", "linear_solver", "time_step", "tolerance",
@@ -249,26 +291,14 @@ TEST_CASE("compare.json, compare.csv and compare.html hold it all", "[compare]")
   CHECK(json["growth"].size() == 3);
   REQUIRE(json["rows"].size() == 6);
 
-  std::istringstream csv(content(desk.path / "o/compare.csv"));
-  std::string line;
-  std::getline(csv, line);
-  const Names header = cells(line);
+  const std::string csv = content(desk.path / "o/compare.csv");
+  const Names header = cells(csv.substr(0, csv.find('\n')));
   for (const char* key : {"vertices", "step", "solver", "iterations", "residual", "reported_residual",
                           "constraint_violation", "setup_ms", "solve_ms", "first_ms", "peak_memory_bytes",
                           "difference", "allowed", "cloth", "vertex", "stopped", "verdict"})
     CHECK(std::find(header.begin(), header.end(), key) != header.end());
-  for (const JsonValue& row : json["rows"]) {
-    REQUIRE(std::getline(csv, line));
-    const Names found = cells(line);
-    REQUIRE(found.size() == header.size());
-    for (std::size_t k = 0; k < header.size(); ++k) {
-      INFO(header[k]);
-      const JsonValue& value = row[header[k]];
-      if (value.is_string()) CHECK(found[k] == value.get<std::string>());
-      if (value.is_number()) CHECK(std::stod(found[k]) == Approx(value.get<double>()));
-      if (value.is_null()) CHECK(found[k].empty());
-    }
-  }
+  check_same_table(csv, json["rows"]);
+  CHECK(count(content(desk.path / "o/compare-integrators.csv"), "\n") == 1);  // no runs
 
   const std::string html = content(desk.path / "o/compare.html");
   for (const char* outside : {"http", "src=", "<script", "<link", "@import", "url("})
@@ -359,8 +389,33 @@ TEST_CASE("peak memory sees a block that has been freed again", "[compare]") {
     const std::vector<double> block(4000000, 1.0);
     CHECK(block.back() == 1);  // so that it is there
   }
+  CHECK(*memory.kept() < 2e6);
   CHECK(*memory.bytes() > 30e6);
   CHECK(*memory.bytes() < 60e6);
+}
+
+TEST_CASE("the peak of a solver is over its set-up and all its solves, not over the others'", "[compare]") {
+  if (!PeakMemory().bytes()) return;  // this system cannot say
+  const Scene scene = hung_sheet_scene({});
+  Recorded run(scene, make_hung_sheet(scene, 50));
+  run.recording.on = true;
+  SolverBench bench({{"mpcg", "mpcg", {}}, {"eigen-ldlt", "eigen-ldlt", {}}, {"mpcg@1e-3", "mpcg", 1e-3}},
+                    1e-6, 1);
+  std::vector<double> before(3, 0);
+  for (int k = 1; k <= 4; ++k) {
+    run.simulation.integrator->advance(run.simulation.state, 0.01);
+    const auto rows = bench.compare(*run.recording.last, k, run.simulation);
+    for (std::size_t s = 0; s < 3; ++s) {
+      INFO("step " << k << ", " << rows[s].solver);
+      REQUIRE(rows[s].peak_bytes);
+      CHECK(*rows[s].peak_bytes >= before[s]);  // also where nothing is new
+      before[s] = *rows[s].peak_bytes;
+    }
+    CHECK(before[1] > 5e6);              // the factor of 7500 rows
+    CHECK(before[0] < 0.5 * before[1]);  // what others keep is not counted
+    CHECK(before[2] < 0.5 * before[1]);
+    CHECK(before[1] < 100e6);  // and nothing is counted at every step anew
+  }
 }
 
 TEST_CASE("bad input to compare: one line, exit code 2, nothing written", "[compare]") {
