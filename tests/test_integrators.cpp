@@ -458,6 +458,7 @@ TEST_CASE("a sheet without gravity at rest, or drifting, is left alone", "[integ
       for (const double stretch : {10.0, 1e5}) {
         if (stretch > 10 && (is_explicit(name) || name == "cvode-adams" || name == "arkode-erk")) continue;
         for (const int newton : {1, 5}) {
+          if (newton > 1 && (order_of(name) == 0 || is_explicit(name))) continue;  // they know no such option
           const TriangleMesh mesh = grid(9, 9, 0.6, 0.6);
           System system(lumped_mass(mesh, 0.15));
           system.add(noh_jung(mesh, {.area_density = 0.15, .stretch = stretch, .bend = 1e-5}));
@@ -475,7 +476,7 @@ TEST_CASE("a sheet without gravity at rest, or drifting, is left alone", "[integ
           auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), options);
           INFO(name << ", " << speed << " m/s, " << stretch << " N/m, " << newton << " iterations");
           const double h = is_explicit(name) ? 0.002 : 0.01;
-          for (int n = 0; n < 30; ++n) {
+          for (int n = 0; n < 15; ++n) {
             const StepReport report = stepper->advance(state, h);
             INFO("step " << n << ": " << report.failure.what);
             REQUIRE(report.done);
@@ -486,7 +487,7 @@ TEST_CASE("a sheet without gravity at rest, or drifting, is left alone", "[integ
           }
           // Inner steps let vibrations grow to the tolerance of their positions.
           const double off = order_of(name) == 0 ? 1e-4 : 1e-9;
-          CHECK((state.x - start.x - 30 * h * start.v).cwiseAbs().maxCoeff() < 1e-3 * speed + off);
+          CHECK((state.x - start.x - 15 * h * start.v).cwiseAbs().maxCoeff() < 1e-3 * speed + off);
           if (order_of(name) != 0) CHECK((state.v - start.v).cwiseAbs().maxCoeff() < 1e-3 * speed + off);
         }
       }
