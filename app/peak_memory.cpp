@@ -25,12 +25,16 @@ bool set_peak_back() {
   return file.good();
 }
 
-}  // namespace
-
-PeakMemory::PeakMemory() {
+void give_back_freed_memory() {
 #if defined(__GLIBC__)
   malloc_trim(0);
 #endif
+}
+
+}  // namespace
+
+PeakMemory::PeakMemory() {
+  give_back_freed_memory();
   if (set_peak_back()) before_ = status("VmRSS");
 }
 
@@ -38,6 +42,13 @@ std::optional<double> PeakMemory::bytes() const {
   const std::optional<double> peak = status("VmHWM");
   if (!before_ || !peak) return {};
   return std::max(0.0, *peak - *before_);
+}
+
+std::optional<double> PeakMemory::kept() const {
+  give_back_freed_memory();
+  const std::optional<double> now = status("VmRSS");
+  if (!before_ || !now) return {};
+  return *now - *before_;
 }
 
 }  // namespace drape

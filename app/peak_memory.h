@@ -11,6 +11,7 @@ class PeakMemory {
  public:
   PeakMemory();                         // starts to watch
   std::optional<double> bytes() const;  // the highest rise since; empty: cannot be measured here
+  std::optional<double> kept() const;   // the rise that is still there; negative: less than there was
 
  private:
   std::optional<double> before_;  // bytes

@@ -161,6 +161,8 @@ void Run::record_step(const StepRow& row) {
   record_.steps = row.step;
   record_.step_ms.push_back(report.step_ms);
   record_.linear_iterations.push_back(report.linear_iterations);
+  record_.inner_steps.push_back(report.inner_steps);
+  record_.inner_rejected += report.inner_rejected;
   record_.assemble_ms += report.assemble_ms;
   record_.solve_ms += report.solve_ms;
   record_.collide_ms += report.collide_ms;

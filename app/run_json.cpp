@@ -27,7 +27,8 @@ Json failure_json(const Failure& f) {
 
 std::string run_json(const RunRecord& record) {
   const Distribution step_ms = distribution(record.step_ms),
-                     iterations = distribution(record.linear_iterations);
+                     iterations = distribution(record.linear_iterations),
+                     inner_steps = distribution(record.inner_steps);
   Json::Members json = {
       {"drape_version", DRAPE_VERSION},
       {"scene", record.scene},
@@ -57,6 +58,8 @@ std::string run_json(const RunRecord& record) {
       {"substeps_max", record.substeps_max},
       {"steps_cut", record.steps_cut},
       {"steps_not_converged", record.steps_not_converged},
+      {"inner_steps", Json::Members{{"mean", inner_steps.mean}, {"max", static_cast<long>(inner_steps.max)}}},
+      {"inner_rejected", record.inner_rejected},
       {"state_hash", record.state_hash},
       {"warnings", record.warnings},
   };

@@ -27,16 +27,6 @@ Vec3 tangential(const Contact& contact, const Vec3& v) {
   return v - Q * (Q.transpose() * v);
 }
 
-// The speed that the planes take from a particle of velocity v, besides what the forces give it.
-double impact_speed(const Contact& contact, const Vec3& v, double h) {
-  double speed = 0;
-  for (int k = 0; k < contact.planes; ++k) {
-    const ContactPlane& p = contact.plane[static_cast<std::size_t>(k)];
-    speed += std::max((p.body_velocity - v).dot(p.normal) - std::max(p.gap, 0.0) / h, 0.0);
-  }
-  return speed;
-}
-
 }  // namespace
 
 void Constraints::add(Obstacle obstacle) {
@@ -157,14 +147,27 @@ void Constraints::start_grip(Contact& contact, const Contact* before) const {
   contact.last_slip = tangential(contact, v_.segment<3>(3 * contact.particle) - contact.body_velocity());
   contact.slip = contact.last_slip;
   contact.grip = before ? before->grip : mu.statics == 0 ? Grip::slide : Grip::stick;
+  contact.arrival_impulse = arrival_impulse(contact);
   if (!before) return;
-  // As in the step before, where it was left without its impact, and the impact of this one.
-  const double mass = masses_[static_cast<std::size_t>(contact.particle)];
-  contact.normal_impulse =
-      before->normal_impulse + mass * impact_speed(contact, v_.segment<3>(3 * contact.particle), h_);
+  const double steady = std::max(0.0, before->normal_impulse - before->arrival_impulse) * h_ / last_h_;
+  contact.normal_impulse = steady + contact.arrival_impulse;
   if (before->grip != Grip::slide) return;
-  const Vec3 expected = 2 * contact.slip - before->last_slip;
+  const double arrived = (before->arrival_impulse - contact.arrival_impulse) * mu.kinetic /
+                         masses_[static_cast<std::size_t>(contact.particle)];
+  const Vec3 expected =
+      2 * contact.slip - before->last_slip + arrived / std::max(contact.slip.norm(), 1e-12) * contact.slip;
   if (expected.dot(contact.slip) > stop_fraction * contact.slip.squaredNorm()) contact.slip = expected;
+}
+
+// What stops the approach at the planes, whatever else pushes.
+double Constraints::arrival_impulse(const Contact& contact) const {
+  double speed = 0;
+  for (int k = 0; k < contact.planes; ++k) {
+    const ContactPlane& p = contact.plane[static_cast<std::size_t>(k)];
+    const Vec3 approach = p.body_velocity - v_.segment<3>(3 * contact.particle);
+    speed += std::max(0.0, approach.dot(p.normal) - std::max(p.gap, 0.0) / h_);
+  }
+  return masses_[static_cast<std::size_t>(contact.particle)] * speed;
 }
 
 void Constraints::filter(const VecX& v, Filter& filter) const {
@@ -311,10 +314,8 @@ ContactReport Constraints::end_step(VecX& x_new, VecX& v_new) {
     committed_of_[static_cast<std::size_t>(c.particle)] = static_cast<int>(committed_.size());
     committed_.push_back(c);
     if (c.grip == Grip::breaking_loose) committed_.back().grip = Grip::slide;
-    const double impact =
-        masses_[static_cast<std::size_t>(c.particle)] * impact_speed(c, v_.segment<3>(3 * c.particle), h_);
-    committed_.back().normal_impulse = std::max(c.normal_impulse - impact, 0.0);
   }
+  last_h_ = h_;
   report.contacts = static_cast<int>(committed_.size());
   return report;
 }

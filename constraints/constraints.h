@@ -72,6 +72,7 @@ class Constraints {
   void look_for_contact(int particle, std::vector<Contact>& found, double& deepest);
   void look_along_path(int particle, const Vec3& path, std::vector<Contact>& found);
   void start_grip(Contact& contact, const Contact* before) const;
+  double arrival_impulse(const Contact& contact) const;
   bool update_grip(Contact& contact, const VecX& v, const Vec3& r, double noise) const;
   void guard(int particle, VecX& x_new, VecX& v_new, int& guarded);
   void take_found();
@@ -85,6 +86,7 @@ class Constraints {
 
   // Scratch of the step under way.
   double h_ = 0, ahead_ = 0;    // s, of the step, and how far ahead contacts are foreseen
+  double last_h_ = 0;           // s, of the last completed step
   std::vector<double> masses_;  // kg
   VecX x_, v_, correction_;
   std::vector<char> held_;       // pinned, or without mass

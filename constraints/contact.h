@@ -11,7 +11,8 @@
 //   mu_k r.n against the
 //            sliding direction. While it slides the friction is the damper c = mu_k (r.n / h) / |v_T|, taken
 //            implicitly: it can stop the motion and never turn it round. In the step in which it comes loose,
-//            it is the impulse mu_k (r.n) r_T/|r_T|.
+//            it is the impulse mu_k (r.n) r_T/|r_T|. Before the first solve of a step r.n is that of the last
+//            step, its arrival impulse exchanged for the one of now: else an impact would rub twice.
 // r = A dv - b [N s]: the impulse of the constraint on the particle.           [Baraff & Witkin 1998,
 // section 5.2; Noh & Jung, 4]
 #pragma once
@@ -36,8 +37,9 @@ struct Contact {
   int planes = 0;                     // 1 to 3; 0: released in this step
   std::array<ContactPlane, 3> plane;  // deepest first
   Grip grip = Grip::stick;
-  int changes = 0;            // of the grip within this step
-  double normal_impulse = 0;  // N s, sum over the planes, of the last solve; between steps less its impact
+  int changes = 0;                       // of the grip within this step
+  double normal_impulse = 0;             // N s, the sum over the planes, of the last solve
+  double arrival_impulse = 0;            // N s, of it: what takes the approach away, m (target - v).n
   Vec3 friction_impulse = Vec3::Zero();  // N s, while breaking loose
   Vec3 slip = Vec3::Zero();  // m/s, tangential velocity against the body: expected at the end of this step
   Vec3 last_slip = Vec3::Zero();  // m/s, at the end of the step before

@@ -4,6 +4,7 @@
 
 #include "mesh/obj.h"
 #include "mesh/parallel.h"
+#include "solver/potential.h"
 #include "solver/stopwatch.h"
 
 namespace drape {
@@ -58,6 +59,7 @@ void Bdf::resize() {
   past_.h = 0;
   filter_.reserve(static_cast<std::size_t>(system_.particles()));
   rubbed_.reserve(static_cast<std::size_t>(system_.particles()));
+  friction_.reserve(static_cast<std::size_t>(system_.particles()));
 }
 
 bool Bdf::attempt(State& state, double h, bool whole, StepReport& report) {
@@ -88,7 +90,8 @@ bool Bdf::attempt(State& state, double h, bool whole, StepReport& report) {
     const Stiffness stiffness = full || k == 0 ? Stiffness::chord : Stiffness::majorant;
     linearise(state, stiffness, report);
     if (k > 0) {
-      if (full && nonlinear_residual() <= options_.newton_tolerance * weight_impulse_) break;
+      if (full && nonlinear_residual() <= options_.newton_tolerance * weight_impulse_ + round_off_impulse_)
+        break;
       guess_.setZero();
     }
     // Solve S (A dv - b) = 0 until the contacts agree with the solution.
@@ -130,8 +133,9 @@ bool Bdf::makes_energy(const State& state) const {
   const auto energy = [&](const VecX& x, const VecX& v) {
     return system_.elastic_energy(x) + system_.gravity_energy(x) + system_.kinetic_energy(v);
   };
-  return energy(x_, v_) >
-         energy(state.x, state.v) + 0.05 * fall_energy_ + 1e-3 * system_.kinetic_energy(state.v);
+  return energy(x_, v_) > energy(state.x, state.v) + 0.05 * fall_energy_ +
+                              1e-3 * system_.kinetic_energy(state.v) +
+                              RoundOff{round_off_energy_, 0}.energy(system_.elastic_energy(x_));
 }
 
 void Bdf::choose_coefficients(const State& state, double h, bool whole) {
@@ -175,6 +179,9 @@ void Bdf::linearise(const State& state, Stiffness stiffness, StepReport& report)
   y_ = x_bar_ + c_ * v_ - x_;
   const Stopwatch watch(report.assemble_ms);
   assemble(stiffness);
+  const RoundOff noise = round_off(*A_, x_, v_, c_);
+  round_off_energy_ = noise.least;
+  round_off_impulse_ = noise.impulse;
 }
 
 // Particles whose past says nothing of their future, because a body stopped them or may: see the header.
@@ -284,11 +291,21 @@ void Bdf::reaction() {
   A_->multiply(dv_rows_, r_rows_);
   r_rows_ -= b_rows_;
   to_particles(A_->pattern(), r_rows_, r_);
+  for (const Contact& c : constraints_.touching()) r_.segment<3>(3 * c.particle) /= row_scale(c.particle);
+}
+
+const std::vector<ContactFriction>& Bdf::friction() {
+  friction_ = constraints_.friction();
+  for (ContactFriction& f : friction_) {
+    f.damping *= row_scale(f.particle);
+    f.impulse *= row_scale(f.particle);
+  }
+  return friction_;
 }
 
 void Bdf::add_contact_friction() {
   rubbed_.clear();
-  for (const ContactFriction& f : constraints_.friction()) {
+  for (const ContactFriction& f : friction()) {
     const int slot = A_->pattern().diagonal(A_->pattern().row_of()[static_cast<std::size_t>(f.particle)]);
     const Vec3 slip = v_.segment<3>(3 * f.particle) - f.body_velocity;
     b_friction_.segment<3>(3 * f.particle) += f.impulse - h_ * (f.damping * slip);
@@ -343,7 +360,7 @@ std::string Bdf::stiffest_force(int particle) {
 // Phi(v), see the header.
 double Bdf::potential(const VecX& v) {
   x_new_ = x_bar_ + c_ * v;
-  double phi = sum_chunks(system_.particles(), [&](int begin, int end) {
+  const double inertia = sum_chunks(system_.particles(), [&](int begin, int end) {
     double sum = 0;
     for (int i = begin; i < end; ++i) {
       const Vec3 d =
@@ -352,12 +369,7 @@ double Bdf::potential(const VecX& v) {
     }
     return sum;
   });
-  for (const auto& force : system_.forces()) phi += force->energy(x_new_) + c_ * force->dissipation(x_, v);
-  for (const ContactFriction& f : constraints_.friction()) {
-    const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
-    phi += 0.5 * h_ * slip.dot(f.damping * slip) - f.impulse.dot(slip);
-  }
-  return phi;
+  return inertia + potential_of_forces(system_, friction(), x_new_, v, c_, h_);
 }
 
 // v <- v + dv when that lowers Phi, else as far towards it as does. True when the step was taken whole.
@@ -372,7 +384,8 @@ bool Bdf::descend(bool first) {
   v_ += dv_;
   const double start = potential(v_base_);
   // A tenth of the energy that the fall of one step brings: what a solve to its tolerance may leave.
-  const double allowed = start + 1e-9 * std::abs(start) + 0.05 * fall_energy_;
+  const double allowed =
+      start + 1e-9 * std::abs(start) + 0.05 * fall_energy_ + RoundOff{round_off_energy_, 0}.energy(start);
   for (int halvings = 0; halvings < 12; ++halvings) {
     if (potential(v_) <= allowed) return halvings == 0;
     v_ = 0.5 * (v_ + v_base_);

@@ -12,6 +12,7 @@
 //   that starts from standing still (v = 0). A full step that would raise Phi is cut short by halves, and
 //   iterations go on until a full one is good: so a step of order 1 makes no energy, however stiff the cloth.
 //                                                                [Nocedal & Wright 2006, section 3.1]
+//   What may be round-off is neither a rise of Phi nor a residual, see solver/potential.h.
 // Order 2 looks back over smooth motion only. Without a last step (the first one, a state that was changed
 // from outside, a failed step taken in halves, h more than doubled) the step is of order 1. A particle that
 // touches a body, or did in the last step, takes it with what is known of its present motion u alone:
@@ -71,6 +72,9 @@ class Bdf final : public Integrator {
   }
   // How long gravity acts in a row of the system: c, but for what restarts.
   double fall_time(int particle) const { return restarts(particle) ? h_ : c_; }
+  // What a row is multiplied with: an impulse J of the world stands there as row_scale J.
+  double row_scale(int particle) const { return restarts(particle) ? c_ / h_ : 1; }
+  const std::vector<ContactFriction>& friction();
   void reaction();
   bool good(const LinearReport& linear) const;
   bool fail(StepReport& report, const std::string& what, const LinearReport& linear);
@@ -94,9 +98,12 @@ class Bdf final : public Integrator {
   VecX x_, v_, x_bar_, v_bar_, y_, x_new_, v_new_, v_base_;  // particle order
   VecX guess_, b_, b_friction_, r_;                          // particle order
   VecX dv_rows_, b_rows_, r_rows_, dv_;                      // row order, but dv_
+  std::vector<ContactFriction> friction_;                    // as it stands in the rows
   std::vector<std::pair<int, Mat3>> rubbed_;  // diagonal blocks as they were before contact friction
   double weight_impulse_ = 0;                 // N s, h |m g|
   double fall_energy_ = 0;                    // J, sum of m (h g)^2
+  double round_off_energy_ = 0;               // J, N of solver/potential.h where it was linearised last
+  double round_off_impulse_ = 0;              // N s
 };
 
 // The step of Baraff & Witkin, order 1.

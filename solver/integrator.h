@@ -40,6 +40,7 @@ struct StepReport {
   StepFailure failure;        // when not done
   int substeps = 1;           // pieces the step was cut into, because it failed whole
   int inner_steps = 0;        // of the integrators that choose them
+  int inner_rejected = 0;     // inner steps tried in vain: too large an error, or no convergence
   int newton_iterations = 0;  // these summed over the substeps
   int linear_solves = 0;
   int linear_iterations = 0;

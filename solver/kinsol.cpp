@@ -2,15 +2,20 @@
 //   F(v) = S [ M (v - v_n) - h f(x_bar + h v, v) + friction ] = 0,   x_bar = x_n + correction,
 //   v = its target in the locked directions;   Newton's direction A dv = -F, A = M + h D + h^2 K of here;
 //   KINSOL looks along it for less |F|.                        [Dennis & Schnabel 1996, algorithm A6.3.1]
-// When the contacts do not agree with the solution, they change and KINSOL begins again from it. Should the
-// search along the line give up, it is tried again with stiffer K (chords, then the majorant); then the step
-// is halved. x [m], v [m/s], M [kg], f [N], h [s], F [N s].
+// |F| has false minima where edges go slack. Where that search ends in one, KINSOL goes on from there with
+// directions that are cut short by halves until they lower the incremental potential Phi(v) (solver/bdf.h),
+// of which F is the gradient. (By Phi from the start it takes longer: kinks keep its steps short.) The last
+// resort is the majorant K; then the step is halved.
+// When the contacts do not agree with the solution, they change and KINSOL begins again from it. x [m], v
+// [m/s], M [kg], f [N], h [s], F [N s].
 #include <kinsol/kinsol.h>
 #include <kinsol/kinsol_ls.h>
 
+#include <array>
 #include <cmath>
 
 #include "mesh/parallel.h"
+#include "solver/potential.h"
 #include "solver/stopwatch.h"
 #include "solver/sundials.h"
 #include "solver/sundials_integrators.h"
@@ -18,13 +23,19 @@
 namespace drape {
 namespace {
 
+// How Newton's direction is found and how far it is followed.
+struct Search {
+  int strategy = KIN_LINESEARCH;  // of KINSOL, by |F|; KIN_NONE: by Phi
+  Stiffness stiffness = Stiffness::tangent;
+};
+
 class NewtonKinsol final : public Integrator {
  public:
   NewtonKinsol(System& system, Constraints& constraints, std::unique_ptr<LinearSolver> solver,
                const StepOptions& options)
       : system_(system), constraints_(constraints), options_(options), newton_(system, std::move(solver)) {
     const Eigen::Index n = 3 * system.particles();
-    for (VecX* vector : {&x_, &x_bar_, &v_, &v_n_, &F_, &f_scale_, &one_, &dv_, &minus_F_, &r_})
+    for (VecX* vector : {&x_, &x_bar_, &v_, &v_n_, &v_here_, &F_, &f_scale_, &one_, &dv_, &minus_F_, &r_})
       vector->setZero(n);
     one_.setOnes();
     sundials::View u(v_, context_);
@@ -58,6 +69,10 @@ class NewtonKinsol final : public Integrator {
  private:
   bool attempt(State& state, double h);
   bool solve();
+  int iterate(double wanted, double& norm);
+  double step_length(const VecX& v, const VecX& dv, double slope);
+  double potential(const VecX& v);
+  void assemble(const VecX& v);
   void equation(const VecX& v);
   int residual(N_Vector v, N_Vector F);
   int set_up(N_Vector v);
@@ -74,9 +89,11 @@ class NewtonKinsol final : public Integrator {
   StepReport report_;
   Filter filter_, held_;  // of the velocity at the start of the solve; the same with z = 0
   std::vector<ContactFriction> friction_;
-  Stiffness stiffness_ = Stiffness::tangent;
+  Search search_;
   double h_ = 0, scale_ = 0;  // s, N s
-  VecX x_, x_bar_, v_, v_n_, F_, f_scale_, one_, dv_, minus_F_, r_;
+  RoundOff noise_;            // where A was assembled last
+  bool solved_ = false;       // the last equation, to its tolerance
+  VecX x_, x_bar_, v_, v_n_, v_here_, F_, f_scale_, one_, dv_, minus_F_, r_;
 };
 
 StepReport NewtonKinsol::advance(State& state, double h) {
@@ -145,6 +162,7 @@ bool NewtonKinsol::attempt(State& state, double h) {
     if (constraints_.check_paths(x_)) changed = true;
     if (!changed) break;
   }
+  report_.converged = report_.converged && solved_;
   x_ = x_bar_ + h * v_;
   if (!x_.allFinite()) return fail("the new positions are not finite numbers");
   end_step(constraints_, x_, v_, report_);
@@ -157,32 +175,69 @@ bool NewtonKinsol::attempt(State& state, double h) {
 bool NewtonKinsol::solve() {
   held_.clear();
   for (const FilterEntry& e : filter_.entries()) held_.constrain(e.particle, e.S, Vec3::Zero());
-  const sundials::View u(v_, context_), one(one_, context_), scale(f_scale_, context_);
-  KINSetFuncNormTol(kinsol_, std::max(options_.newton_tolerance, 1e-15));
-  KINSetScaledStepTol(kinsol_, 1e-14);
-  KINSetNumMaxIters(kinsol_, std::max(options_.newton_iterations, 50));
-  KINSetMaxNewtonStep(kinsol_, 1e6 * std::sqrt(static_cast<double>(v_.size())));
   const VecX start = v_;
-  const double wanted = std::max(options_.newton_tolerance, 1e-7);
+  assemble(start);
+  const double wanted = std::max({options_.newton_tolerance, 1e-15, noise_.impulse / scale_});
   int flag = KIN_SUCCESS;
   double norm = 0;
-  for (const Stiffness stiffness : {Stiffness::tangent, Stiffness::chord, Stiffness::majorant}) {
-    stiffness_ = stiffness;
-    flag = KINSol(kinsol_, u, KIN_LINESEARCH, one, scale);
-    long iterations = 0;
-    KINGetNumNonlinSolvIters(kinsol_, &iterations);
-    report_.newton_iterations += static_cast<int>(iterations);
-    KINGetFuncNorm(kinsol_, &norm);
+  constexpr std::array<Search, 3> searches = {{{KIN_LINESEARCH, Stiffness::tangent},
+                                               {KIN_NONE, Stiffness::tangent},
+                                               {KIN_NONE, Stiffness::majorant}}};
+  for (const Search& search : searches) {
+    search_ = search;
+    flag = iterate(wanted, norm);
     if (v_.allFinite() && norm <= wanted) break;
     ++report_.rescues;
     if (!v_.allFinite()) v_ = start;
   }
   report_.residual = norm;
-  if (v_.allFinite() && (flag >= 0 || norm <= wanted)) {  // or its steps have shrunk to nothing
-    report_.converged = report_.converged && norm <= wanted;
-    return true;
-  }
+  solved_ = norm <= wanted;
+  if (v_.allFinite() && (flag >= 0 || solved_)) return true;  // or its steps have shrunk to nothing
   return fail("KINSOL: " + sundials::taken(KINGetReturnFlagName(flag)) + "; a shorter time step may help");
+}
+
+// KINSOL stops by the largest component of F; what counts here is |F|, so it may have to go on.
+int NewtonKinsol::iterate(double wanted, double& norm) {
+  const sundials::View u(v_, context_), one(one_, context_), scale(f_scale_, context_);
+  KINSetScaledStepTol(kinsol_, 1e-14);
+  KINSetNumMaxIters(kinsol_, std::max(options_.newton_iterations, 50));
+  KINSetMaxNewtonStep(kinsol_, 1e6 * std::sqrt(static_cast<double>(v_.size())));
+  int flag = KIN_SUCCESS;
+  double largest = wanted;
+  for (int k = 0; k < 4 && flag >= 0; ++k) {
+    KINSetFuncNormTol(kinsol_, largest);
+    flag = KINSol(kinsol_, u, search_.strategy, one, scale);
+    long iterations = 0;
+    KINGetNumNonlinSolvIters(kinsol_, &iterations);
+    report_.newton_iterations += static_cast<int>(iterations);
+    KINGetFuncNorm(kinsol_, &norm);
+    if (norm <= wanted || flag == KIN_STEP_LT_STPTOL) break;
+    largest *= 0.5 * wanted / norm;
+  }
+  return flag;
+}
+
+// How much of the direction lowers Phi enough.                        [Nocedal & Wright 2006, section 3.1]
+double NewtonKinsol::step_length(const VecX& v, const VecX& dv, double slope) {
+  if (search_.strategy != KIN_NONE) return 1;  // KINSOL does it
+  const double start = potential(v), allowed = start + noise_.energy(start);
+  double length = 1;
+  for (int halvings = 0; halvings < 20; ++halvings, length *= 0.5)
+    if (potential(v + length * dv) <= allowed + 1e-4 * length * slope) return length;
+  return length;
+}
+
+double NewtonKinsol::potential(const VecX& v) {
+  x_ = x_bar_ + h_ * v;
+  const double inertia = sum_chunks(system_.particles(), [&](int begin, int end) {
+    double sum = 0;
+    for (int i = begin; i < end; ++i)
+      sum +=
+          0.5 * system_.masses()[static_cast<std::size_t>(i)] *
+          (v.segment<3>(3 * i) - v_n_.segment<3>(3 * i) - h_ * system_.gravity_acceleration()).squaredNorm();
+    return sum;
+  });
+  return inertia + potential_of_forces(system_, friction_, x_, v, h_, h_);
 }
 
 // F = M (v - v_n) - h f(x_bar + h v, v) + friction, not filtered.
@@ -213,12 +268,17 @@ int NewtonKinsol::residual(N_Vector v, N_Vector F) {
 
 // A at v.
 int NewtonKinsol::set_up(N_Vector v) {
-  const Stopwatch watch(report_.assemble_ms);
-  dv_ = sundials::numbers(v);
-  x_ = x_bar_ + h_ * dv_;
-  newton_.assemble(x_, dv_, dv_, h_, stiffness_);
-  for (const ContactFriction& f : friction_) newton_.add_to_diagonal(f.particle, h_ * f.damping);
+  v_here_ = sundials::numbers(v);
+  assemble(v_here_);
   return 0;
+}
+
+void NewtonKinsol::assemble(const VecX& v) {
+  const Stopwatch watch(report_.assemble_ms);
+  x_ = x_bar_ + h_ * v;
+  newton_.assemble(x_, v, v, h_, search_.stiffness);
+  for (const ContactFriction& f : friction_) newton_.add_to_diagonal(f.particle, h_ * f.damping);
+  noise_ = round_off(newton_.matrix(), x_, v, h_);
 }
 
 int NewtonKinsol::solve_linear(N_Vector dv, N_Vector minus_F) {
@@ -233,6 +293,7 @@ int NewtonKinsol::solve_linear(N_Vector dv, N_Vector minus_F) {
   ++report_.linear_solves;
   report_.linear_iterations += linear.iterations;
   if (linear.reason == StopReason::indefinite || linear.reason == StopReason::not_finite) return -1;
+  dv_ *= step_length(v_here_, dv_, -dot(minus_F_, dv_));
   sundials::numbers(dv) = dv_;
   return 0;
 }

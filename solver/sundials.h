@@ -84,6 +84,7 @@ class Newton {
     A_->at(A_->pattern().diagonal(A_->pattern().row_of()[static_cast<std::size_t>(particle)])) += block;
   }
   const VecX& right_side() const { return b_; }
+  const BlockMatrix& matrix() const { return *A_; }
 
   // A dv = b; dv: in, the guess.
   LinearReport solve(const VecX& b, const Filter& filter, const LinearOptions& options, VecX& dv) {

@@ -62,11 +62,11 @@ class SundialsOde final : public Integrator {
   SUNLinearSolver linear_ = nullptr;
   SUNNonlinearSolver fixed_point_ = nullptr;
   StepReport report_;
-  double time_ = 0;     // s, of SUNDIALS
-  bool going_ = false;  // it stands at the end of the last step
-  Filter held_;         // in the last step
-  long steps_ = 0, rounds_ = 0;
-  VecX y_, x_, v_, a_, f_, b_, dv_;  // y = (x, v)
+  double time_ = 0;                             // s, of SUNDIALS
+  bool going_ = false;                          // it stands at the end of the last step
+  Filter held_;                                 // in the last step
+  long steps_ = 0, rounds_ = 0, rejected_ = 0;  // of SUNDIALS, up to the last step
+  VecX y_, x_, v_, a_, f_, b_, dv_;             // y = (x, v)
 };
 
 SundialsOde::SundialsOde(std::string_view name, System& system, Constraints& constraints,
@@ -167,7 +167,7 @@ void SundialsOde::take_up(const State& state) {
   time_ = 0;
   if (cvode_) {
     CVodeReInit(memory_, 0, y);
-    steps_ = rounds_ = 0;
+    steps_ = rounds_ = rejected_ = 0;
   } else {
     ARKStepReset(memory_, 0, y);
   }
@@ -186,18 +186,26 @@ int SundialsOde::run(double until) {
 }
 
 void SundialsOde::count() {
-  long steps = 0, rounds = 0;
+  long steps = 0, rounds = 0, rejected = 0;
   if (cvode_) {
+    long not_solved = 0;
     CVodeGetNumSteps(memory_, &steps);
+    CVodeGetNumErrTestFails(memory_, &rejected);
+    CVodeGetNumStepSolveFails(memory_, &not_solved);
+    rejected += not_solved;
     CVodeGetNumNonlinSolvIters(memory_, &rounds);
   } else {
     ARKStepGetNumSteps(memory_, &steps);
+    ARKStepGetNumStepAttempts(memory_, &rejected);
+    rejected -= steps;
     if (implicit_) ARKStepGetNumNonlinSolvIters(memory_, &rounds);
   }
   report_.inner_steps = static_cast<int>(steps - steps_);
   report_.newton_iterations = static_cast<int>(rounds - rounds_);
+  report_.inner_rejected = static_cast<int>(rejected - rejected_);
   steps_ = steps;
   rounds_ = rounds;
+  rejected_ = rejected;
 }
 
 bool SundialsOde::same_held(const Filter& held) const {

@@ -3,8 +3,10 @@
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "tests/folder.h"
 
@@ -34,5 +36,43 @@ struct Desk : Folder {
 
   std::string out, err;
 };
+
+// The cells of one line of CSV.
+inline std::vector<std::string> cells(const std::string& line) {
+  std::vector<std::string> all(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      all.emplace_back();
+    else
+      all.back() += c;
+  }
+  return all;
+}
+
+// A CSV file holds what the rows of compare.json do.
+inline void check_same_table(const std::string& text, const JsonValue& rows) {
+  std::istringstream csv(text);
+  std::string line;
+  std::getline(csv, line);
+  const std::vector<std::string> header = cells(line);
+  for (const JsonValue& row : rows) {
+    REQUIRE(std::getline(csv, line));
+    const std::vector<std::string> found = cells(line);
+    REQUIRE(found.size() == header.size());
+    for (std::size_t k = 0; k < header.size(); ++k) {
+      INFO(header[k]);
+      REQUIRE(row.contains(header[k]));
+      const JsonValue& value = row[header[k]];
+      if (value.is_string()) CHECK(found[k] == value.get<std::string>());
+      if (value.is_boolean()) CHECK(found[k] == (value.get<bool>() ? "1" : "0"));
+      if (value.is_number()) CHECK(std::stod(found[k]) == Approx(value.get<double>()));
+      if (value.is_null()) CHECK(found[k].empty());
+    }
+  }
+  CHECK_FALSE(std::getline(csv, line));
+}
 
 }  // namespace drape::test

@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 #include <string>
 
 #include "mesh/generate.h"
 #include "mesh/obj.h"
+#include "solver/integrator.h"
 #include "tests/folder.h"
 
 using namespace drape;
@@ -73,6 +75,56 @@ TEST_CASE("a scene is simulated and everything is written", "[cli]") {
   CHECK(lines_of(content(shop.path / "o/steps.csv")) == 31);
   CHECK(fs::file_size(shop.path / "o/sheet.pc2") == 32 + 8 * 169 * 12);  // 0, 0.04 ... 0.28 s
   CHECK(read_obj(shop.path / "o/sheet.obj").vertex_count() == 169);
+}
+
+namespace {
+
+// The numbers of one column of a CSV file; empty when there is no such column.
+std::vector<double> column(const std::string& text, const std::string& name) {
+  std::istringstream lines(text);
+  std::vector<double> values;
+  long wanted = -1;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream cells(line);
+    long k = 0;
+    for (std::string cell; std::getline(cells, cell, ','); ++k)
+      if (values.empty() && cell == name)
+        wanted = k;
+      else if (k == wanted)
+        values.push_back(std::stod(cell));
+  }
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("inner steps are in steps.csv and run.json", "[cli]") {
+  const Workshop shop;
+  double in_vain = 0;
+  for (const IntegratorInfo& integrator : integrators()) {
+    const bool adaptive = integrator.name.starts_with("cvode-") || integrator.name.starts_with("arkode-");
+    if (!adaptive && integrator.name != "implicit-euler") continue;
+    INFO(integrator.name);
+    const std::string words = "simulate s.toml --out o --quiet --integrator " + std::string(integrator.name) +
+                              " --set cloth.0.stretch=20 cloth.0.bend=1e-6 cloth.0.translate=[0,-0.04,0] "
+                              "simulation.relative_tolerance=1e-5";
+    REQUIRE(shop.drape(words).exit_code == 0);
+    const std::string csv = content(shop.path / "o/steps.csv");
+    const std::vector<double> taken = column(csv, "inner_steps"), rejected = column(csv, "inner_rejected");
+    REQUIRE(taken.size() == 30);
+    REQUIRE(rejected.size() == 30);
+    const double sum = std::accumulate(taken.begin(), taken.end(), 0.0),
+                 vain = std::accumulate(rejected.begin(), rejected.end(), 0.0);
+    CHECK((*std::min_element(taken.begin(), taken.end()) >= 1) == adaptive);
+    if (!adaptive) CHECK(vain == 0);
+    in_vain += vain;
+    CHECK(vain < 0.5 * sum + 1);
+    const Json json = shop.json("o/run.json");
+    CHECK(json["inner_steps"]["mean"].get<double>() == Approx(sum / 30));
+    CHECK(json["inner_steps"]["max"] == *std::max_element(taken.begin(), taken.end()));
+    CHECK(json["inner_rejected"] == vain);
+  }
+  if (integrators().size() > 7) CHECK(in_vain > 0);  // the build has SUNDIALS
 }
 
 TEST_CASE("frames may be OBJ files or none, and only the last", "[cli]") {

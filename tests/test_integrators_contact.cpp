@@ -1,4 +1,5 @@
 // Constraints hold in every integrator of the build: pins, contact, friction; and the same bits everywhere.
+#include "app/simulation.h"
 #include "solver/held_motion.h"
 #include "tests/integrators.h"
 
@@ -75,6 +76,59 @@ TEST_CASE("a cloth is never inside a body and comes to rest, whatever the integr
       CHECK(contacts > (ball ? 5 : 100));
       CHECK(max_speed(drop.state) < (ball ? 0.03 : 0.005));
     }
+  }
+}
+
+TEST_CASE("pins hold and the floor does, in one cloth, whatever the integrator", "[integrators]") {
+  for (const std::string& name : integrator_names()) {
+    for (const double height : {0.01, 0.08}) {  // begins in contact within a step or two, or in flight
+      const TriangleMesh mesh = grid(9, 9, 0.3, 0.3);
+      System system(lumped_mass(mesh, 0.3));
+      system.add(noh_jung(mesh, {.area_density = 0.3, .stretch = 10, .bend = 1e-6, .damping = 0.01}));
+      system.add(Gravity{});
+      Constraints constraints;
+      constraints.add(Obstacle{.shape = Plane{{0, 0, 0}, {0, 1, 0}}, .friction = 0.3});
+      constraints.pin({0, 8});
+      State state = at_rest(mesh);
+      for (int i = 0; i < state.particles(); ++i) state.x[3 * i + 1] = height + 0.1 * (state.x[3 * i] + 0.15);
+      const State start = state;
+      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+      INFO(name << " from " << height << " m");
+      double lowest = 1;
+      int contacts = 0;
+      for (int n = 0; n < steps_for(name, 1); ++n) {
+        const StepReport report = stepper->advance(state, step_for(name));
+        INFO("step " << n << ": " << report.failure.what);
+        REQUIRE(report.done);
+        CHECK(report.penetration < 1e-9);
+        contacts = std::max(contacts, report.contacts);
+        for (int i = 0; i < state.particles(); ++i) lowest = std::min(lowest, state.x[3 * i + 1]);
+      }
+      CHECK(lowest > -1e-9);
+      CHECK(contacts > 30);
+      for (int i : {0, 8}) {
+        CHECK(state.x.segment<3>(3 * i) == start.x.segment<3>(3 * i));
+        CHECK(state.v.segment<3>(3 * i).norm() == 0);
+      }
+      CHECK(system.kinetic_energy(state.v) + system.elastic_energy(state.x) + system.gravity_energy(state.x) <
+            system.elastic_energy(start.x) + system.gravity_energy(start.x));
+    }
+  }
+}
+
+TEST_CASE("newton-kinsol solves its equation on crumpled cloth", "[integrators]") {
+  // A T-shirt on a body, where |F| alone has false minima in most steps.
+  const auto names = integrator_names();
+  if (std::find(names.begin(), names.end(), "newton-kinsol") == names.end()) return;
+  Simulation tee = make_simulation(read_scene(DRAPE_SOURCE_DIR "/data/scenes/tee.toml",
+                                              {parse_setting("simulation.integrator=newton-kinsol")}));
+  for (int n = 0; n < 10; ++n) {
+    const StepReport report = tee.integrator->advance(tee.state, 0.01);
+    INFO("step " << n << ": " << report.failure.what);
+    REQUIRE(report.done);
+    CHECK(report.converged);
+    CHECK(report.substeps == 1);
+    CHECK(report.residual <= 1e-6);
   }
 }
 
@@ -259,6 +313,38 @@ TEST_CASE("what is held during a step neither moves nor accelerates where it is 
   CHECK(std::abs(a[1]) < 1e-14);
   CHECK(a[0] > 1);
   CHECK(a.segment<3>(6).norm() == 0);
+}
+
+TEST_CASE("contact is of first order in the time step, whatever the integrator", "[integrators]") {
+  // A mass flies onto a plane, keeps what friction leaves of its speed, and slides on:
+  //   x = v t' + (v - mu g t')(T - t') - mu g (T - t')^2 / 2,  t': when it lands
+  const double mu = 0.2, g = 10, speed = 3, landing = 0.1, end = 0.3;
+  const double exact = speed * landing + (speed - mu * g * landing) * (end - landing) -
+                       0.5 * mu * g * (end - landing) * (end - landing);
+  for (const std::string& name : integrator_names()) {
+    std::vector<double> error;
+    for (const int steps :
+         {30, 90, 270}) {  // it lands at the same place within a step, a third before its end
+      const double h = landing / (steps / 3 + 2.0 / 3);
+      System system({0.1});
+      system.add(Gravity{{0, -g, 0}});
+      Constraints constraints;
+      constraints.add(Obstacle{.shape = Plane{}, .friction = mu, .margin = 0.001});
+      State state{0, VecX(Vec3(0, 0.001 + 0.5 * g * landing * landing, 0)), VecX(Vec3(speed, 0, 0))};
+      StepOptions options = precise();
+      options.relative_tolerance = options.absolute_tolerance_position = options.absolute_tolerance_velocity =
+          1e-10;
+      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), options);
+      const int whole = static_cast<int>(end / h);
+      for (int n = 0; n < whole; ++n) REQUIRE(stepper->advance(state, h).done);
+      if (end - whole * h > 1e-9) REQUIRE(stepper->advance(state, end - whole * h).done);
+      CHECK(state.x[1] == Approx(0.001).margin(1e-9));
+      error.push_back(std::abs(state.x[0] - exact));
+    }
+    INFO(name << ": " << error[0] << ", " << error[1] << ", " << error[2]);
+    CHECK(error[2] > 1e-6);
+    CHECK(std::log(error[1] / error[2]) / std::log(3) == Approx(1).margin(0.35));
+  }
 }
 
 TEST_CASE("every integrator gives the same bits with 1, 2 and 7 threads", "[integrators]") {

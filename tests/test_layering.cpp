@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,20 @@ std::vector<std::pair<std::string, std::string>> includes(const std::string& roo
     }
   }
   return all;
+}
+
+// The headers that a room's CMakeLists.txt installs, as "room/name.h".
+std::set<std::string> installed(const std::string& room) {
+  std::ostringstream text;
+  text << std::ifstream(fs::path(DRAPE_SOURCE_DIR) / room / "CMakeLists.txt").rdbuf();
+  const std::string all = text.str();
+  std::set<std::string> headers;
+  for (std::size_t at = all.find("install(FILES"); at != all.npos; at = all.find("install(FILES", at + 1)) {
+    std::istringstream words(all.substr(at, all.find(')', at) - at));
+    for (std::string word; words >> word && word != "DESTINATION";)
+      if (word.ends_with(".h")) headers.insert(room + "/" + word);
+  }
+  return headers;
 }
 
 }  // namespace
@@ -65,4 +81,33 @@ TEST_CASE("only Eigen shows in headers; every other library is in one source fil
     CHECK(files.size() == 1);
   }
   CHECK(users.size() >= 4);
+}
+
+TEST_CASE("an installed header needs the standard library, Eigen and other installed ones only",
+          "[layering]") {
+  std::set<std::string> public_headers = {"solver/drape.h"};  // installed by cmake/install.cmake
+  for (const std::string& room : rooms) public_headers.merge(installed(room));
+  CHECK(public_headers.size() > 15);
+  CHECK_FALSE(public_headers.contains("solver/sundials.h"));
+  int looked_at = 0;
+  for (const std::string& room : rooms)
+    for (const auto& [file, path] : includes(room)) {
+      if (!public_headers.contains(file)) continue;
+      ++looked_at;
+      INFO(file << " includes " << path);
+      const bool standard = path.find('/') == path.npos && path.find('.') == path.npos;
+      CHECK((standard || path.starts_with("Eigen/") || public_headers.contains(path)));
+    }
+  CHECK(looked_at > 50);
+}
+
+TEST_CASE("of the internal headers only solver/sundials.h shows a library besides Eigen", "[layering]") {
+  for (const std::string& room : rooms)
+    for (const auto& [file, path] : includes(room)) {
+      if (!file.ends_with(".h") || file == "solver/sundials.h") continue;
+      INFO(file << " includes " << path);
+      const std::string folder = path.substr(0, path.find('/'));
+      const bool ours = level(folder) < rooms.size() || path == "immintrin.h";  // the compiler's
+      CHECK((ours || path.starts_with("Eigen/") || path.find('.') == path.npos));
+    }
 }

@@ -42,8 +42,7 @@ struct SolverRow {
   double setup_ms = 0;   // median of the repeats, the solver's word
   double solve_ms = 0;   // median of the repeats, the rest of the wall time
   double total_ms() const { return setup_ms + solve_ms; }
-  bool first_solve = false;          // of all that this solver did
-  std::optional<double> peak_bytes;  // of the first solve; empty there: could not be measured
+  std::optional<double> peak_bytes;  // of set-up and all solves so far; empty: could not be measured
   bool finite = true;                // all of dv
   std::string failure;               // what the solver threw; empty: nothing
   bool most_accurate = false;
@@ -66,7 +65,7 @@ struct IntegratorRow {
   std::string failure;   // empty: it reached the end
   double end = 0;        // s, how far it came
   int steps = 0, steps_cut = 0, steps_not_converged = 0;
-  long linear_iterations = 0;
+  long linear_iterations = 0, inner_steps = 0, inner_rejected = 0;
   double wall_ms = 0;
   double energy_drift = 0;  // J, kinetic + elastic + gravity, end less start
   bool reference = false;

@@ -42,7 +42,8 @@ Json::Members members_of(const SolverRow& row) {
           {"note", report.note}};
 }
 
-Json json_of(const IntegratorRow& row) {
+// One run, keys as in compare-integrators.csv.
+Json::Members members_of(const IntegratorRow& row, const Comparison& comparison) {
   return Json::Members{{"integrator", row.integrator},
                        {"time_step", row.time_step},
                        {"solver", row.solver},
@@ -60,7 +61,10 @@ Json json_of(const IntegratorRow& row) {
                        {"energy_error", optional_json(row.energy_error)},
                        {"same_run_distance", optional_json(row.same_run_distance)},
                        {"reference", row.reference},
-                       {"differs_by", name(row.differs_by)}};
+                       {"differs_by", name(row.differs_by)},
+                       {"inner_steps", row.inner_steps},
+                       {"inner_rejected", row.inner_rejected},
+                       {"verdict", verdict_of(row, comparison)}};
 }
 
 // As RFC 4180: quoted when it must be.
@@ -76,6 +80,19 @@ std::string csv_cell(const Json& json) {
   return quoted + "\"";
 }
 
+std::string csv_header(const Json::Members& members) {
+  std::string line;
+  for (const auto& [key, value] : members) line += (line.empty() ? "" : ",") + key;
+  return line + "\n";
+}
+
+std::string csv_line(const Json::Members& members) {
+  std::string line;
+  for (const auto& [key, value] : members) line += csv_cell(value) + ",";
+  line.back() = '\n';
+  return line;
+}
+
 }  // namespace
 
 std::string compare_json(const Comparison& c) {
@@ -85,7 +102,7 @@ std::string compare_json(const Comparison& c) {
     members.emplace_back("history", row.history);
     rows.emplace_back(std::move(members));
   }
-  for (const IntegratorRow& run : c.runs) runs.push_back(json_of(run));
+  for (const IntegratorRow& run : c.runs) runs.emplace_back(members_of(run, c));
   for (const Growth& g : c.growth)
     growth.emplace_back(Json::Members{{"solver", g.solver},
                                       {"time_exponent", g.time},
@@ -112,15 +129,14 @@ std::string compare_json(const Comparison& c) {
 }
 
 std::string compare_csv(const Comparison& comparison) {
-  std::string text;
-  for (const auto& [key, value] : members_of(SolverRow())) text += (text.empty() ? "" : ",") + key;
-  text += "\n";
-  for (const SolverRow& row : comparison.rows) {
-    std::string line;
-    for (const auto& [key, value] : members_of(row)) line += csv_cell(value) + ",";
-    line.back() = '\n';
-    text += line;
-  }
+  std::string text = csv_header(members_of(SolverRow()));
+  for (const SolverRow& row : comparison.rows) text += csv_line(members_of(row));
+  return text;
+}
+
+std::string integrators_csv(const Comparison& comparison) {
+  std::string text = csv_header(members_of(IntegratorRow(), comparison));
+  for (const IntegratorRow& run : comparison.runs) text += csv_line(members_of(run, comparison));
   return text;
 }
 
@@ -136,6 +152,7 @@ void CompareFiles::write(const Comparison& comparison) {
   };
   add("compare.json", compare_json(comparison));
   add("compare.csv", compare_csv(comparison));
+  add("compare-integrators.csv", integrators_csv(comparison));
   add("compare.html", compare_html(comparison));
   for (AtomicFile& file : files) {
     file.keep();

@@ -1,4 +1,4 @@
-// compare.json, compare.csv and compare.html: all three or none.
+// compare.json, compare.csv (solvers), compare-integrators.csv and compare.html: all or none.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,8 @@
 namespace drape {
 
 std::string compare_json(const Comparison& comparison);
-std::string compare_csv(const Comparison& comparison);
+std::string compare_csv(const Comparison& comparison);      // a row for each solver and system
+std::string integrators_csv(const Comparison& comparison);  // a row for each run; none without --integrators
 
 class CompareFiles {
  public:

@@ -41,6 +41,8 @@ bool step(Simulation& simulation, IntegratorRow& row, double h) {
   row.steps_cut += report.substeps > 1 ? 1 : 0;
   row.steps_not_converged += report.converged ? 0 : 1;
   row.linear_iterations += report.linear_iterations;
+  row.inner_steps += report.inner_steps;
+  row.inner_rejected += report.inner_rejected;
   return true;
 }
 

@@ -74,7 +74,8 @@ double constraint_violation(const LinearSystem& system, const VecX& dv) {
   for (const FilterEntry& e : system.filter.entries()) {
     const Vec3 own = dv.segment<3>(3 * e.particle);
     const double violation = (own - e.S * own - e.z).norm();
-    if (!(violation <= worst)) worst = violation;  // not a number counts as worst
+    if (std::isnan(violation)) return violation;  // the worst
+    worst = std::max(worst, violation);
   }
   return worst;
 }
@@ -83,22 +84,18 @@ SolverBench::SolverBench(const std::vector<SolverChoice>& choices, double tolera
                          std::string where)
     : tolerance_(tolerance), repeats_(repeats), where_(std::move(where)) {
   for (const SolverChoice& choice : choices)
-    entries_.push_back({choice, make_linear_solver(choice.name), true, {}});
+    entries_.push_back({choice, make_linear_solver(choice.name), {}, 0, {}});
 }
 
 // The first call at this step: its result counts.
 void SolverBench::solve_first(Entry& entry, const LinearSystem& system, LinearOptions options,
                               SolverRow& row) const {
-  std::optional<PeakMemory> memory;
-  if (entry.fresh) memory.emplace();
   options.history = &row.history;
   entry.dv = system.guess;
   {
     const Stopwatch watch(row.first_ms);
     row.report = entry.solver->solve(system.A, system.b, system.filter, options, entry.dv);
   }
-  row.first_solve = std::exchange(entry.fresh, false);
-  if (memory) row.peak_bytes = memory->bytes();
 }
 
 void SolverBench::time_repeats(Entry& entry, const LinearSystem& system, const LinearOptions& options,
@@ -119,6 +116,19 @@ void SolverBench::time_repeats(Entry& entry, const LinearSystem& system, const L
   row.solve_ms = distribution(solve).median;
 }
 
+// The first call and the repeats, and the memory that the solver has taken so far: what rose now above what
+// it had kept from the steps before, when other solvers had their turn.
+void SolverBench::solve_all(Entry& entry, const LinearSystem& system, const LinearOptions& options,
+                            SolverRow& row) const {
+  const PeakMemory memory;
+  solve_first(entry, system, options, row);
+  row.finite = entry.dv.allFinite();
+  if (row.finite) time_repeats(entry, system, options, row);
+  if (const auto rise = memory.bytes())
+    entry.peak_bytes = std::max(entry.peak_bytes.value_or(0), entry.kept_bytes + *rise);
+  entry.kept_bytes += memory.kept().value_or(0);
+}
+
 SolverRow SolverBench::measure(Entry& entry, const LinearSystem& system, double reference) const {
   SolverRow row;
   row.solver = entry.choice.text;
@@ -126,13 +136,12 @@ SolverRow SolverBench::measure(Entry& entry, const LinearSystem& system, double 
   // The last solve of a step may have been asked for less, when contacts were still being looked for.
   options.tolerance = row.tolerance = entry.choice.tolerance.value_or(tolerance_);
   try {
-    solve_first(entry, system, options, row);
-    row.finite = entry.dv.allFinite();
-    if (row.finite) time_repeats(entry, system, options, row);
+    solve_all(entry, system, options, row);
   } catch (const std::exception& error) {  // such as not enough memory: the other solvers go on
     row.finite = false;
     row.failure = one_line(error.what());
   }
+  row.peak_bytes = entry.peak_bytes;
   const double impulse = true_residual(system, entry.dv);
   row.residual = reference > 0 ? impulse / reference : impulse;
   row.violation = constraint_violation(system, entry.dv);

@@ -35,10 +35,13 @@ class SolverBench {
   struct Entry {
     SolverChoice choice;
     std::unique_ptr<LinearSolver> solver;
-    bool fresh = true;
     VecX dv;
+    double kept_bytes = 0;             // of all its solves
+    std::optional<double> peak_bytes;  // of its set-up and all its solves
   };
   SolverRow measure(Entry& entry, const LinearSystem& system, double reference) const;
+  void solve_all(Entry& entry, const LinearSystem& system, const LinearOptions& options,
+                 SolverRow& row) const;
   void solve_first(Entry& entry, const LinearSystem& system, LinearOptions options, SolverRow& row) const;
   void time_repeats(Entry& entry, const LinearSystem& system, const LinearOptions& options,
                     SolverRow& row) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace drape {
 namespace {
@@ -13,8 +14,7 @@ std::string optional_number(const std::optional<double>& value, int digits) {
 std::string milliseconds(double ms) { return ms < 1000 ? rounded(ms, 3) : std::to_string(std::lround(ms)); }
 
 std::string memory(const SolverRow& row) {
-  if (row.peak_bytes) return rounded(*row.peak_bytes / 1e6, 3);
-  return row.first_solve ? "not measured" : "-";
+  return row.peak_bytes ? rounded(*row.peak_bytes / 1e6, 3) : "not measured";
 }
 
 Names row_of(const SolverRow& row) {
@@ -51,6 +51,10 @@ ReportTable table_of(std::vector<SolverRow>::const_iterator first,
   return table;
 }
 
+std::string name_of(const IntegratorRow& run) {
+  return run.integrator + " at " + rounded(run.time_step, 4) + " s with " + run.solver;
+}
+
 ReportTable table_of_runs(const Comparison& comparison) {
   ReportTable table;
   table.title = "integrators, " + rounded(comparison.run_duration, 4) + " s from the same start";
@@ -64,10 +68,8 @@ ReportTable table_of_runs(const Comparison& comparison) {
                           optional_number(row.same_run_distance, 2), rounded(row.energy_drift, 3),
                           optional_number(row.energy_error, 3), row.failure.empty() ? "done" : "failed",
                           std::string(name(row.differs_by))});
-    const std::string who = row.integrator + " at " + rounded(row.time_step, 4) + " s with " + row.solver;
+    const std::string who = name_of(row);
     if (row.reference) table.notes.push_back("the reference: " + who);
-    if (!row.failure.empty())
-      table.notes.push_back(who + " failed after " + rounded(row.end, 4) + " s: " + row.failure);
     if (row.steps_cut + row.steps_not_converged > 0)
       table.notes.push_back(who + ": " + counted(row.steps_cut, "step") + " taken in pieces, " +
                             std::to_string(row.steps_not_converged) + " not converged");
@@ -137,7 +139,9 @@ std::vector<ReportTable> tables_of(const Comparison& comparison) {
   return tables;
 }
 
-Names verdicts(const Comparison& comparison) {
+namespace {
+
+Names verdicts_of_solvers(const Comparison& comparison) {
   Names lines;
   for (const std::string& solver : comparison.solvers) {
     bool agrees = true, known = false;
@@ -152,12 +156,46 @@ Names verdicts(const Comparison& comparison) {
   return lines;
 }
 
+Names verdicts_of_runs(const Comparison& comparison) {
+  Names lines;
+  for (const IntegratorRow& run : comparison.runs)
+    lines.push_back(name_of(run) + ": " + verdict_of(run, comparison));
+  return lines;
+}
+
+}  // namespace
+
+Names verdicts(const Comparison& comparison) {
+  Names lines = verdicts_of_solvers(comparison);
+  for (std::string& line : verdicts_of_runs(comparison)) lines.push_back(std::move(line));
+  return lines;
+}
+
+std::string verdict_of(const IntegratorRow& run, const Comparison& comparison) {
+  if (!run.failure.empty()) return "failed after " + rounded(run.end, 4) + " s: " + run.failure;
+  if (run.differs_by == DiffersBy::nothing) return "the reference";
+  if (run.differs_by == DiffersBy::linear_algebra) {
+    const std::string same_run = " the same run with " + comparison.reference_solver;
+    if (!run.same_run_distance) return "differs by linear algebra only from" + same_run + ", which failed";
+    if (*run.same_run_distance == 0) return "no difference from" + same_run;
+    return "differs by linear algebra only: " + rounded(*run.same_run_distance, 2) + " m from" + same_run;
+  }
+  const auto reference = std::find_if(comparison.runs.begin(), comparison.runs.end(),
+                                      [](const IntegratorRow& other) { return other.reference; });
+  if (reference == comparison.runs.end() || !run.max_distance) return "there is no reference to differ from";
+  return "differs by time integration: " + rounded(*run.max_distance, 2) + " m from the reference (" +
+         name_of(*reference) + ")";
+}
+
 std::string text_of(const Comparison& comparison) {
   std::string text;
   for (const std::string& line : headline(comparison)) text += line + "\n";
   text += "\n";
   for (const ReportTable& table : tables_of(comparison)) text += aligned(table);
-  for (const std::string& line : verdicts(comparison)) text += line + "\n";
+  text += "solvers, given the same systems: what differs is linear algebra only\n";
+  for (const std::string& line : verdicts_of_solvers(comparison)) text += line + "\n";
+  if (!comparison.runs.empty()) text += "\nintegrators\n";
+  for (const std::string& line : verdicts_of_runs(comparison)) text += line + "\n";
   return text;
 }
 
