@@ -2,9 +2,10 @@
 // McCormick 2015]
 //   level: x = smooth down (r);  x += P V(P^T (r - A x));  x = smooth up (r, x);    next level: A_c = P^T A P
 // Our own, because it beat PETSc's GAMG on these matrices (tests/bench measures both): blocks of whole
-// vertices, kept in float, and threads that do not change a bit. The hierarchy is kept from step to
-// step while it still works: while the iterations stay within a third more than when it was new. Once they do
-// not, even in the middle of a solve, it is built anew. (Waiting longer, for as many iterations as a set-up
+// vertices, kept in float, and threads that do not change a bit. The finest level is made for every system:
+// it knows what is held. The coarser ones are kept from step to step while they still work: while the
+// iterations for a decade of the residual stay within a third more than when they were new. Once they do not,
+// even in the middle of a solve, they are built anew. (Waiting longer, for as many iterations as a set-up
 // takes time, was slower in every gallery scene.)
 #include <Eigen/Cholesky>
 #include <optional>
@@ -40,14 +41,15 @@ class Multigrid final : public Preconditioner {
 
   bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
     fallen_back_ = false;
-    reused_ = works_ && serial_ == A.pattern().serial();
-    if (reused_) return true;
+    reused_ = works_ && count_ > 1 && serial_ == A.pattern().serial();
     const ProjectedBlocks projected(A, filter);
     for (int r = 0; r < A.rows(); ++r)
       if (!positive_definite(projected.block(A.pattern().diagonal(r), r, r))) return false;
     if (serial_ != A.pattern().serial()) below_ = below_diagonal(A.pattern());
     serial_ = A.pattern().serial();
-    build(ProjectedRows(A, projected, below_), projected);
+    const ProjectedRows rows(A, projected, below_);
+    if (reused_) return levels_.front().smoother.build(rows), true;
+    build(rows, projected);
     ++report.analyses;
     works_ = !coarse_ || coarse_->info() == Eigen::Success;
     return works_;
