@@ -159,15 +159,26 @@ void Constraints::start_grip(Contact& contact, const Contact* before) const {
   if (expected.dot(contact.slip) > stop_fraction * contact.slip.squaredNorm()) contact.slip = expected;
 }
 
-// What stops the approach at the planes, whatever else pushes.
-double Constraints::arrival_impulse(const Contact& contact) const {
-  double speed = 0;
+std::array<double, 3> Constraints::normal_speeds(const Contact& contact) const {
+  std::array<double, 3> speeds = {};
   for (int k = 0; k < contact.planes; ++k) {
     const ContactPlane& p = contact.plane[static_cast<std::size_t>(k)];
-    const Vec3 approach = p.body_velocity - v_.segment<3>(3 * contact.particle);
-    speed += std::max(0.0, approach.dot(p.normal) - std::max(p.gap, 0.0) / h_);
+    speeds[static_cast<std::size_t>(k)] = p.body_velocity.dot(p.normal) - std::max(p.gap, 0.0) / h_;
   }
-  return masses_[static_cast<std::size_t>(contact.particle)] * speed;
+  return speeds;
+}
+
+// What stops the approach at the planes, whatever else pushes.
+double Constraints::arrival_impulse(const Contact& contact) const {
+  std::array<double, 3> change = normal_speeds(contact);
+  for (int k = 0; k < contact.planes; ++k)
+    change[static_cast<std::size_t>(k)] -=
+        v_.segment<3>(3 * contact.particle).dot(contact.plane[static_cast<std::size_t>(k)].normal);
+  const double mass = masses_[static_cast<std::size_t>(contact.particle)];
+  const std::array<double, 3> pushes = multipliers(contact, mass * along_planes(contact, change));
+  double sum = 0;
+  for (int k = 0; k < contact.planes; ++k) sum += std::max(pushes[static_cast<std::size_t>(k)], 0.0);
+  return sum;
 }
 
 void Constraints::filter(const VecX& v, Filter& filter) const {
@@ -176,12 +187,7 @@ void Constraints::filter(const VecX& v, Filter& filter) const {
     if (held(i)) filter.constrain(i, Mat3::Zero(), -v.segment<3>(3 * i));
   for (const Contact& c : trial_) {
     if (!c.active()) continue;
-    std::array<double, 3> target = {};
-    for (int k = 0; k < c.planes; ++k) {
-      const ContactPlane& p = c.plane[static_cast<std::size_t>(k)];
-      target[static_cast<std::size_t>(k)] = p.body_velocity.dot(p.normal) - std::max(p.gap, 0.0) / h_;
-    }
-    const Vec3 normal_part = along_planes(c, target);
+    const Vec3 normal_part = along_planes(c, normal_speeds(c));
     const Mat3 Q = c.locked_directions();
     const Mat3 S = Mat3::Identity() - Q * Q.transpose();
     const Vec3 now = v.segment<3>(3 * c.particle);
@@ -228,6 +234,7 @@ bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double n
     for (auto k = static_cast<int>(weakest); k + 1 < c.planes; ++k)
       c.plane[static_cast<std::size_t>(k)] = c.plane[static_cast<std::size_t>(k) + 1];
     --c.planes;
+    c.arrival_impulse = arrival_impulse(c);
     return true;
   }
   const Friction& mu = obstacles_[static_cast<std::size_t>(c.plane[0].obstacle)].friction;

@@ -72,6 +72,7 @@ class Constraints {
   void look_for_contact(int particle, std::vector<Contact>& found, double& deepest);
   void look_along_path(int particle, const Vec3& path, std::vector<Contact>& found);
   void start_grip(Contact& contact, const Contact* before) const;
+  std::array<double, 3> normal_speeds(const Contact& contact) const;  // m/s, at the end of the step
   double arrival_impulse(const Contact& contact) const;
   bool update_grip(Contact& contact, const VecX& v, const Vec3& r, double noise) const;
   void guard(int particle, VecX& x_new, VecX& v_new, int& guarded);

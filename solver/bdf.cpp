@@ -111,13 +111,7 @@ bool Bdf::attempt(State& state, double h, bool whole, StepReport& report) {
   }
   x_new_ = x_;
   v_new_ = v_;
-  {
-    const Stopwatch watch(report.collide_ms);
-    const ContactReport contact = constraints_.end_step(x_new_, v_new_);
-    report.contacts = contact.contacts;
-    report.guarded += contact.guarded;
-    report.penetration = std::max(report.penetration, contact.deepest);
-  }
+  end_step(constraints_, x_new_, v_new_, report);
   report.residual = std::max(report.residual, linear.residual);
   report.converged = report.converged && linear.reason == StopReason::converged;
   if (order_ == 2) remember(state, h);

@@ -176,13 +176,14 @@ bool NewtonKinsol::solve() {
   held_.clear();
   for (const FilterEntry& e : filter_.entries()) held_.constrain(e.particle, e.S, Vec3::Zero());
   const VecX start = v_;
+  constexpr std::array<Search, 3> searches = {{{KIN_LINESEARCH, Stiffness::tangent},
+                                               {KIN_NONE, Stiffness::tangent},
+                                               {KIN_NONE, Stiffness::majorant}}};
+  search_ = searches.front();
   assemble(start);
   const double wanted = std::max({options_.newton_tolerance, 1e-15, noise_.impulse / scale_});
   int flag = KIN_SUCCESS;
   double norm = 0;
-  constexpr std::array<Search, 3> searches = {{{KIN_LINESEARCH, Stiffness::tangent},
-                                               {KIN_NONE, Stiffness::tangent},
-                                               {KIN_NONE, Stiffness::majorant}}};
   for (const Search& search : searches) {
     search_ = search;
     flag = iterate(wanted, norm);

@@ -8,9 +8,11 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "constraints/constraints.h"
 #include "mesh/parallel.h"
+#include "solver/block_matrix.h"
 #include "solver/system.h"
 
 namespace drape {

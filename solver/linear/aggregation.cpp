@@ -1,5 +1,7 @@
 #include "solver/linear/aggregation.h"
 
+#include <cmath>
+
 #include "solver/linear/row_sum.h"
 
 namespace drape {

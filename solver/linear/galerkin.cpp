@@ -1,5 +1,7 @@
 #include "solver/linear/galerkin.h"
 
+#include <algorithm>
+
 #include "solver/linear/row_sum.h"
 
 namespace drape {
@@ -53,6 +55,7 @@ const SymmetricRows& Galerkin::coarse(const Smoother& A, const BlockRows& P, con
         float* to = chunk.add(column);
         block.store(to);
         if (column != i) return;
+        to[3] = to[1], to[6] = to[2], to[7] = to[5];
         const float trace = to[0] + to[4] + to[8];
         for (int e = 0; e < 9; e += 4) to[e] += trace > 0 ? 2e-7f * trace : 1;
       });

@@ -2,6 +2,7 @@
 //   With it a matrix of which only the upper triangle is stored is gone through whole, row by row.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace drape {

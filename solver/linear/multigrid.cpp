@@ -8,6 +8,10 @@
 // even in the middle of a solve, they are built anew. (Waiting longer, for as many iterations as a set-up
 // takes time, was slower in every gallery scene.)
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "solver/linear/aggregation.h"
@@ -42,17 +46,21 @@ class Multigrid final : public Preconditioner {
   bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
     fallen_back_ = false;
     reused_ = works_ && count_ > 1 && serial_ == A.pattern().serial();
+    works_ = false;  // until it stands
     const ProjectedBlocks projected(A, filter);
     for (int r = 0; r < A.rows(); ++r)
       if (!positive_definite(projected.block(A.pattern().diagonal(r), r, r))) return false;
     if (serial_ != A.pattern().serial()) below_ = below_diagonal(A.pattern());
     serial_ = A.pattern().serial();
     const ProjectedRows rows(A, projected, below_);
-    if (reused_) return levels_.front().smoother.build(rows), true;
-    build(rows, projected);
-    ++report.analyses;
-    works_ = !coarse_ || coarse_->info() == Eigen::Success;
-    return works_;
+    if (reused_) {
+      levels_.front().smoother.build(rows);
+    } else {
+      ++report.analyses;
+      if (!build(rows, projected)) return false;
+    }
+    works_ = true;
+    return true;
   }
 
   // It may be too old for this matrix; a new one, then none.
@@ -71,18 +79,21 @@ class Multigrid final : public Preconditioner {
   }
 
   bool outdated(int iterations, double decades) const override {
-    return reused_ && !fallen_back_ && 3 * iterations > 4 * rate_when_new_ * std::max(decades, 1.0) + 12;
+    return reused_ && !fallen_back_ && rate_when_new_ &&
+           3 * iterations > 4 * *rate_when_new_ * std::max(decades, 1.0) + 12;
   }
 
   void learn(int iterations, double decades) override {
     if (outdated(iterations, decades) || iterations > most_iterations) works_ = false;
-    if (!reused_) rate_when_new_ = iterations / std::max(decades, 1.0);
+    if (!reused_) rate_when_new_.reset();
+    if (!rate_when_new_ && decades >= 1) rate_when_new_ = iterations / decades;
   }
 
   void forget() override { works_ = false; }
 
  private:
-  void build(const ProjectedRows& A, const ProjectedBlocks& projected) {
+  // False: A is not positive definite.
+  bool build(const ProjectedRows& A, const ProjectedBlocks& projected) {
     count_ = 0;
     add_level(A);
     while (last().smoother.rows() > coarsest_rows && count_ < most_levels) {
@@ -93,7 +104,8 @@ class Multigrid final : public Preconditioner {
       transpose(fine.prolongation, columns, fine.restriction);
       add_level(galerkin_.coarse(fine.smoother, fine.prolongation, fine.restriction));
     }
-    factorise(last().smoother);
+    // Of a coarser matrix it says nothing about A that floats could not have done.
+    return factorise(last().smoother) || count_ > 1;
   }
 
   Level& last() { return levels_[static_cast<std::size_t>(count_) - 1]; }
@@ -103,15 +115,18 @@ class Multigrid final : public Preconditioner {
     last().build(A);
   }
 
-  void factorise(const Smoother& A) {
+  bool factorise(const Smoother& A) {
     coarse_.reset();
-    if (A.rows() > 8 * coarsest_rows) return;  // too large for a dense factor: smoothed only
+    if (A.rows() > 8 * coarsest_rows) return true;  // too large for a dense factor: smoothed only
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * A.rows(), 3 * A.rows());
     for (int r = 0; r < A.rows(); ++r)
       A.each(r, [&](int c, const auto* block) {
         for (int e = 0; e < 9; ++e) dense(3 * r + e % 3, 3 * c + e / 3) = block[e];
       });
     coarse_.emplace(dense);
+    if (coarse_->info() == Eigen::Success) return true;
+    coarse_.reset();
+    return false;
   }
 
   void cycle(int depth, const VecX& r, VecX& x) {
@@ -151,7 +166,7 @@ class Multigrid final : public Preconditioner {
   std::uint64_t serial_ = 0;
   bool works_ = false, reused_ = false, fallen_back_ = false;
   std::unique_ptr<Preconditioner> block_jacobi_ = make_block_jacobi();
-  double rate_when_new_ = 0;  // iterations a decade
+  std::optional<double> rate_when_new_;  // iterations a decade; unknown before a solve of at least one
 };
 
 }  // namespace

@@ -85,7 +85,8 @@ class Pcg final : public LinearSolver {
         if (broken && preconditioner_->make_safer(A, filter, report)) {
           begin_again(A, right, filter, x);
           rho = 1;
-          rr = dot(r_, r_);
+          rr = rr_ready = dot(r_, r_);
+          since_ready = 0;
           continue;
         }
         if (!(rho_new > 0)) {

@@ -146,8 +146,7 @@ class Petsc final : public LinearSolver {
 
   KSP ksp_ = nullptr;
   Mat matrix_ = nullptr, rows_ = nullptr;  // in blocks; the same in scalar rows
-  PetscReal threshold_[1] = {
-      -1};  // nothing dropped: 0.08, which suits our own, took fifteen times as long here
+  PetscReal threshold_[1] = {-1};          // nothing dropped: 0.08 took fifteen times as long
   std::uint64_t serial_ = 0;
   Mirror below_;
   std::vector<PetscInt> start_, column_;

@@ -1,7 +1,6 @@
 // One row of a sparse product in the making: which columns it has, and the sums of their blocks.
 #pragma once
 
-#include <algorithm>
 #include <vector>
 
 #include "solver/linear/sparse_rows.h"

@@ -12,7 +12,9 @@
 #pragma once
 
 #include <Eigen/LU>
+#include <algorithm>
 
+#include "solver/linear/projected_block.h"
 #include "solver/linear/sparse_rows.h"
 
 namespace drape {
@@ -62,15 +64,17 @@ void Smoother::build(const Rows& A) {
     BlockRows::Chunk &lower = lower_.open(begin, 8 * chunk_size), &upper = upper_.open(begin, 8 * chunk_size);
     for (int r = begin; r < end; ++r) {
       const int chunk = r / chunk_rows_, first = chunk * chunk_rows_, last = first + chunk_rows_;
-      Mat3 D = Mat3::Zero();
+      Mat3 own = Mat3::Zero(), lost = Mat3::Zero();
       A.each(r, [&](int c, const auto& block) {
         const Mat3 exact = block.template cast<double>();
-        if (c == r) return D += exact, void();
+        if (c == r) return own = exact, void();
         const bool before = first <= c && c < last ? c < r : chunk % 2 == 1;
         Eigen::Map<Eigen::Matrix3f> kept((before ? lower : upper).add(c));
         kept = exact.template cast<float>();
-        D += exact - kept.template cast<double>();
+        lost += exact - kept.template cast<double>();
       });
+      Mat3 D = own + 0.5 * (lost + lost.transpose());
+      if (!positive_definite(D)) D = own;
       Eigen::Map<Mat3>(diagonal_.data() + 9 * static_cast<std::ptrdiff_t>(r)) = D;
       Eigen::Map<Mat3>(inverse_.data() + 9 * static_cast<std::ptrdiff_t>(r)) = D.inverse();
       lower.end_row();

@@ -8,11 +8,9 @@
 #include <immintrin.h>
 #endif
 
-#include <algorithm>
 #include <vector>
 
 #include "mesh/parallel.h"
-#include "mesh/triangle_mesh.h"
 
 namespace drape {
 

@@ -7,6 +7,7 @@
 #ifdef DRAPE_HAVE_CHOLMOD
 #include <cholmod.h>
 #endif
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
