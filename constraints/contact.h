@@ -4,17 +4,16 @@
 //
 //   make     gap < 0, or the predicted path x -> x + h v meets the offset surface
 //   target   gap >= 0: arrive exactly on the surface, v.n = v_b.n - gap / h
-//            gap <  0: move with it, v.n = v_b.n, and come out by y.n = min(-gap, recovery speed x h)     [BW
-//            section 6]
+//            gap <  0: move with it, v.n = v_b.n, come out by y.n = min(-gap, recovery speed x h) [BW, 6]
 //   release  the constraint would pull: r.n < 0
-//   stick    |r_T| <= mu_s r.n: locked in all directions;   otherwise slide: locked along n, and rubbed by
-//   mu_k r.n against the
-//            sliding direction. While it slides the friction is the damper c = mu_k (r.n / h) / |v_T|, taken
+//   stick    |r_T| <= mu_s r.n: locked in all directions
+//   slide    otherwise: locked along n, and rubbed by mu_k r.n against the sliding direction. While it slides
+//   the friction is the damper c = mu_k (r.n / h) / |v_T|, taken
 //            implicitly: it can stop the motion and never turn it round. In the step in which it comes loose,
 //            it is the impulse mu_k (r.n) r_T/|r_T|. Before the first solve of a step r.n is that of the last
 //            step, its arrival impulse exchanged for the one of now: else an impact would rub twice.
-// r = A dv - b [N s]: the impulse of the constraint on the particle.           [Baraff & Witkin 1998,
-// section 5.2; Noh & Jung, 4]
+// r = A dv - b [N s]: the impulse of the constraint on the particle.
+//                                           [Baraff & Witkin 1998 (BW), section 5.2; Noh & Jung, 4]
 #pragma once
 
 #include <array>
@@ -39,7 +38,7 @@ struct Contact {
   Grip grip = Grip::stick;
   int changes = 0;                       // of the grip within this step
   double normal_impulse = 0;             // N s, the sum over the planes, of the last solve
-  double arrival_impulse = 0;            // N s, of it: what takes the approach away, m (target - v).n
+  double arrival_impulse = 0;            // N s, of it: what takes away the approach to the planes that hold
   Vec3 friction_impulse = Vec3::Zero();  // N s, while breaking loose
   Vec3 slip = Vec3::Zero();  // m/s, tangential velocity against the body: expected at the end of this step
   Vec3 last_slip = Vec3::Zero();  // m/s, at the end of the step before

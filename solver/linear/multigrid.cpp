@@ -1,5 +1,5 @@
-// A V-cycle of smoothed aggregation as preconditioner.     [Vanek, Mandel & Brezina 1996; Tamstorf, Jones &
-// McCormick 2015]
+// A V-cycle of smoothed aggregation as preconditioner.
+//                                      [Vanek, Mandel & Brezina 1996; Tamstorf, Jones & McCormick 2015]
 //   level: x = smooth down (r);  x += P V(P^T (r - A x));  x = smooth up (r, x);    next level: A_c = P^T A P
 // Our own, because it beat PETSc's GAMG on these matrices (tests/bench measures both): blocks of whole
 // vertices, kept in float, and threads that do not change a bit. The finest level is made for every system:

@@ -32,11 +32,9 @@ class Preconditioner {
 
 // The inverses of the 3x3 diagonal blocks.                                    [Baraff & Witkin 1998, 5.3]
 std::unique_ptr<Preconditioner> make_block_jacobi();
-// Incomplete Cholesky on the pattern's blocks, no fill.                       [Meijerink & van der Vorst
-// 1977]
+// Incomplete Cholesky on the pattern's blocks, no fill.              [Meijerink & van der Vorst 1977]
 std::unique_ptr<Preconditioner> make_block_ic0();
-// Smoothed aggregation over whole vertices, a V-cycle.    [Vanek, Mandel & Brezina 1996; Tamstorf et al.
-// 2015]
+// Smoothed aggregation, a V-cycle.            [Vanek, Mandel & Brezina 1996; Tamstorf et al. 2015]
 std::unique_ptr<Preconditioner> make_multigrid();
 
 // "block-jacobi", "block-ic0", "multigrid"; null for any other name.

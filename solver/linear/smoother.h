@@ -1,14 +1,13 @@
 // A matrix of a multigrid level in the three parts that Gauss-Seidel sweeps over, and its symmetric block
 // sweeps: one pass over the matrix on the way down, residual included, and one on the way up.
-//                                                                             [Briggs, Henson & McCormick
-//                                                                             2000]
 //   A = L + D + U:   down from x = 0:  (L + D) x = r,  r - A x = -U x;      up:  (D + U) x_new = r - L x
+//                                                              [Briggs, Henson & McCormick 2000]
 // Rows are cut into chunks at least as long as the bandwidth; all even chunks come before all odd ones, and
 // that order says what is L and what is U. Chunks of one kind do not touch each other, so they are swept side
 // by side, and the sweep up is the adjoint of the sweep down, whatever the number of threads.
-//   L and U are kept in float; what that takes from a row's sum goes to D, which stays in double: the mass of
-//   a
-// fine sheet's vertex is a millionth of its stiffness, and float alone would lose it.
+// L and U are kept in float; what that takes from a row's sum goes to D, which stays in double: the mass of a
+// fine sheet's vertex is a millionth of its stiffness, and float alone would lose it. (On the finest level:
+// coarser matrices come in float, and have more mass.)
 #pragma once
 
 #include <Eigen/LU>
