@@ -7,11 +7,11 @@
 //            gap <  0: move with it, v.n = v_b.n, come out by y.n = min(-gap, recovery speed x h) [BW, 6]
 //   release  the constraint would pull: r.n < 0
 //   stick    |r_T| <= mu_s r.n: locked in all directions
-//   slide    otherwise: locked along n, and rubbed by mu_k r.n against the sliding direction. While it slides
-//   the friction is the damper c = mu_k (r.n / h) / |v_T|, taken
-//            implicitly: it can stop the motion and never turn it round. In the step in which it comes loose,
-//            it is the impulse mu_k (r.n) r_T/|r_T|. Before the first solve of a step r.n is that of the last
-//            step, its arrival impulse exchanged for the one of now: else an impact would rub twice.
+//   slide    otherwise: locked along n, and rubbed by mu_k r.n against the sliding direction. The friction is
+//            the damper c = mu_k (r.n / h) / |v_T|, taken implicitly: it can stop the motion and never turn
+//            it round. In the step in which it comes loose, it is the impulse mu_k (r.n) r_T/|r_T|. Before
+//            the first solve of a step r.n is that of the last step, its arrival impulse exchanged for the
+//            one of now: else an impact would rub twice.
 // r = A dv - b [N s]: the impulse of the constraint on the particle.
 //                                           [Baraff & Witkin 1998 (BW), section 5.2; Noh & Jung, 4]
 #pragma once
