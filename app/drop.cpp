@@ -125,7 +125,11 @@ class DropScene {
   Scene make() {
     add_simulation();
     add_cloth();
-    if (!options_.onto.empty() || options_.floor) add_bodies();
+    if (!options_.onto.empty() || options_.floor)
+      add_bodies();
+    else if (options_.friction || options_.margin)
+      throw InputError(std::string(options_.friction ? "--friction" : "--margin") +
+                       ": there is nothing to touch; give --onto or --floor, too");
     return read_scene(root_, settings_, {}, label_);
   }
 

@@ -1,5 +1,8 @@
 #include "solver/explicit.h"
 
+#include <cmath>
+#include <numeric>
+
 #include "solver/stopwatch.h"
 
 namespace drape {
@@ -48,9 +51,40 @@ StepReport Explicit::advance(State& state, double h) {
     v_ += (h * tableau_.b[i]) * A_[i];
   }
   if (tableau_.positions_last) x_ += h * v_;
-  if (!motion_.finish(x_, v_, h, options_, state, report))
+  if (explodes(state, h)) {
+    report.done = false;
+    report.failure = explosion();
+  } else {
+    motion_.finish(x_, v_, h, options_, state, report);
+  }
+  if (!report.done)
     report.failure.what += "; an explicit method needs a shorter time step, or take an implicit one";
   return report;
+}
+
+// Beyond its limit a method multiplies the energy step by step. Long before the numbers end, what it gives is
+// no cloth any more. A force that sets in does it once, but no motion does it three times running.
+bool Explicit::explodes(const State& state, double h) {
+  const double mass = std::accumulate(system_.masses().begin(), system_.masses().end(), 0.0);
+  const double before =
+      system_.kinetic_energy(state.v) + mass * (h * system_.gravity_acceleration()).squaredNorm();
+  const double after = system_.kinetic_energy(v_);
+  const bool grown = std::isfinite(after) && after > 4 * before &&
+                     after + system_.elastic_energy(x_) > 4 * (before + system_.elastic_energy(state.x));
+  growths_ = grown ? growths_ + 1 : 0;
+  return growths_ >= 3;
+}
+
+// Which particle is the fastest, and which force holds most of the energy.
+StepFailure Explicit::explosion() const {
+  StepFailure failure{.what = "the energy grew fourfold in a step, three times running", .force = {}};
+  double fastest = -1, most = -1;
+  for (int i = 0; i < system_.particles(); ++i)
+    if (const double speed = v_.segment<3>(3 * i).squaredNorm(); speed > fastest)
+      fastest = speed, failure.particle = i;
+  for (const auto& force : system_.forces())
+    if (const double energy = force->energy(x_); energy > most) most = energy, failure.force = force->name();
+  return failure;
 }
 
 }  // namespace drape

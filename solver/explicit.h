@@ -35,12 +35,16 @@ class Explicit final : public Integrator {
   StepReport advance(State& state, double h) override;
 
  private:
+  bool explodes(const State& state, double h);  // from the state to x_, v_
+  StepFailure explosion() const;
+
   Tableau tableau_;
   System& system_;
   HeldMotion motion_;
   StepOptions options_;
   std::array<VecX, 4> V_, A_;
   VecX x_, v_;
+  int growths_ = 0;  // steps running in which the energy grew fourfold
 };
 
 }  // namespace drape

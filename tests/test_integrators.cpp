@@ -340,6 +340,7 @@ TEST_CASE("an explicit step that leaves the numbers is a failure that says what 
     }
     INFO(name);
     CHECK_FALSE(report.done);
+    CHECK(max_speed(before) < 1e20);  // long before the numbers end
     CHECK_THAT(report.failure.what, Catch::Contains("shorter time step"));
     CHECK(report.failure.particle >= 0);
     CHECK_FALSE(report.failure.force.empty());
