@@ -1,8 +1,8 @@
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "app/fabrics.h"
+#include "app/obstacle_read.h"
 #include "app/scene.h"
 #include "app/table.h"
 #include "mesh/obj.h"
@@ -62,38 +62,6 @@ SimulationOptions read_simulation(const Table* given) {
   return options;
 }
 
-Mat3 read_rotation(Table& table) {
-  Mat3 rotation = Mat3::Identity();
-  for (Table& turn : table.tables("rotate")) {
-    Vec3 axis = Vec3::UnitY();
-    double angle = 0;
-    turn.require("axis");
-    turn.require("angle");
-    turn.read("axis", axis, dimension::number);
-    turn.read("angle", angle, dimension::angle);
-    if (!(axis.norm() > 0)) turn.fail("axis", "expected an axis that has a length");
-    turn.finish();
-    rotation = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix() * rotation;
-  }
-  return rotation;
-}
-
-Placement read_placement(Table& table) {
-  Placement placement;
-  table.read("scale", placement.scale, dimension::number, Range::positive);
-  placement.rotation = read_rotation(table);
-  table.read("translate", placement.translate, dimension::length);
-  return placement;
-}
-
-fs::path read_path(Table& table, const std::string& key, const fs::path& folder) {
-  std::string text;
-  table.require(key);
-  table.read(key, text);
-  if (text.empty()) table.fail(key, "expected the name of an OBJ file");
-  return (folder / text).lexically_normal();
-}
-
 // A name becomes a file name.
 std::string read_name(Table& table, const fs::path& mesh) {
   std::string name = mesh.stem().string();
@@ -148,96 +116,6 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
   return cloth;
 }
 
-Shape read_plane(Table& table) {
-  Plane plane;
-  table.read("point", plane.point, dimension::length);
-  table.read("normal", plane.normal, dimension::number);
-  return plane;
-}
-
-Shape read_sphere(Table& table) {
-  Sphere sphere;
-  table.read("centre", sphere.centre, dimension::length);
-  table.require("radius");
-  table.read("radius", sphere.radius, dimension::length, Range::positive);
-  return sphere;
-}
-
-Shape read_bowl(Table& table) {
-  Bowl bowl;
-  table.read("centre", bowl.centre, dimension::length);
-  table.require("radius");
-  table.read("radius", bowl.radius, dimension::length, Range::positive);
-  table.read("thickness", bowl.thickness, dimension::length, Range::positive);
-  table.read("axis", bowl.axis, dimension::number);
-  return bowl;
-}
-
-Shape read_box(Table& table) {
-  Box box;
-  table.read("centre", box.centre, dimension::length);
-  table.require("size");
-  table.read("size", box.size, dimension::length);
-  box.rotation = read_rotation(table);
-  return box;
-}
-
-Shape read_capsule(Table& table) {
-  Capsule capsule;
-  for (const char* key : {"a", "b", "radius"}) table.require(key);
-  table.read("a", capsule.a, dimension::length);
-  table.read("b", capsule.b, dimension::length);
-  table.read("radius", capsule.radius, dimension::length, Range::positive);
-  return capsule;
-}
-
-Friction read_friction(Table& table) {
-  Friction friction;
-  const Node* const node = table.take("friction");
-  if (!node) return friction;
-  if (node->kind != Node::Kind::table) {
-    double mu = friction.statics;
-    table.read("friction", mu, dimension::number, Range::not_negative);
-    return friction = mu;
-  }
-  Table both = table.tables("friction").front();
-  both.require("static");
-  both.require("kinetic");
-  both.read("static", friction.statics, dimension::number, Range::not_negative);
-  both.read("kinetic", friction.kinetic, dimension::number, Range::not_negative);
-  both.finish();
-  return friction;
-}
-
-ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
-  ObstacleEntry entry;
-  entry.where = table.where();
-  std::string shape;
-  table.require("shape");
-  table.read("shape", shape, shape_names());
-  if (shape == "plane") entry.obstacle.shape = read_plane(table);
-  if (shape == "sphere") entry.obstacle.shape = read_sphere(table);
-  if (shape == "bowl") entry.obstacle.shape = read_bowl(table);
-  if (shape == "box") entry.obstacle.shape = read_box(table);
-  if (shape == "capsule") entry.obstacle.shape = read_capsule(table);
-  if (shape == "mesh") {
-    entry.mesh = read_path(table, "mesh", folder);
-    entry.placement = read_placement(table);
-    entry.obstacle.shape = MeshBody();
-  }
-  entry.name = shape == "mesh" ? entry.mesh.filename().string() : shape;
-  table.read("name", entry.name);
-  entry.obstacle.friction = read_friction(table);
-  table.read("margin", entry.obstacle.margin, dimension::length, Range::not_negative);
-  table.finish();
-  try {
-    if (shape != "mesh") check(entry.obstacle);
-  } catch (const InputError& error) {
-    throw InputError(entry.where + ": " + error.what());
-  }
-  return entry;
-}
-
 void check_names(const std::vector<ClothEntry>& cloths) {
   for (std::size_t i = 0; i < cloths.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
@@ -248,7 +126,6 @@ void check_names(const std::vector<ClothEntry>& cloths) {
 
 }  // namespace
 
-Names shape_names() { return {"plane", "sphere", "bowl", "box", "capsule", "mesh"}; }
 Names model_names() { return {"noh-jung"}; }
 
 Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path& folder, std::string label) {
