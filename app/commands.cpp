@@ -68,7 +68,7 @@ void check_scene(const std::filesystem::path& file) {
   std::printf("%s pinned\n",
               counted(static_cast<long>(simulation.constraints->pinned().size()), "vertex").c_str());
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k) {
-    const Obstacle& o = simulation.constraints->obstacles()[k];
+    const Obstacle& o = simulation.constraints->bodies()[k].obstacle();
     std::printf("obstacle %s: %s, friction %s / %s, margin %s mm\n", scene.obstacles[k].name.c_str(),
                 std::string(name(o.shape)).c_str(), rounded(o.friction.statics, 3).c_str(),
                 rounded(o.friction.kinetic, 3).c_str(), rounded(1000 * o.margin, 3).c_str());

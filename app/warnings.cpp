@@ -23,16 +23,15 @@ std::string body_name(const Obstacle& obstacle, const std::string& name_given) {
 void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
   constexpr double negligible = 1e-9;  // m
   const std::vector<double> depth = simulation.constraints->penetration(simulation.state.x);
-  const std::vector<Obstacle>& obstacles = simulation.constraints->obstacles();
+  const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
   for (const Cloth& cloth : simulation.cloths) {
-    for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
       int inside = 0, deepest = -1;
       double deepest_depth = negligible;
       for (int i = 0; i < cloth.mesh.vertex_count(); ++i) {
         const auto particle = static_cast<std::size_t>(cloth.first_particle + i);
         if (!(depth[particle] > negligible) || simulation.system->masses()[particle] == 0) continue;
-        const double d =
-            -closest(obstacles[k].shape, cloth.mesh.positions[static_cast<std::size_t>(i)]).distance;
+        const double d = -bodies[k].distance(cloth.mesh.positions[static_cast<std::size_t>(i)]);
         if (!(d > negligible)) continue;
         ++inside;
         if (d > deepest_depth) deepest = i, deepest_depth = d;
@@ -42,7 +41,7 @@ void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
       simulation.messages.push_back(
           "warning: " + counted(inside, "vertex") + " of " + cloth.name +
           (inside == 1 ? " starts" : " start") + " inside " +
-          body_name(obstacles[k], scene.obstacles[k].name) + ", the deepest (vertex " +
+          body_name(bodies[k].obstacle(), scene.obstacles[k].name) + ", the deepest (vertex " +
           std::to_string(deepest) + ") by " + rounded(1000 * deepest_depth, 3) + " mm; " + all +
           " will be brought out at " + rounded(scene.simulation.contact.recovery_speed, 3) + " m/s");
     }
@@ -69,14 +68,14 @@ double roundness(const Obstacle& obstacle, const Body& body) {
 
 // Contact holds vertices: an edge as long as a body is wide lets it through.
 void warn_if_coarse(const Scene& scene, Simulation& simulation) {
-  const std::vector<Obstacle>& obstacles = simulation.constraints->obstacles();
+  const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
   for (const Cloth& cloth : simulation.cloths) {
-    for (std::size_t k = 0; k < obstacles.size(); ++k) {
-      const double radius = roundness(obstacles[k], simulation.bodies[k]);
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      const double radius = roundness(bodies[k].obstacle(), simulation.bodies[k]);
       if (radius == 0 || cloth.report.median_edge <= radius) continue;
       simulation.messages.push_back(
           "warning: cloth " + cloth.name + " is too coarse for " +
-          body_name(obstacles[k], scene.obstacles[k].name) + ": its edges (median " +
+          body_name(bodies[k].obstacle(), scene.obstacles[k].name) + ": its edges (median " +
           rounded(cloth.report.median_edge, 2) + " m) are longer than the body's radius (" +
           rounded(radius, 2) +
           " m), and contact is found at vertices only: the body may come through; subdivide the mesh");
@@ -101,7 +100,7 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
   warn_of_vertices_inside(scene, simulation);
   warn_if_coarse(scene, simulation);
   warn_of_time(scene.simulation, simulation.messages);
-  if (simulation.constraints->obstacles().empty() && simulation.constraints->pinned().empty() &&
+  if (simulation.constraints->bodies().empty() && simulation.constraints->pinned().empty() &&
       !scene.simulation.gravity.isZero(0))
     simulation.messages.push_back(
         "warning: nothing holds the cloth up, neither pins nor a body: it will fall for ever; add an "

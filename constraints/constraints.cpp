@@ -30,9 +30,7 @@ Vec3 tangential(const Contact& contact, const Vec3& v) {
 }  // namespace
 
 void Constraints::add(Obstacle obstacle) {
-  check(obstacle);
-  if (auto* plane = std::get_if<Plane>(&obstacle.shape)) plane->normal.normalize();
-  obstacles_.push_back(std::move(obstacle));
+  bodies_.emplace_back(std::move(obstacle), static_cast<int>(bodies_.size()));
   clearance_.clear();
 }
 
@@ -45,18 +43,47 @@ void Constraints::pin(const std::vector<int>& particles) {
   held_.clear();
 }
 
+void Constraints::pin_to_body(const std::vector<int>& particles, int body, const VecX& x) {
+  for (int i : particles)
+    if (!std::binary_search(pinned_.begin(), pinned_.end(), i))
+      moving_pins_.push_back(
+          {i, body, -1, bodies_.at(static_cast<std::size_t>(body)).mark(x.segment<3>(3 * i))});
+  pin(particles);
+}
+
+void Constraints::pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x) {
+  const int path = static_cast<int>(paths_.size());
+  paths_.push_back(motion);
+  const Pose start = motion.at(0);
+  for (int i : particles)
+    if (!std::binary_search(pinned_.begin(), pinned_.end(), i))
+      moving_pins_.push_back({i, -1, path, start.to_body(x.segment<3>(3 * i))});
+  pin(particles);
+}
+
+// The velocity that brings each to where it is carried by the end of the step.
+void Constraints::move_pins(const VecX& x, double t) {
+  if (moving_pins_.empty()) return;
+  pin_velocity_.setZero(x.size());
+  for (const MovingPin& pin : moving_pins_) {
+    const Vec3 end = pin.body < 0 ? paths_[static_cast<std::size_t>(pin.path)].at(t + h_).to_world(pin.place)
+                                  : bodies_[static_cast<std::size_t>(pin.body)].carried_mark(pin.place);
+    pin_velocity_.segment<3>(3 * pin.particle) = (end - x.segment<3>(3 * pin.particle)) / h_;
+  }
+}
+
 void Constraints::prepare(int particles, const std::vector<double>& masses) {
   const auto n = static_cast<std::size_t>(particles);
-  if (held_.size() == n && masses_ == masses && clearance_.size() == n * obstacles_.size()) return;
+  if (held_.size() == n && masses_ == masses && clearance_.size() == n * bodies_.size()) return;
   masses_ = masses;
   held_.assign(n, 0);
   for (int i : pinned_) held_.at(static_cast<std::size_t>(i)) = 1;
   for (std::size_t i = 0; i < n; ++i)
     if (masses[i] == 0) held_[i] = 1;
-  clearance_.assign(n * obstacles_.size(), 0.0);  // nothing known yet: look at once
+  clearance_.assign(n * bodies_.size(), 0.0);  // nothing known yet: look at once
   trial_.clear();
   committed_.clear();
-  if (obstacles_.empty()) return;  // pins need no more memory than this
+  if (bodies_.empty()) return;  // pins need no more memory than this
   committed_of_.assign(n, -1);
   contact_of_.assign(n, -1);
   correction_ = VecX::Zero(3 * particles);
@@ -70,13 +97,15 @@ void Constraints::prepare(int particles, const std::vector<double>& masses) {
   for (auto& found : found_) found.reserve(chunk_size);
 }
 
-void Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double h,
-                             bool foresight) {
+void Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double t,
+                             double h, bool foresight) {
   const int n = static_cast<int>(x.size() / 3);
   prepare(n, masses);
   h_ = h;
-  ahead_ = foresight ? h : 0;
-  if (obstacles_.empty()) return;
+  foresight_ = foresight;
+  for (MovingBody& body : bodies_) body.begin_step(t, h);
+  move_pins(x, t);
+  if (bodies_.empty()) return;
   for (const Contact& c : trial_) {
     contact_of_[static_cast<std::size_t>(c.particle)] = -1;
     correction_.segment<3>(3 * c.particle).setZero();
@@ -111,30 +140,25 @@ void Constraints::take_found() {
 }
 
 void Constraints::look_for_contact(int particle, std::vector<Contact>& found, double& deepest) {
-  const Vec3 x = x_.segment<3>(3 * particle);
-  const Vec3 path = ahead_ * v_.segment<3>(3 * particle);
-  const double travel = path.norm();
+  const Vec3 x = x_.segment<3>(3 * particle), v = v_.segment<3>(3 * particle);
   const int old = committed_of_[static_cast<std::size_t>(particle)];
   const Contact* before = old < 0 ? nullptr : &committed_[static_cast<std::size_t>(old)];
   Contact contact{.particle = particle, .plane = {}};
-  for (int o = 0; o < static_cast<int>(obstacles_.size()); ++o) {
-    const Obstacle& obstacle = obstacles_[static_cast<std::size_t>(o)];
-    if (clearance(o, particle) > obstacle.margin + travel) continue;
-    const SurfacePoint s = closest(obstacle.shape, x);
-    clearance(o, particle) = s.distance;
-    deepest = std::max(deepest, -s.distance);
-    const double gap = s.distance - obstacle.margin;
-    const Vec3 body = obstacle.velocity_at(x);
+  for (int o = 0; o < static_cast<int>(bodies_.size()); ++o) {
+    const MovingBody& body = bodies_[static_cast<std::size_t>(o)];
+    const double margin = body.obstacle().margin;
+    const Vec3 x_new = foresight_ ? Vec3(x + h_ * v) : body.carried(x);
+    const double travel = body.travel(x, x_new);
+    if (clearance(o, particle) > margin + travel) continue;
+    const ContactPlane plane = body.plane(x);
+    clearance(o, particle) = plane.gap + margin;
+    deepest = std::max(deepest, -plane.gap - margin);
     const bool touched = plane_with(before, o) != nullptr;
-    if (touched ? gap < std::max(0.5 * obstacle.margin, 1e-6)
-                : gap < 0 && gap + (path - ahead_ * body).dot(s.normal) < 0) {
-      add_plane(contact, {o, s.normal, gap, body});
-    } else if (gap < travel) {
-      if (const auto hit = first_hit(obstacle.shape, x, x + path, obstacle.margin)) {
-        const double to_surface =
-            -hit->fraction * path.dot(hit->surface.normal) + hit->surface.distance - obstacle.margin;
-        add_plane(contact, {o, hit->surface.normal, std::max(to_surface, 0.0), body});
-      }
+    if (touched ? plane.gap < std::max(0.5 * margin, 1e-6)
+                : plane.gap < 0 && plane.gap + body.approach(x, x_new, plane) < 0) {
+      add_plane(contact, plane);
+    } else if (plane.gap < travel) {
+      if (const auto met = body.meeting(x, x_new)) add_plane(contact, *met);
     }
   }
   if (!contact.active()) return;
@@ -143,7 +167,7 @@ void Constraints::look_for_contact(int particle, std::vector<Contact>& found, do
 }
 
 void Constraints::start_grip(Contact& contact, const Contact* before) const {
-  const Friction& mu = obstacles_[static_cast<std::size_t>(contact.plane[0].obstacle)].friction;
+  const Friction& mu = friction_of(contact);
   contact.last_slip = tangential(contact, v_.segment<3>(3 * contact.particle) - contact.body_velocity());
   contact.slip = contact.last_slip;
   contact.grip = before ? before->grip : mu.statics == 0 ? Grip::slide : Grip::stick;
@@ -184,7 +208,10 @@ double Constraints::arrival_impulse(const Contact& contact) const {
 void Constraints::filter(const VecX& v, Filter& filter) const {
   filter.clear();
   for (int i = 0; i < static_cast<int>(held_.size()); ++i)
-    if (held(i)) filter.constrain(i, Mat3::Zero(), -v.segment<3>(3 * i));
+    if (held(i))
+      filter.constrain(i, Mat3::Zero(),
+                       moving_pins_.empty() ? Vec3(-v.segment<3>(3 * i))
+                                            : Vec3(pin_velocity_.segment<3>(3 * i) - v.segment<3>(3 * i)));
   for (const Contact& c : trial_) {
     if (!c.active()) continue;
     const Vec3 normal_part = along_planes(c, normal_speeds(c));
@@ -202,7 +229,7 @@ const std::vector<ContactFriction>& Constraints::friction() {
   friction_.clear();
   for (const Contact& c : trial_) {
     if (!c.active() || c.grip == Grip::stick) continue;
-    const double mu = obstacles_[static_cast<std::size_t>(c.plane[0].obstacle)].friction.kinetic;
+    const double mu = friction_of(c).kinetic;
     if (mu == 0) continue;
     ContactFriction f{c.particle, Mat3::Zero(), c.body_velocity(), Vec3::Zero()};
     if (c.grip == Grip::breaking_loose) {
@@ -237,7 +264,7 @@ bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double n
     c.arrival_impulse = arrival_impulse(c);
     return true;
   }
-  const Friction& mu = obstacles_[static_cast<std::size_t>(c.plane[0].obstacle)].friction;
+  const Friction& mu = friction_of(c);
   double normal = 0;
   for (int k = 0; k < c.planes; ++k) normal += std::max(lambda[static_cast<std::size_t>(k)], 0.0);
   c.normal_impulse = normal;
@@ -268,32 +295,27 @@ bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double n
 }
 
 bool Constraints::check_paths(const VecX& x_new) {
-  if (obstacles_.empty()) return false;
+  if (bodies_.empty()) return false;
   const int n = static_cast<int>(x_new.size() / 3);
   parallel_for(chunk_count(n), n < serial_below, [&](int k) {
     auto& found = found_[static_cast<std::size_t>(k)];
     found.clear();
     for (int i = k * chunk_size; i < std::min(n, (k + 1) * chunk_size); ++i)
       if (!held(i) && contact_of_[static_cast<std::size_t>(i)] < 0)
-        look_along_path(i, x_new.segment<3>(3 * i) - x_.segment<3>(3 * i), found);
+        look_along_path(i, x_new.segment<3>(3 * i), found);
   });
   const std::size_t before = trial_.size();
   take_found();
   return trial_.size() != before;
 }
 
-void Constraints::look_along_path(int particle, const Vec3& path, std::vector<Contact>& found) {
+void Constraints::look_along_path(int particle, const Vec3& x_new, std::vector<Contact>& found) {
   const Vec3 x = x_.segment<3>(3 * particle);
-  const double travel = path.norm();
   Contact contact{.particle = particle, .plane = {}};
-  for (int o = 0; o < static_cast<int>(obstacles_.size()); ++o) {
-    const Obstacle& obstacle = obstacles_[static_cast<std::size_t>(o)];
-    if (clearance(o, particle) > obstacle.margin + travel) continue;
-    if (const auto hit = first_hit(obstacle.shape, x, x + path, obstacle.margin)) {
-      const double gap =
-          -hit->fraction * path.dot(hit->surface.normal) + hit->surface.distance - obstacle.margin;
-      add_plane(contact, {o, hit->surface.normal, std::max(gap, 0.0), obstacle.velocity_at(x)});
-    }
+  for (int o = 0; o < static_cast<int>(bodies_.size()); ++o) {
+    const MovingBody& body = bodies_[static_cast<std::size_t>(o)];
+    if (clearance(o, particle) > body.obstacle().margin + body.travel(x, x_new)) continue;
+    if (const auto met = body.meeting(x, x_new)) add_plane(contact, *met);
   }
   if (!contact.active()) return;
   start_grip(contact, nullptr);
@@ -302,7 +324,7 @@ void Constraints::look_along_path(int particle, const Vec3& path, std::vector<Co
 
 ContactReport Constraints::end_step(VecX& x_new, VecX& v_new) {
   ContactReport report;
-  if (obstacles_.empty()) return report;
+  if (bodies_.empty()) return report;
   const int n = static_cast<int>(x_new.size() / 3);
   parallel_for(chunk_count(n), n < serial_below, [&](int k) {
     int& guarded = guarded_[static_cast<std::size_t>(k)];
@@ -322,6 +344,7 @@ ContactReport Constraints::end_step(VecX& x_new, VecX& v_new) {
     committed_.push_back(c);
     if (c.grip == Grip::breaking_loose) committed_.back().grip = Grip::slide;
   }
+  for (MovingBody& body : bodies_) body.end_step();
   last_h_ = h_;
   report.contacts = static_cast<int>(committed_.size());
   return report;
@@ -331,25 +354,17 @@ ContactReport Constraints::end_step(VecX& x_new, VecX& v_new) {
 // behind it; none that was inside ends deeper.
 void Constraints::guard(int particle, VecX& x_new, VecX& v_new, int& guarded) {
   const Vec3 x = x_.segment<3>(3 * particle);
-  for (int o = 0; o < static_cast<int>(obstacles_.size()); ++o) {
-    const Obstacle& obstacle = obstacles_[static_cast<std::size_t>(o)];
-    const Vec3 path = x_new.segment<3>(3 * particle) - x;
-    const double travel = path.norm(), clear = clearance(o, particle);
+  for (int o = 0; o < static_cast<int>(bodies_.size()); ++o) {
+    const MovingBody& body = bodies_[static_cast<std::size_t>(o)];
+    Vec3 end = x_new.segment<3>(3 * particle);
+    const double travel = body.travel(x, end), clear = clearance(o, particle);
     clearance(o, particle) = std::max(0.0, clear - travel);
     if (clear >= travel) continue;
-    Vec3 end = x + path;
-    if (clear >= 0) {
-      const auto hit = first_hit(obstacle.shape, x, end, 0);
-      if (!hit) continue;
-      end = x + hit->fraction * path;
-    }
-    const SurfacePoint s = closest(obstacle.shape, end);
-    const double floor = std::min(clear, 0.0);
-    if (s.distance < floor) end += (floor - s.distance) * s.normal;
-    if (end == x + path) continue;
+    const auto normal = body.stop(x, end, clear);
+    if (!normal) continue;
     x_new.segment<3>(3 * particle) = end;
-    const double inward = (v_new.segment<3>(3 * particle) - obstacle.velocity_at(x)).dot(s.normal);
-    if (inward < 0) v_new.segment<3>(3 * particle) -= inward * s.normal;
+    const double inward = (v_new.segment<3>(3 * particle) - body.velocity(x)).dot(*normal);
+    if (inward < 0) v_new.segment<3>(3 * particle) -= inward * *normal;
     ++guarded;
   }
 }
@@ -359,9 +374,9 @@ std::vector<double> Constraints::penetration(const VecX& x) const {
   const int n = static_cast<int>(depth.size());
   for_chunks(n, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
-      for (const Obstacle& obstacle : obstacles_)
-        depth[static_cast<std::size_t>(i)] = std::max(depth[static_cast<std::size_t>(i)],
-                                                      -closest(obstacle.shape, x.segment<3>(3 * i)).distance);
+      for (const MovingBody& body : bodies_)
+        depth[static_cast<std::size_t>(i)] =
+            std::max(depth[static_cast<std::size_t>(i)], -body.distance(x.segment<3>(3 * i)));
   });
   return depth;
 }

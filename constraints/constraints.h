@@ -14,6 +14,7 @@
 
 #include "constraints/contact.h"
 #include "constraints/filter.h"
+#include "constraints/moving_body.h"
 #include "constraints/pins.h"
 
 namespace drape {
@@ -30,6 +31,14 @@ struct ContactFriction {
   Vec3 impulse;        // N s
 };
 
+// A pinned particle that is carried along.
+struct MovingPin {
+  int particle;
+  int body;  // that carries it; -1: its own path
+  int path;
+  Vec3 place;  // m, in the frame that moves
+};
+
 struct ContactReport {
   int contacts = 0;
   int guarded = 0;     // particles stopped at a surface after the solve, outside the equations
@@ -43,13 +52,18 @@ class Constraints {
   void add(Obstacle obstacle);  // throws InputError
   void pin(int particle);       // stays where it is; twice is once
   void pin(const std::vector<int>& particles);
+  // Are carried along, from where they are at time 0 (x [m], all particles): by a body, or by a motion of
+  // their own. A particle is pinned once, in the way named first.
+  void pin_to_body(const std::vector<int>& particles, int body, const VecX& x);
+  void pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x);
 
-  const std::vector<Obstacle>& obstacles() const { return obstacles_; }
-  const std::vector<int>& pinned() const { return pinned_; }
+  const std::vector<MovingBody>& bodies() const { return bodies_; }
+  const std::vector<int>& pinned() const { return pinned_; }  // ascending
+  const std::vector<MovingPin>& moving_pins() const { return moving_pins_; }
 
-  // x [m], v [m/s], masses [kg], h [s]. Without foresight only what touches already is found, and x -> x + h
-  // v is not looked at: for motions that vibrate within a step.
-  void begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double h,
+  // x [m], v [m/s], masses [kg], t, h [s]. Without foresight only what touches already is found, and x -> x +
+  // h v is not looked at: for motions that vibrate within a step.
+  void begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double t, double h,
                   bool foresight = true);
   void filter(const VecX& v, Filter& filter) const;
   const std::vector<ContactFriction>& friction();
@@ -70,30 +84,39 @@ class Constraints {
   bool held(int particle) const { return held_[static_cast<std::size_t>(particle)] != 0; }
   void prepare(int particles, const std::vector<double>& masses);
   void look_for_contact(int particle, std::vector<Contact>& found, double& deepest);
-  void look_along_path(int particle, const Vec3& path, std::vector<Contact>& found);
+  void look_along_path(int particle, const Vec3& x_new, std::vector<Contact>& found);
   void start_grip(Contact& contact, const Contact* before) const;
   std::array<double, 3> normal_speeds(const Contact& contact) const;  // m/s, at the end of the step
   double arrival_impulse(const Contact& contact) const;
   bool update_grip(Contact& contact, const VecX& v, const Vec3& r, double noise) const;
   void guard(int particle, VecX& x_new, VecX& v_new, int& guarded);
   void take_found();
-  double& clearance(int obstacle, int particle) {
-    return clearance_[static_cast<std::size_t>(obstacle) * held_.size() + static_cast<std::size_t>(particle)];
+  double& clearance(int body, int particle) {
+    return clearance_[static_cast<std::size_t>(body) * held_.size() + static_cast<std::size_t>(particle)];
   }
+  const MovingBody& body_of(const Contact& contact) const {
+    return bodies_[static_cast<std::size_t>(contact.plane[0].obstacle)];
+  }
+  const Friction& friction_of(const Contact& contact) const { return body_of(contact).obstacle().friction; }
+  void move_pins(const VecX& x, double t);
 
   ContactOptions options_;
-  std::vector<Obstacle> obstacles_;
+  std::vector<MovingBody> bodies_;
   std::vector<int> pinned_;
+  std::vector<MovingPin> moving_pins_;
+  std::vector<Motion> paths_;  // of pins
 
   // Scratch of the step under way.
-  double h_ = 0, ahead_ = 0;    // s, of the step, and how far ahead contacts are foreseen
+  double h_ = 0;  // s
+  bool foresight_ = true;
   double last_h_ = 0;           // s, of the last completed step
   std::vector<double> masses_;  // kg
   VecX x_, v_, correction_;
+  VecX pin_velocity_;            // m/s; empty without moving pins
   std::vector<char> held_;       // pinned, or without mass
   std::vector<int> contact_of_;  // particle -> place in trial_, -1: none
   std::vector<double>
-      clearance_;  // obstacle, particle -> a distance within which no surface was when last looked [m]
+      clearance_;  // body, particle -> a distance within which no surface was when last looked [m]
   std::vector<Contact> trial_, committed_;
   std::vector<int> committed_of_;  // particle -> place in committed_, -1: none
   std::vector<ContactFriction> friction_;

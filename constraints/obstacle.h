@@ -3,9 +3,11 @@
 //   margin    the cloth comes to rest this far outside the surface [m]: vertices stop at the offset surface
 //   phi = margin, so that
 //             the straight edges between them stay clear of a curved body
-//   velocity  of the body at a point [m/s]; bodies stand still for now, contact already asks
+//   motion    where the body is at a time; the shape is given in the body's own frame, which is the world's
+//             where nothing moves
 #pragma once
 
+#include "constraints/motion.h"
 #include "constraints/shape.h"
 
 namespace drape {
@@ -22,8 +24,7 @@ struct Obstacle {
   Shape shape;
   Friction friction = {};
   double margin = 2e-3;  // m
-
-  Vec3 velocity_at(const Vec3& /*point*/) const { return Vec3::Zero(); }
+  Motion motion = {};
 };
 
 // Throws InputError when the shape, a coefficient of friction or the margin makes no sense.

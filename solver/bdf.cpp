@@ -75,7 +75,7 @@ bool Bdf::attempt(State& state, double h, bool whole, StepReport& report) {
   choose_coefficients(state, h, whole);
   {
     const Stopwatch watch(report.collide_ms);
-    constraints_.begin_step(state.x, state.v, system_.masses(), h);
+    constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h);
   }
   x_ = state.x;
   v_ = state.v;
@@ -203,6 +203,7 @@ void Bdf::remember(const State& state, double h) {
 
 void Bdf::mark_touching() {
   for (const Contact& c : constraints_.touching()) past_.touched[static_cast<std::size_t>(c.particle)] = 1;
+  for (const MovingPin& p : constraints_.moving_pins()) past_.touched[static_cast<std::size_t>(p.particle)] = 1;
 }
 
 void Bdf::assemble(Stiffness stiffness) {
@@ -219,7 +220,7 @@ void Bdf::assemble(Stiffness stiffness) {
 LinearReport Bdf::solve_within_contacts(const State& state, Stiffness stiffness, StepReport& report) {
   // Which contacts hold is found with loose solves; the last one is to the tolerance asked for, from where
   // they came.
-  const bool contact = !constraints_.obstacles().empty();
+  const bool contact = !constraints_.bodies().empty();
   double tolerance =
       contact ? std::max(options_.tolerance, std::sqrt(options_.tolerance)) : options_.tolerance;
   for (int round = 0;; ++round) {
@@ -263,7 +264,7 @@ LinearReport Bdf::solve_once(double tolerance) {
   const LinearOptions options{tolerance, options_.max_linear_iterations, weight_impulse_};
   const LinearReport linear = solver_->solve(*A_, b_rows_, filter_, options, dv_rows_);
   to_particles(pattern, dv_rows_, dv_);
-  if (!constraints_.obstacles().empty()) reaction();  // while the friction stands in A
+  if (!constraints_.bodies().empty()) reaction();  // while the friction stands in A
   remove_contact_friction();
   return linear;
 }

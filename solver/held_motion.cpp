@@ -10,7 +10,7 @@ namespace drape {
 
 void HeldMotion::begin(const State& state, double h, StepReport& report) {
   const Stopwatch watch(report.collide_ms);
-  constraints_.begin_step(state.x, state.v, system_.masses(), h, false);
+  constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h, false);
   constraints_.filter(state.v, held_);
   v_start_ = state.v;
   for (const FilterEntry& e : held_.entries()) v_start_.segment<3>(3 * e.particle) += e.z;
@@ -42,7 +42,7 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
   }
   x_new_ = x;
   v_new_ = v;
-  if (!constraints_.obstacles().empty()) {
+  if (!constraints_.bodies().empty()) {
     set_free(v, h);
     solve_contacts(state, x, v, h, options, report);
     end_step(constraints_, x_new_, v_new_, report);

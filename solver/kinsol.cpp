@@ -141,7 +141,7 @@ bool NewtonKinsol::attempt(State& state, double h) {
   f_scale_.setConstant(1 / scale_);
   {
     const Stopwatch watch(report_.collide_ms);
-    constraints_.begin_step(state.x, state.v, system_.masses(), h);
+    constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h);
   }
   v_ = state.v;
   for (int i = 0; i < system_.particles(); ++i) v_.segment<3>(3 * i) += h * system_.gravity_acceleration();
@@ -152,7 +152,7 @@ bool NewtonKinsol::attempt(State& state, double h) {
     for (const FilterEntry& e : filter_.entries()) v_.segment<3>(3 * e.particle) += e.z;
     friction_ = constraints_.friction();
     if (!solve()) return false;
-    if (constraints_.obstacles().empty() || round == options_.max_contact_solves) break;
+    if (constraints_.bodies().empty() || round == options_.max_contact_solves) break;
     // What is left of the equation in the locked directions is the reaction.
     const Stopwatch watch(report_.collide_ms);
     equation(v_);

@@ -287,7 +287,7 @@ TEST_CASE("a contact may change its mind, and comes to a decision within a step"
   Constraints constraints;
   constraints.add(Obstacle{.shape = Plane{}, .friction = 0.3, .margin = 0.001});
   for (int step = 0; step < 2; ++step) {
-    constraints.begin_step(VecX(Vec3(0, 0.0009, 0)), VecX(Vec3(1, 0, 0)), {1.0}, 0.01);
+    constraints.begin_step(VecX(Vec3(0, 0.0009, 0)), VecX(Vec3(1, 0, 0)), {1.0}, 0, 0.01);
     int changes = 0;
     for (int round = 0; round < 50; ++round)
       changes += constraints.react(VecX(Vec3(-1, 0, 0)), VecX(Vec3(-10, 1, 0)), 0);

@@ -1,0 +1,57 @@
+#include "constraints/moving_body.h"
+
+namespace drape {
+
+MovingBody::MovingBody(Obstacle obstacle, int number) : obstacle_(std::move(obstacle)), number_(number) {
+  check(obstacle_);
+  if (auto* plane = std::get_if<Plane>(&obstacle_.shape)) plane->normal.normalize();
+  now_ = start_ = end_ = obstacle_.motion.at(0);
+}
+
+void MovingBody::begin_step(double t, double h) {
+  h_ = h;
+  start_ = obstacle_.motion.at(t);
+  end_ = obstacle_.motion.at(t + h);
+}
+
+Vec3 MovingBody::carried(const Vec3& x) const { return end_.to_world(start_.to_body(x)); }
+
+double MovingBody::travel(const Vec3& x0, const Vec3& x1) const {
+  return (end_.to_body(x1) - start_.to_body(x0)).norm();
+}
+
+ContactPlane MovingBody::plane_at(const Vec3& x, const Vec3& normal, double gap) const {
+  return {number_, end_.rotation * normal, gap, velocity(x)};
+}
+
+ContactPlane MovingBody::plane(const Vec3& x) const {
+  const SurfacePoint s = closest(obstacle_.shape, start_.to_body(x));
+  return plane_at(x, s.normal, s.distance - obstacle_.margin);
+}
+
+std::optional<ContactPlane> MovingBody::meeting(const Vec3& x0, const Vec3& x1) const {
+  const Vec3 X0 = start_.to_body(x0), way = end_.to_body(x1) - X0;
+  const auto hit = first_hit(obstacle_.shape, X0, X0 + way, obstacle_.margin);
+  if (!hit) return std::nullopt;
+  const SurfacePoint& s = hit->surface;
+  const double gap = -hit->fraction * way.dot(s.normal) + s.distance - obstacle_.margin;
+  return plane_at(x0, s.normal, std::max(gap, 0.0));
+}
+
+std::optional<Vec3> MovingBody::stop(const Vec3& x0, Vec3& x1, double start_distance) const {
+  const Vec3 X0 = start_.to_body(x0), X1 = end_.to_body(x1);
+  Vec3 end = X1;
+  if (start_distance >= 0) {
+    const auto hit = first_hit(obstacle_.shape, X0, X1, 0);
+    if (!hit) return std::nullopt;
+    end = X0 + hit->fraction * (X1 - X0);
+  }
+  const SurfacePoint s = closest(obstacle_.shape, end);
+  const double floor = std::min(start_distance, 0.0);
+  if (s.distance < floor) end += (floor - s.distance) * s.normal;
+  if (end == X1) return std::nullopt;
+  x1 = end_.to_world(end);
+  return end_.rotation * s.normal;
+}
+
+}  // namespace drape

@@ -1,0 +1,63 @@
+// A body through the steps of a motion. Contact is asked in the body's own frame, where it stands still: a
+// particle that goes straight from x0 to x1 while the body goes from its pose at t to the one at t + h is
+// seen there on the way from X0 = pose(t)^-1 x0 to X1 = pose(t + h)^-1 x1, taken as straight. So a fast body
+// is met as surely as a body at rest is by a fast particle.
+//   carried   where the body takes the point x until the end of the step: c = pose(t + h) X0, and further
+//             where it deforms
+//   velocity  v_b = (c - x) / h: of the body at x, the mean over the step, so that x + h v_b stays with it
+//   plane     the surface nearest to the carried point, at the end of the step: its normal n and
+//             gap = phi - margin there. v.n = v_b.n - gap / h arrives exactly on it.
+//                                                    [Baraff & Witkin 1998, 5.2, in the frame of the body]
+// x [m], v [m/s], t, h [s].
+#pragma once
+
+#include <optional>
+
+#include "constraints/contact.h"
+#include "constraints/pose.h"
+
+namespace drape {
+
+class MovingBody {
+ public:
+  MovingBody(Obstacle obstacle, int number);  // number: of the planes it makes
+
+  const Obstacle& obstacle() const { return obstacle_; }
+
+  // A point that the body carries with it, from where it is now; and where that is at the end of the step.
+  Vec3 mark(const Vec3& x) const { return now_.to_body(x); }
+  Vec3 carried_mark(const Vec3& place) const { return end_.to_world(place); }
+
+  void begin_step(double t, double h);
+  void end_step() { now_ = end_; }  // a step that is abandoned does not move it
+
+  // Signed distance at the last completed step's end.
+  double distance(const Vec3& x) const { return closest(obstacle_.shape, now_.to_body(x)).distance; }
+
+  // Of the step under way.
+  Vec3 carried(const Vec3& x) const;
+  Vec3 velocity(const Vec3& x) const { return (carried(x) - x) / h_; }
+  // By how much the distance of a particle from the body can change on its way.
+  double travel(const Vec3& x0, const Vec3& x1) const;
+  ContactPlane plane(const Vec3& x) const;
+  // How far the way leads away from the plane that moves with the body: negative, it comes nearer [m].
+  double approach(const Vec3& x0, const Vec3& x1, const ContactPlane& plane) const {
+    return (x1 - carried(x0)).dot(plane.normal);
+  }
+  // The plane in which the way first meets the surface offset by the margin.
+  std::optional<ContactPlane> meeting(const Vec3& x0, const Vec3& x1) const;
+  // Where the way ends if the surface stops it: nothing that was outside ends inside or behind it, nothing
+  // that was `depth` inside (distance at the start, when negative) ends deeper. The normal there; nothing
+  // when it is free.
+  std::optional<Vec3> stop(const Vec3& x0, Vec3& x1, double start_distance) const;
+
+ private:
+  ContactPlane plane_at(const Vec3& x, const Vec3& normal, double gap) const;
+
+  Obstacle obstacle_;
+  int number_;
+  double h_ = 0;
+  Pose now_, start_, end_;
+};
+
+}  // namespace drape
