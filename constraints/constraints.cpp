@@ -14,6 +14,9 @@ constexpr int most_changes = 3;
 // stopped.
 constexpr double stop_fraction = 1e-6;
 
+// How far off the margin what touched still does [m]: round-off and a small lift are not a release.
+double keeps(double margin) { return std::max(0.5 * margin, 1e-6); }
+
 const ContactPlane* plane_with(const Contact* contact, int obstacle) {
   if (!contact) return nullptr;
   for (int k = 0; k < contact->planes; ++k)
@@ -62,13 +65,13 @@ void Constraints::pin_along(const std::vector<int>& particles, const Motion& mot
 }
 
 // The velocity that brings each to where it is carried by the end of the step.
-void Constraints::move_pins(const VecX& x, double t) {
+void Constraints::move_pins() {
   if (moving_pins_.empty()) return;
-  pin_velocity_.setZero(x.size());
+  pin_velocity_.setZero(x_.size());
   for (const MovingPin& pin : moving_pins_) {
-    const Vec3 end = pin.body < 0 ? paths_[static_cast<std::size_t>(pin.path)].at(t + h_).to_world(pin.place)
+    const Vec3 end = pin.body < 0 ? paths_[static_cast<std::size_t>(pin.path)].at(t_ + h_).to_world(pin.place)
                                   : bodies_[static_cast<std::size_t>(pin.body)].carried_mark(pin.place);
-    pin_velocity_.segment<3>(3 * pin.particle) = (end - x.segment<3>(3 * pin.particle)) / h_;
+    pin_velocity_.segment<3>(3 * pin.particle) = (end - x_.segment<3>(3 * pin.particle)) / h_;
   }
 }
 
@@ -101,18 +104,19 @@ void Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<dou
                              double h, bool foresight) {
   const int n = static_cast<int>(x.size() / 3);
   prepare(n, masses);
+  t_ = t;
   h_ = h;
   foresight_ = foresight;
+  x_ = x;
+  v_ = v;
   for (MovingBody& body : bodies_) body.begin_step(t, h);
-  move_pins(x, t);
+  move_pins();
   if (bodies_.empty()) return;
   for (const Contact& c : trial_) {
     contact_of_[static_cast<std::size_t>(c.particle)] = -1;
     correction_.segment<3>(3 * c.particle).setZero();
   }
   trial_.clear();
-  x_ = x;
-  v_ = v;
   parallel_for(chunk_count(n), n < serial_below, [&](int k) {
     auto& found = found_[static_cast<std::size_t>(k)];
     double& deepest = deepest_[static_cast<std::size_t>(k)];
@@ -149,12 +153,12 @@ void Constraints::look_for_contact(int particle, std::vector<Contact>& found, do
     const double margin = body.obstacle().margin;
     const Vec3 x_new = foresight_ ? Vec3(x + h_ * v) : body.carried(x);
     const double travel = body.travel(x, x_new);
-    if (clearance(o, particle) > margin + travel) continue;
+    if (clearance(o, particle) > margin + std::max(travel, keeps(margin))) continue;
     const ContactPlane plane = body.plane(x);
     clearance(o, particle) = plane.gap + margin;
     deepest = std::max(deepest, -plane.gap - margin);
     const bool touched = plane_with(before, o) != nullptr;
-    if (touched ? plane.gap < std::max(0.5 * margin, 1e-6)
+    if (touched ? plane.gap < keeps(margin)
                 : plane.gap < 0 && plane.gap + body.approach(x, x_new, plane) < 0) {
       add_plane(contact, plane);
     } else if (plane.gap < travel) {
@@ -231,7 +235,7 @@ const std::vector<ContactFriction>& Constraints::friction() {
     if (!c.active() || c.grip == Grip::stick) continue;
     const double mu = friction_of(c).kinetic;
     if (mu == 0) continue;
-    ContactFriction f{c.particle, Mat3::Zero(), c.body_velocity(), Vec3::Zero()};
+    ContactFriction f{c.particle, c.plane[0].obstacle, Mat3::Zero(), c.body_velocity(), Vec3::Zero()};
     if (c.grip == Grip::breaking_loose) {
       f.impulse = c.friction_impulse;
     } else {
@@ -244,8 +248,56 @@ const std::vector<ContactFriction>& Constraints::friction() {
   return friction_;
 }
 
+void Constraints::receive(const VecX& v, const VecX& r) {
+  work_ = 0;
+  for (MovingBody& body : bodies_) body.clear_impulse();
+  const auto push = [&](int body, int particle, const Vec3& velocity, const Vec3& impulse) {
+    work_ += velocity.dot(impulse);
+    bodies_[static_cast<std::size_t>(body)].push(
+        -impulse, x_.segment<3>(3 * particle) + h_ * v.segment<3>(3 * particle));
+  };
+  for (const Contact& c : trial_) {
+    if (!c.active()) continue;
+    Vec3 rest = r.segment<3>(3 * c.particle);
+    const std::array<double, 3> lambda = multipliers(c, rest);
+    for (int k = 1; k < c.planes; ++k) {  // of several bodies each has its plane's part
+      const ContactPlane& p = c.plane[static_cast<std::size_t>(k)];
+      const Vec3 part = lambda[static_cast<std::size_t>(k)] * p.normal;
+      push(p.obstacle, c.particle, p.body_velocity, part);
+      rest -= part;
+    }
+    push(c.plane[0].obstacle, c.particle, c.body_velocity(), rest);
+  }
+  for (const ContactFriction& f : friction_) {
+    const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
+    push(f.body, f.particle, f.body_velocity, f.impulse - h_ * (f.damping * slip));
+  }
+  for (const MovingPin& pin : moving_pins_) {
+    const Vec3 impulse = r.segment<3>(3 * pin.particle), velocity = pin_velocity_.segment<3>(3 * pin.particle);
+    if (pin.body >= 0)
+      push(pin.body, pin.particle, velocity, impulse);
+    else
+      work_ += velocity.dot(impulse);
+  }
+}
+
+// Bodies that moved otherwise than they were taken to: their planes and pins move with them.
+bool Constraints::move_bodies() {
+  bool moved = false;
+  for (MovingBody& body : bodies_)
+    if (body.correct()) moved = true;
+  if (!moved) return false;
+  for (Contact& c : trial_)
+    for (int k = 0; k < c.planes; ++k) {
+      ContactPlane& p = c.plane[static_cast<std::size_t>(k)];
+      p.body_velocity = bodies_[static_cast<std::size_t>(p.obstacle)].velocity(x_.segment<3>(3 * c.particle));
+    }
+  move_pins();
+  return true;
+}
+
 bool Constraints::react(const VecX& v, const VecX& r, double noise) {
-  bool changed = false;
+  bool changed = move_bodies();
   for (Contact& c : trial_) {
     if (!c.active()) continue;
     if (update_grip(c, v, r.segment<3>(3 * c.particle), noise)) changed = true;

@@ -4,9 +4,11 @@
 // A step calls, in this order:
 //   begin_step   finds the contacts of the predicted motion; the correction y and the targets stand
 //   filter       S and z for a given velocity;  friction  the dampers and impulses of what slides
-//   react        takes the reaction r of a solve: releases, sticks, slides; true when the step must be solved
-//   again check_paths  takes the motion found: catches what would pass through a body; true when it must be
-//   solved again end_step     guards the final motion (nothing crosses a surface), commits the contacts
+//   receive      takes the reaction r of a solve, for the bodies that it moves
+//   react        the same: releases, sticks, slides; true when the step must be solved again
+//   check_paths  takes the motion found: catches what would pass through a body; true when it must be solved
+//                again
+//   end_step     guards the final motion (nothing crosses a surface), commits the contacts
 // A step that failed is abandoned by not calling end_step: the contacts of the last good step still stand.
 #pragma once
 
@@ -25,7 +27,7 @@ struct ContactOptions {
 
 // What rubs on a sliding particle in this step: f = -D (v - v_b), and an impulse.
 struct ContactFriction {
-  int particle;
+  int particle, body;
   Mat3 damping;        // N s/m
   Vec3 body_velocity;  // m/s
   Vec3 impulse;        // N s
@@ -68,7 +70,11 @@ class Constraints {
   void filter(const VecX& v, Filter& filter) const;
   const std::vector<ContactFriction>& friction();
   const VecX& correction() const { return correction_; }  // y [m]; empty without obstacles
-  // v [m/s] after the solve, r [N s]; impulses below `noise` [N s] are round-off of the solve.
+  // What a solve gave, v [m/s] and r [N s]: the impulses on bodies that react, and the work [J] that moving
+  // bodies and pins do on the particles.
+  void receive(const VecX& v, const VecX& r);
+  double work() const { return work_; }
+  // The same v and r; impulses below `noise` [N s] are round-off of the solve.
   bool react(const VecX& v, const VecX& r, double noise);
   bool check_paths(const VecX& x_new);
   ContactReport end_step(VecX& x_new, VecX& v_new);
@@ -98,7 +104,8 @@ class Constraints {
     return bodies_[static_cast<std::size_t>(contact.plane[0].obstacle)];
   }
   const Friction& friction_of(const Contact& contact) const { return body_of(contact).obstacle().friction; }
-  void move_pins(const VecX& x, double t);
+  void move_pins();
+  bool move_bodies();
 
   ContactOptions options_;
   std::vector<MovingBody> bodies_;
@@ -107,8 +114,9 @@ class Constraints {
   std::vector<Motion> paths_;  // of pins
 
   // Scratch of the step under way.
-  double h_ = 0;  // s
+  double t_ = 0, h_ = 0;  // s
   bool foresight_ = true;
+  double work_ = 0;             // J
   double last_h_ = 0;           // s, of the last completed step
   std::vector<double> masses_;  // kg
   VecX x_, v_, correction_;

@@ -20,6 +20,14 @@ void check(const Obstacle& obstacle) {
   if (!(obstacle.margin >= 0) || !std::isfinite(obstacle.margin))
     throw InputError(where + ": margin = " + std::to_string(obstacle.margin) +
                      " m: a margin is not negative");
+  if (!obstacle.rigid) return;
+  if (std::holds_alternative<Plane>(obstacle.shape) || std::holds_alternative<Bowl>(obstacle.shape))
+    throw InputError(where + ": cannot react; give a mass to a sphere, a box, a capsule or a closed mesh");
+  try {
+    check(*obstacle.rigid);
+  } catch (const InputError& error) {
+    throw InputError(where + ": " + error.what());
+  }
 }
 
 Mat3 Contact::locked_directions() const {

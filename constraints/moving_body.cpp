@@ -6,12 +6,26 @@ MovingBody::MovingBody(Obstacle obstacle, int number) : obstacle_(std::move(obst
   check(obstacle_);
   if (auto* plane = std::get_if<Plane>(&obstacle_.shape)) plane->normal.normalize();
   now_ = start_ = end_ = obstacle_.motion.at(0);
+  if (obstacle_.rigid) reacting_.emplace(*obstacle_.rigid, now_);
 }
 
 void MovingBody::begin_step(double t, double h) {
   h_ = h;
-  start_ = obstacle_.motion.at(t);
-  end_ = obstacle_.motion.at(t + h);
+  start_ = reacting_ ? reacting_->pose() : obstacle_.motion.at(t);
+  end_ = reacting_ ? reacting_->begin_step(h) : obstacle_.motion.at(t + h);
+}
+
+void MovingBody::end_step() {
+  now_ = end_;
+  if (reacting_) reacting_->end_step(end_);
+}
+
+void MovingBody::clear_impulse() {
+  if (reacting_) reacting_->clear_impulse();
+}
+
+void MovingBody::push(const Vec3& impulse, const Vec3& place) {
+  if (reacting_) reacting_->push(impulse, place);
 }
 
 Vec3 MovingBody::carried(const Vec3& x) const { return end_.to_world(start_.to_body(x)); }

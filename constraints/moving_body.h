@@ -14,7 +14,7 @@
 #include <optional>
 
 #include "constraints/contact.h"
-#include "constraints/pose.h"
+#include "constraints/reacting_body.h"
 
 namespace drape {
 
@@ -23,13 +23,22 @@ class MovingBody {
   MovingBody(Obstacle obstacle, int number);  // number: of the planes it makes
 
   const Obstacle& obstacle() const { return obstacle_; }
+  const Pose& pose() const { return now_; }  // at the end of the last completed step
+  // The body that reacts, null when it does not.
+  const ReactingBody* reacting() const { return reacting_ ? &*reacting_ : nullptr; }
 
   // A point that the body carries with it, from where it is now; and where that is at the end of the step.
   Vec3 mark(const Vec3& x) const { return now_.to_body(x); }
   Vec3 carried_mark(const Vec3& place) const { return end_.to_world(place); }
 
   void begin_step(double t, double h);
-  void end_step() { now_ = end_; }  // a step that is abandoned does not move it
+  void end_step();  // a step that is abandoned does not move it
+
+  // What the particles push it with in this step, from zero; where it then moves otherwise than it was taken
+  // to `correct` is true, and the planes it made are to be moved (velocity has changed).
+  void clear_impulse();
+  void push(const Vec3& impulse, const Vec3& place);
+  bool correct() { return reacting_ && reacting_->correct(end_); }
 
   // Signed distance at the last completed step's end.
   double distance(const Vec3& x) const { return closest(obstacle_.shape, now_.to_body(x)).distance; }
@@ -58,6 +67,7 @@ class MovingBody {
   int number_;
   double h_ = 0;
   Pose now_, start_, end_;
+  std::optional<ReactingBody> reacting_;
 };
 
 }  // namespace drape

@@ -5,9 +5,13 @@
 //             the straight edges between them stay clear of a curved body
 //   motion    where the body is at a time; the shape is given in the body's own frame, which is the world's
 //             where nothing moves
+//   rigid     its mass, when it falls and the cloth pushes it (constraints/reacting_body.h)
 #pragma once
 
+#include <optional>
+
 #include "constraints/motion.h"
+#include "constraints/reacting_body.h"
 #include "constraints/shape.h"
 
 namespace drape {
@@ -25,6 +29,7 @@ struct Obstacle {
   Friction friction = {};
   double margin = 2e-3;  // m
   Motion motion = {};
+  std::optional<RigidBody> rigid = {};  // reacts to the cloth, and then has no motion given but its start
 };
 
 // Throws InputError when the shape, a coefficient of friction or the margin makes no sense.

@@ -121,13 +121,13 @@ bool Bdf::attempt(State& state, double h, bool whole, StepReport& report) {
   return true;
 }
 
-// More than the error of a smooth motion: order 2 has looked back across a contact or a slackening of stiff
+// More than what moving bodies bring and the error of a smooth motion: order 2 has looked back across a contact or a slackening of stiff
 // cloth, and the step is taken again by order 1.
 bool Bdf::makes_energy(const State& state) const {
   const auto energy = [&](const VecX& x, const VecX& v) {
     return system_.elastic_energy(x) + system_.gravity_energy(x) + system_.kinetic_energy(v);
   };
-  return energy(x_, v_) > energy(state.x, state.v) + 0.05 * fall_energy_ +
+  return energy(x_, v_) > energy(state.x, state.v) + constraints_.work() + 0.05 * fall_energy_ +
                               1e-3 * system_.kinetic_energy(state.v) +
                               RoundOff{round_off_energy_, 0}.energy(system_.elastic_energy(x_));
 }
@@ -203,7 +203,8 @@ void Bdf::remember(const State& state, double h) {
 
 void Bdf::mark_touching() {
   for (const Contact& c : constraints_.touching()) past_.touched[static_cast<std::size_t>(c.particle)] = 1;
-  for (const MovingPin& p : constraints_.moving_pins()) past_.touched[static_cast<std::size_t>(p.particle)] = 1;
+  for (const MovingPin& p : constraints_.moving_pins())
+    past_.touched[static_cast<std::size_t>(p.particle)] = 1;
 }
 
 void Bdf::assemble(Stiffness stiffness) {
@@ -236,7 +237,6 @@ LinearReport Bdf::solve_within_contacts(const State& state, Stiffness stiffness,
     if (!contact || round == options_.max_contact_solves) return linear;
 
     const Stopwatch watch(report.collide_ms);
-    v_new_ = v_ + dv_;
     // Twice the residual: what the solve left over is not a reaction.
     bool changed = constraints_.react(v_new_, r_, 2 * linear.residual_impulse);
     x_new_ = x_bar_ + c_ * v_new_;
@@ -264,7 +264,7 @@ LinearReport Bdf::solve_once(double tolerance) {
   const LinearOptions options{tolerance, options_.max_linear_iterations, weight_impulse_};
   const LinearReport linear = solver_->solve(*A_, b_rows_, filter_, options, dv_rows_);
   to_particles(pattern, dv_rows_, dv_);
-  if (!constraints_.bodies().empty()) reaction();  // while the friction stands in A
+  if (!constraints_.bodies().empty() || !constraints_.moving_pins().empty()) reaction();  // while the friction stands in A
   remove_contact_friction();
   return linear;
 }
@@ -286,7 +286,11 @@ void Bdf::reaction() {
   A_->multiply(dv_rows_, r_rows_);
   r_rows_ -= b_rows_;
   to_particles(A_->pattern(), r_rows_, r_);
-  for (const Contact& c : constraints_.touching()) r_.segment<3>(3 * c.particle) /= row_scale(c.particle);
+  const auto unscale = [&](int particle) { r_.segment<3>(3 * particle) /= row_scale(particle); };
+  for (const Contact& c : constraints_.touching()) unscale(c.particle);
+  for (const MovingPin& p : constraints_.moving_pins()) unscale(p.particle);
+  v_new_ = v_ + dv_;
+  constraints_.receive(v_new_, r_);
 }
 
 const std::vector<ContactFriction>& Bdf::friction() {

@@ -95,6 +95,7 @@ void HeldMotion::solve_contacts(const State& state, const VecX& x, const VecX& v
   const double noise = 1e-9 * weight * h * system_.gravity_acceleration().norm();
   for (int round = 0;; ++round) {
     move_within_constraints(state, x, h);
+    constraints_.receive(v_new_, r_);
     let_go(x, v);
     if (round == options.max_contact_solves) return;
     bool changed = constraints_.react(v_new_, r_, noise);

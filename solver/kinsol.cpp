@@ -152,11 +152,13 @@ bool NewtonKinsol::attempt(State& state, double h) {
     for (const FilterEntry& e : filter_.entries()) v_.segment<3>(3 * e.particle) += e.z;
     friction_ = constraints_.friction();
     if (!solve()) return false;
-    if (constraints_.bodies().empty() || round == options_.max_contact_solves) break;
+    if (constraints_.bodies().empty()) break;
     // What is left of the equation in the locked directions is the reaction.
     const Stopwatch watch(report_.collide_ms);
     equation(v_);
     r_ = F_;
+    constraints_.receive(v_, r_);
+    if (round == options_.max_contact_solves) break;
     bool changed = constraints_.react(v_, r_, 2 * report_.residual * scale_);
     x_ = x_bar_ + h * v_;
     if (constraints_.check_paths(x_)) changed = true;

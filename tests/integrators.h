@@ -27,7 +27,7 @@ inline std::vector<std::string> integrator_names() {
 }
 
 // A system that stays in one smooth branch of its forces, where it begins, and how long to follow it.
-struct Motion {
+struct Course {
   System system;
   Constraints constraints;
   State start;
@@ -35,8 +35,8 @@ struct Motion {
 };
 
 // A mass on a soft spring that swings and bounces, always taut.
-inline Motion pendulum() {
-  Motion m{System({0.0, 0.5}), Constraints(), {0, VecX::Zero(6), VecX::Zero(6)}, 1};
+inline Course pendulum() {
+  Course m{System({0.0, 0.5}), Constraints(), {0, VecX::Zero(6), VecX::Zero(6)}, 1};
   m.system.add(std::make_unique<PairForce<TensionSpring>>(
       std::vector<PairForce<TensionSpring>::Element>{{0, 1, {1, 40}}}));
   m.system.add(Gravity{});
@@ -46,10 +46,10 @@ inline Motion pendulum() {
 }
 
 // A sheet stretched by a tenth in its frame, with a bump.
-inline Motion drum() {
+inline Course drum() {
   const TriangleMesh mesh = grid(5, 5, 0.4, 0.4);
   const Fabric fabric{.area_density = 0.2, .stretch = 30, .damping = 2e-3};
-  Motion m{System(lumped_mass(mesh, 0.2)), Constraints(), at_rest(mesh), 0.1};
+  Course m{System(lumped_mass(mesh, 0.2)), Constraints(), at_rest(mesh), 0.1};
   m.system.add(noh_jung(mesh, fabric));
   m.system.add(Gravity{});
   m.start.x *= 1.1;
@@ -64,8 +64,8 @@ inline Motion drum() {
 
 // A mass balanced on a buckled connection, falling over: the stiffness of the step leaves out what is
 // negative in the true one, and puts a chord in the place of the slope.
-inline Motion buckled() {
-  Motion m{System({0.0, 0.2}), Constraints(), {0, VecX::Zero(6), VecX::Zero(6)}, 0.4};
+inline Course buckled() {
+  Course m{System({0.0, 0.2}), Constraints(), {0, VecX::Zero(6), VecX::Zero(6)}, 0.4};
   m.system.add(std::make_unique<PairForce<BucklingSpring>>(
       std::vector<PairForce<BucklingSpring>::Element>{{0, 1, BucklingSpring::rest(1, 0.15, 1e9)}}));
   m.system.add(Gravity{});
@@ -75,7 +75,7 @@ inline Motion buckled() {
 }
 
 // The motion by a classical Runge-Kutta method written here, with steps far below any used in a test.
-inline State fine_reference(const Motion& m, int steps = 4000) {
+inline State fine_reference(const Course& m, int steps = 4000) {
   State s = m.start;
   const double h = m.duration / steps;
   std::vector<char> held(static_cast<std::size_t>(s.particles()), 0);
@@ -104,7 +104,7 @@ inline State fine_reference(const Motion& m, int steps = 4000) {
 inline StepOptions precise() { return {.newton_tolerance = 1e-12, .tolerance = 1e-12}; }
 
 // The end of the motion in so many steps.
-inline State run(Motion& m, std::string_view name, int steps, StepOptions options = precise()) {
+inline State run(Course& m, std::string_view name, int steps, StepOptions options = precise()) {
   State s = m.start;
   Constraints constraints = m.constraints;
   auto stepper = make_integrator(name, m.system, constraints, make_linear_solver("eigen-ldlt"), options);

@@ -9,7 +9,7 @@ using namespace drape::test;
 
 namespace {
 
-void check_order(Motion& motion, std::string_view name, int steps, double margin) {
+void check_order(Course& motion, std::string_view name, int steps, double margin) {
   const State exact = fine_reference(motion);
   const double coarse = distance(run(motion, name, steps), exact);
   const double fine = distance(run(motion, name, 2 * steps), exact);
@@ -53,29 +53,29 @@ std::complex<double> root_per_step(std::string_view name, double z) {
 }  // namespace
 
 TEST_CASE("every integrator has its order on a swinging and bouncing mass", "[integrators]") {
-  Motion motion = pendulum();
+  Course motion = pendulum();
   for (const std::string& name : integrator_names())
     if (const int order = order_of(name); order > 0)
       check_order(motion, name, order == 1 ? 3200 : order == 2 ? 400 : 100, order == 4 ? 0.15 : 0.06);
 }
 
 TEST_CASE("every integrator has its order on a small cloth", "[integrators]") {
-  Motion motion = drum();
+  Course motion = drum();
   for (const std::string& name : integrator_names())
     if (const int order = order_of(name); order > 0)
       check_order(motion, name, order == 1 ? 1600 : order == 2 ? 200 : 50, order == 4 ? 0.2 : 0.1);
 }
 
 TEST_CASE("every integrator has its order where the stiffness is not the exact one", "[integrators]") {
-  Motion motion = buckled();
+  Course motion = buckled();
   for (const std::string& name : integrator_names())
     if (const int order = order_of(name); order > 0)
       check_order(motion, name, order == 1 ? 1600 : order == 2 ? 200 : 50, order == 4 ? 0.2 : 0.1);
 }
 
 TEST_CASE("inner steps reach the tolerance asked for", "[integrators]") {
-  for (Motion (*make)() : {pendulum, drum, buckled}) {
-    Motion motion = make();
+  for (Course (*make)() : {pendulum, drum, buckled}) {
+    Course motion = make();
     const State exact = fine_reference(motion);
     for (const std::string& name : integrator_names()) {
       if (order_of(name) != 0) continue;
@@ -115,7 +115,7 @@ TEST_CASE("inner steps are bounded, and the failure says what to do", "[integrat
 }
 
 TEST_CASE("bdf2 keeps its order when steps change", "[integrators]") {
-  Motion motion = pendulum();
+  Course motion = pendulum();
   const State exact = fine_reference(motion);
   std::vector<double> error;
   for (int steps : {400, 800, 1600}) {
@@ -330,7 +330,7 @@ TEST_CASE("the explicit schemes are stable up to their limits on a cloth, to 2 %
 TEST_CASE("an explicit step that leaves the numbers is a failure that says what to do", "[integrators]") {
   for (const std::string& name : integrator_names()) {
     if (!is_explicit(name)) continue;
-    Motion m = drum();
+    Course m = drum();
     auto stepper = make_integrator(name, m.system, m.constraints, make_linear_solver("mpcg"));
     State state = m.start, before = state;
     StepReport report;
@@ -353,7 +353,7 @@ TEST_CASE("an explicit step that leaves the numbers is a failure that says what 
 TEST_CASE("a time step that is none and the state of another system are refused", "[integrators]") {
   for (const std::string& name : integrator_names()) {
     INFO(name);
-    Motion m = pendulum();
+    Course m = pendulum();
     auto stepper = make_integrator(name, m.system, m.constraints, make_linear_solver("mpcg"));
     State state = m.start;
     for (const double h : {0.0, -0.01, std::nan(""), std::numeric_limits<double>::infinity()})
@@ -370,7 +370,7 @@ TEST_CASE("a time step that is none and the state of another system are refused"
 TEST_CASE("order 1 is Baraff & Witkin's step", "[integrators]") {
   // (M + h D + h^2 K) dv = h (f - h K v), dense, K and D by differences of the force: taut springs, so that
   // nothing is clamped.
-  Motion m = drum();
+  Course m = drum();
   m.start.v = random_vector(m.start.x.size(), 0.1, 5);
   for (int i : m.constraints.pinned()) m.start.v.segment<3>(3 * i).setZero();
   const Eigen::Index n = m.start.x.size();

@@ -147,8 +147,8 @@ TEST_CASE("a step goes on from the state it is given, and with the pins there ar
     options.absolute_tolerance_position = options.absolute_tolerance_velocity = 1e-8;
     for (const bool pinned : {false, true}) {
       INFO(name << (pinned ? ", another pin" : ", moved"));
-      Motion used = drum(), fresh = drum();
-      const auto make = [&](Motion& m) {
+      Course used = drum(), fresh = drum();
+      const auto make = [&](Course& m) {
         return make_integrator(name, m.system, m.constraints, make_linear_solver("eigen-ldlt"), options);
       };
       auto stepper = make(used);

@@ -1,0 +1,162 @@
+// Bodies that move, and what they do to what touches them: belts, spinning balls, fast plates, pins that
+// follow; bodies that the cloth moves.
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+
+#include "mesh/generate.h"
+#include "tests/integrators.h"
+#include "tests/tables.h"
+
+using namespace drape;
+using namespace drape::test;
+
+namespace {
+
+constexpr double h = 0.01;  // s
+
+// Loose particles of 10 g among bodies.
+struct Particles {
+  System system;
+  Constraints constraints;
+  State state;
+  std::unique_ptr<Integrator> integrator;
+
+  Particles(const std::vector<Vec3>& places, std::string_view name, const Vec3& g = {0, -9.81, 0})
+      : system(std::vector<double>(places.size(), 0.01)), state{0, stacked(places), {}} {
+    state.v = VecX::Zero(state.x.size());
+    system.add(Gravity{g});
+    integrator = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+  }
+  Vec3 x(int i = 0) const { return state.x.segment<3>(3 * i); }
+  Vec3 v(int i = 0) const { return state.v.segment<3>(3 * i); }
+  void run(int steps, double step = h) {
+    for (int n = 0; n < steps; ++n) REQUIRE(integrator->advance(state, step).done);
+  }
+};
+
+std::vector<std::string> all_integrators() {
+  std::vector<std::string> names;
+  for (const IntegratorInfo& info : integrators()) names.emplace_back(info.name);
+  return names;
+}
+
+Obstacle belt(double speed, double mu) {
+  return {.shape = Plane{},
+          .friction = mu,
+          .margin = 0,
+          .motion = Motion::constant({speed, 0, 0}, Vec3::Zero(), Vec3::Zero())};
+}
+
+}  // namespace
+
+TEST_CASE("a moving belt carries what lies on it at its own speed, by mu g", "[moving-bodies]") {
+  for (const std::string& name : all_integrators()) {
+    INFO(name);
+    Particles p({Vec3::Zero()}, name);
+    p.constraints.add(belt(1, 0.3));
+    p.run(20);  // v = mu g t until it sticks, at 0.34 s
+    CHECK(p.v()[0] == Approx(0.3 * 9.81 * 0.2).epsilon(0.06));
+    p.run(30);
+    CHECK((p.v() - Vec3(1, 0, 0)).norm() < 1e-6);
+    CHECK(std::abs(p.x()[1]) < 1e-9);
+  }
+}
+
+TEST_CASE("without friction a moving belt carries nothing", "[moving-bodies]") {
+  Particles p({Vec3::Zero()}, "implicit-euler");
+  p.constraints.add(belt(1, 0));
+  p.run(50);
+  CHECK(p.v().norm() < 1e-9);
+}
+
+TEST_CASE("a lift takes its load with it, up and down", "[moving-bodies]") {
+  for (const std::string& name : all_integrators()) {
+    INFO(name);
+    for (double speed : {0.5, -0.5}) {
+      Particles p({Vec3(0, 0.002, 0)}, name);
+      p.constraints.add(
+          Obstacle{.shape = Plane{}, .motion = Motion::constant({0, speed, 0}, Vec3::Zero(), Vec3::Zero())});
+      p.run(40);
+      CHECK(p.v()[1] == Approx(speed).margin(1e-6));
+      CHECK(p.x()[1] == Approx(0.4 * speed + 0.002).margin(1e-4));
+    }
+  }
+}
+
+TEST_CASE("what sticks to a turning body goes round with it", "[moving-bodies]") {
+  for (const std::string& name : all_integrators()) {
+    INFO(name);
+    // A turntable with the particle 0.2 m from its axis: mu g = 3.9 > 0.2 * 2^2 = 0.8 m/s^2.
+    Particles p({Vec3(0.2, 0, 0)}, name);
+    p.state.v = Vec3(0, 0, -0.4);
+    p.constraints.add(Obstacle{.shape = Plane{},
+                               .friction = 0.4,
+                               .margin = 0,
+                               .motion = Motion::constant(Vec3::Zero(), {0, 2, 0}, Vec3::Zero())});
+    p.run(100);
+    CHECK(p.x().norm() == Approx(0.2).epsilon(0.01));
+    CHECK(std::atan2(-p.x()[2], p.x()[0]) == Approx(2.0).epsilon(0.01));  // 2 rad/s for 1 s
+  }
+}
+
+TEST_CASE("a body that moves fast does not pass through what is in its way", "[moving-bodies]") {
+  constexpr double step = 1.0 / 60;  // s: 83 mm at 5 m/s
+  for (const std::string& name : all_integrators()) {
+    INFO(name);
+    Particles p({Vec3(0.04, 0, 0), Vec3(0.083, 0.01, 0.02), Vec3(0.7, 0, 0)}, name, Vec3::Zero());
+    const Box plate{{0, 0, 0}, {0.004, 0.5, 0.5}};
+    p.constraints.add(Obstacle{.shape = plate,
+                               .friction = 0,
+                               .margin = 1e-3,
+                               .motion = Motion::constant({5, 0, 0}, Vec3::Zero(), Vec3::Zero())});
+    for (int n = 0; n < 30; ++n) {
+      REQUIRE(p.integrator->advance(p.state, step).done);
+      const double front = 0.002 + 5 * p.state.time;
+      for (int i = 0; i < 3; ++i) CHECK(p.x(i)[0] > front - 1e-9);
+    }
+    for (int i = 0; i < 3; ++i) CHECK(p.v(i)[0] >= 5 - 1e-6);
+  }
+}
+
+TEST_CASE("a moving frame makes no difference: body and particle at the same speed are at rest",
+          "[moving-bodies]") {
+  const Vec3 drift(3, 0.5, -2);
+  for (const std::string& name : {std::string("implicit-euler"), std::string("bdf2"), std::string("rk4")}) {
+    INFO(name);
+    Particles still({Vec3(0.1, 0.45, 0)}, name), moving({Vec3(0.1, 0.45, 0)}, name);
+    moving.state.v = drift;
+    still.constraints.add(Obstacle{.shape = Sphere{{0, 0, 0}, 0.4}, .friction = 0.2});
+    moving.constraints.add(Obstacle{.shape = Sphere{{0, 0, 0}, 0.4},
+                                    .friction = 0.2,
+                                    .motion = Motion::constant(drift, Vec3::Zero(), Vec3::Zero())});
+    still.run(60);
+    moving.run(60);
+    CHECK((moving.x() - still.x() - 0.6 * drift).norm() < 1e-6);
+    CHECK((moving.v() - still.v() - drift).norm() < 1e-5);
+  }
+}
+
+TEST_CASE("pins follow a body, and a path of their own", "[moving-bodies]") {
+  const TriangleMesh mesh = grid(5, 5, 0.1, 0.1);
+  for (const std::string& name : all_integrators()) {
+    INFO(name);
+    System system(masses(mesh, Fabric{.area_density = 0.2, .stretch = 50, .bend = 1e-6, .damping = 1e-3}));
+    system.add(noh_jung(mesh, Fabric{.area_density = 0.2, .stretch = 50, .bend = 1e-6, .damping = 1e-3}));
+    system.add(Gravity{});
+    Constraints constraints;
+    State state = at_rest(mesh);
+    const Motion turn = Motion::constant({0.1, 0, 0}, {0, 1, 0}, {0.05, 0, 0});
+    const Motion rise = Motion::constant({0, 0.2, 0}, Vec3::Zero(), Vec3::Zero());
+    constraints.add(Obstacle{.shape = Sphere{{0, 9, 0}, 0.1}, .motion = turn});
+    constraints.pin_to_body({0, 1}, 0, state.x);
+    constraints.pin_along({1, 5}, rise, state.x);
+    auto integrator = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+    const double step = name == "explicit-euler" || name == "midpoint" ? 2e-4 : 2e-3;
+    const int steps = static_cast<int>(std::lround(0.1 / step));
+    for (int n = 0; n < steps; ++n) REQUIRE(integrator->advance(state, step).done);
+    const auto at = [&](int i) { return Vec3(state.x.segment<3>(3 * i)); };
+    const auto rest = [&](int i) { return mesh.positions[static_cast<std::size_t>(i)]; };
+    for (int i : {0, 1}) CHECK((at(i) - turn.at(0.1).to_world(rest(i))).norm() < 1e-9);
+    CHECK((at(5) - rest(5) - Vec3(0, 0.02, 0)).norm() < 1e-9);
+  }
+}
