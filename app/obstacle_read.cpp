@@ -1,28 +1,41 @@
 #include "app/obstacle_read.h"
 
-#include <Eigen/Geometry>
-
+#include "app/motion_read.h"
+#include "app/rigid_read.h"
 #include "mesh/obj.h"
 
 namespace drape {
 
 namespace fs = std::filesystem;
 
-Mat3 read_rotation(Table& table) {
-  Mat3 rotation = Mat3::Identity();
+Vec3 read_axis(Table& table) {
+  Vec3 axis = Vec3::UnitY();
+  table.require("axis");
+  table.read("axis", axis, dimension::number);
+  if (!(axis.norm() > 0)) table.fail("axis", "expected an axis that has a length");
+  return axis.normalized();
+}
+
+Turns read_turns(Table& table) {
+  Turns turns;
   for (Table& turn : table.tables("rotate")) {
-    Vec3 axis = Vec3::UnitY();
     double angle = 0;
-    turn.require("axis");
+    const Vec3 axis = read_axis(turn);
     turn.require("angle");
-    turn.read("axis", axis, dimension::number);
     turn.read("angle", angle, dimension::angle);
-    if (!(axis.norm() > 0)) turn.fail("axis", "expected an axis that has a length");
     turn.finish();
-    rotation = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix() * rotation;
+    turns.emplace_back(angle, axis);
   }
+  return turns;
+}
+
+Mat3 product(const Turns& turns) {
+  Mat3 rotation = Mat3::Identity();
+  for (const Eigen::AngleAxisd& turn : turns) rotation = turn.toRotationMatrix() * rotation;
   return rotation;
 }
+
+Mat3 read_rotation(Table& table) { return product(read_turns(table)); }
 
 Placement read_placement(Table& table) {
   Placement placement;
@@ -103,6 +116,17 @@ Friction read_friction(Table& table) {
   return friction;
 }
 
+// What a body turns about where the scene does not say.
+Vec3 middle(const ObstacleEntry& entry) {
+  const Shape& shape = entry.obstacle.shape;
+  if (const Plane* const plane = std::get_if<Plane>(&shape)) return plane->point;
+  if (const Sphere* const sphere = std::get_if<Sphere>(&shape)) return sphere->centre;
+  if (const Bowl* const bowl = std::get_if<Bowl>(&shape)) return bowl->centre;
+  if (const Box* const box = std::get_if<Box>(&shape)) return box->centre;
+  if (const Capsule* const capsule = std::get_if<Capsule>(&shape)) return (capsule->a + capsule->b) / 2;
+  return entry.placement.translate;
+}
+
 }  // namespace
 
 ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
@@ -125,6 +149,8 @@ ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
   table.read("name", entry.name);
   entry.obstacle.friction = read_friction(table);
   table.read("margin", entry.obstacle.margin, dimension::length, Range::not_negative);
+  entry.motion = read_motion(table, folder, middle(entry)).value_or(Motion());
+  read_rigid(table, entry);
   table.finish();
   try {
     if (shape != "mesh") check(entry.obstacle);

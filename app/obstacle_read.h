@@ -1,6 +1,9 @@
 // The [[obstacle]] tables of a scene file, and the keys that place a mesh; app/README.md lists them.
 #pragma once
 
+#include <Eigen/Geometry>
+#include <vector>
+
 #include "app/scene.h"
 #include "app/table.h"
 
@@ -8,6 +11,11 @@ namespace drape {
 
 ObstacleEntry read_obstacle(Table& table, const std::filesystem::path& folder);
 
+using Turns = std::vector<Eigen::AngleAxisd>;  // the first is made first
+
+Vec3 read_axis(Table& table);    // `axis`, required; of length 1
+Turns read_turns(Table& table);  // `rotate`
+Mat3 product(const Turns& turns);
 Mat3 read_rotation(Table& table);  // `rotate`
 Placement read_placement(Table& table);
 // A file named relative to the folder of the scene.

@@ -10,6 +10,7 @@
 #include "app/settings.h"
 #include "app/words.h"
 #include "constraints/constraints.h"
+#include "constraints/motion.h"
 #include "solver/fabric.h"
 #include "solver/integrator.h"
 
@@ -24,7 +25,9 @@ struct Placement {
 
 struct PinEntry {
   PinRule rule;
-  std::string where;  // "scene.toml:21"
+  std::string where;             // "scene.toml:21"
+  std::string follow;            // the obstacle that it is fastened to; empty: none
+  std::optional<Motion> motion;  // or a path of its own
 };
 
 struct ClothEntry {
@@ -38,11 +41,22 @@ struct ClothEntry {
   std::string where;
 };
 
+// A body that moves by what acts on it.
+struct RigidBodyEntry {
+  double mass = 0;               // kg
+  std::optional<Vec3> inertia;   // kg m^2, about the axes through its centre of mass; a mesh's: by the mesh
+  Mat3 axes = Mat3::Identity();  // as it stands at first: a box's edges, a capsule's a b and two across
+  Vec3 velocity = Vec3::Zero();  // m/s, of the centre of mass, at first
+  Vec3 spin = Vec3::Zero();      // rad/s
+};
+
 struct ObstacleEntry {
   std::string name;
   Obstacle obstacle;           // a mesh's shape is null until it is loaded
   std::filesystem::path mesh;  // OBJ, of the shape "mesh"
   Placement placement;         // of the mesh
+  Motion motion;
+  std::optional<RigidBodyEntry> rigid;
   std::string where;
 };
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "app/fabrics.h"
+#include "app/motion_read.h"
 #include "app/obstacle_read.h"
 #include "app/scene.h"
 #include "app/table.h"
@@ -74,7 +75,7 @@ std::string read_name(Table& table, const fs::path& mesh) {
   return name;
 }
 
-PinRule read_pin(Table& pin) {
+PinRule read_pin_rule(Table& pin) {
   if (pin.has("vertices") + pin.has("box") + pin.has("group") != 1)
     pin.fail("", "expected one of vertices = [...], box = [[...], [...]], group = \"...\"");
   PinVertices by_number;
@@ -82,7 +83,6 @@ PinRule read_pin(Table& pin) {
   pin.read("vertices", by_number.vertices);
   pin.read("group", by_group.name);
   const Node* box = pin.take("box");
-  pin.finish();
   if (pin.has("vertices")) return by_number;
   if (pin.has("group")) return by_group;
   if (box->kind != Node::Kind::array || box->items.size() != 2)
@@ -99,6 +99,18 @@ PinRule read_pin(Table& pin) {
   return by_box;
 }
 
+PinEntry read_pin(Table& pin, const fs::path& folder) {
+  for (const char* key : {"vertices", "box", "group", "follow", "motion"}) pin.take(key);
+  pin.finish();
+  PinEntry entry{read_pin_rule(pin), pin.where(), {}, {}};
+  pin.read("follow", entry.follow);
+  if (pin.has("follow") && entry.follow.empty()) pin.fail("follow", "expected the name of an obstacle");
+  if (pin.has("follow") && pin.has("motion"))
+    pin.fail("follow", "a pin follows a body or has a motion of its own, not both");
+  entry.motion = read_motion(pin, folder, Vec3::Zero());
+  return entry;
+}
+
 ClothEntry read_cloth(Table& table, const fs::path& folder) {
   ClothEntry cloth;
   cloth.where = table.where();
@@ -111,7 +123,7 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
   table.read("fabric", cloth.fabric_name, fabric_names());
   if (!cloth.fabric_name.empty()) cloth.fabric = load_fabric(cloth.fabric_name).fabric;
   read_fabric(table, cloth.fabric);
-  for (Table& pin : table.tables("pins")) cloth.pins.push_back({read_pin(pin), pin.where()});
+  for (Table& pin : table.tables("pins")) cloth.pins.push_back(read_pin(pin, folder));
   table.finish();
   return cloth;
 }
@@ -122,6 +134,20 @@ void check_names(const std::vector<ClothEntry>& cloths) {
       if (cloths[i].name == cloths[j].name)
         throw InputError(cloths[i].where + ": two cloths are called '" + cloths[i].name +
                          "'; give one another name");
+}
+
+// A pin follows an obstacle of the scene, of which there is one.
+void check_follow(const PinEntry& pin, const std::vector<ObstacleEntry>& obstacles) {
+  if (pin.follow.empty()) return;
+  Names names;
+  for (const ObstacleEntry& obstacle : obstacles) names.push_back(obstacle.name);
+  const auto count = std::count(names.begin(), names.end(), pin.follow);
+  if (count == 1) return;
+  const std::string start = pin.where + ": follow = \"" + one_line(pin.follow) + "\": ";
+  if (count == 0)
+    throw InputError(start + "there is no obstacle of that name; " + suggestion(pin.follow, names));
+  throw InputError(start + "there are " + std::to_string(count) +
+                   " obstacles of that name; give each a name of its own");
 }
 
 }  // namespace
@@ -142,6 +168,8 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path
   table.finish();
   if (scene.cloths.empty()) table.fail("cloth", "there is no cloth");
   check_names(scene.cloths);
+  for (const ClothEntry& cloth : scene.cloths)
+    for (const PinEntry& pin : cloth.pins) check_follow(pin, scene.obstacles);
   return scene;
 }
 

@@ -1,9 +1,9 @@
 #include "app/toml_file.h"
 
-#include <fstream>
 #include <sstream>
 #include <toml.hpp>
 
+#include "app/text_file.h"
 #include "app/words.h"
 #include "mesh/obj.h"
 
@@ -140,20 +140,7 @@ Node parse_toml(std::string_view text, const std::string& name) {
 }
 
 Node read_toml(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  const auto status = std::filesystem::status(path);
-  if (!std::filesystem::exists(status)) throw InputError(name + ": no such file");
-  if (std::filesystem::is_directory(status))
-    throw InputError(name + ": is a directory; name a scene file in it");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(name + ": cannot be opened");
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (file.bad()) throw InputError(name + ": cannot be read to its end");
-  const std::string content = text.str();
-  if (content.empty()) throw InputError(name + ": the file is empty");
-  if (content.find('\0') != content.npos) throw InputError(name + ": is binary; a TOML text is expected");
-  return parse_toml(content, name);
+  return parse_toml(read_text(path, "TOML"), path.string());
 }
 
 Node parse_toml_value(std::string_view text, const std::string& where) {

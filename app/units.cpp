@@ -2,10 +2,12 @@
 
 #include <udunits2.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -82,6 +84,13 @@ bool same_kind(const ut_unit* a, const ut_unit* b) {
   return ratio && ut_is_dimensionless(ratio.get()) && ut_are_convertible(a, b);
 }
 
+// An angle has no dimension, so that udunits takes 1 Hz for 1 rad/s; whoever writes it may mean a turn.
+bool names_an_angle(std::string_view unit) {
+  constexpr std::string_view angles[] = {"rad", "deg", "\xC2\xB0", "rpm", "turn", "rotation", "revolution"};
+  return std::any_of(std::begin(angles), std::end(angles),
+                     [&](std::string_view angle) { return unit.find(angle) != unit.npos; });
+}
+
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
@@ -110,6 +119,8 @@ double parse_quantity(std::string_view text, const Dimension& dimension) {
   if (!unit) throw InputError("'" + std::string(unit_text) + "' is not a unit; " + expected(dimension));
   const Unit wanted(ut_parse(unit_system(), std::string(dimension.unit).c_str(), UT_UTF8));
   if (!same_kind(unit.get(), wanted.get())) throw InputError(expected(dimension));
+  if (dimension.unit == dimension::angular_rate.unit && !names_an_angle(unit_text))
+    throw InputError("'" + std::string(unit_text) + "' names no angle: write rpm, deg/s or rad/s");
 
   cv_converter* const converter = ut_get_converter(unit.get(), wanted.get());
   if (!converter) throw InputError(expected(dimension));

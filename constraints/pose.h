@@ -1,10 +1,28 @@
+// Where a rigid body is.
+//   x = R X + t,  X a point of the body where it was drawn, x the same point where it is now   [m]
+//   R rotation (orthonormal, right-handed), t translation [m]
+// A pose that stands for nothing being moved is the default, R = 1 and t = 0.
 #pragma once
+
 #include "mesh/triangle_mesh.h"
+
 namespace drape {
+
 struct Pose {
   Mat3 rotation = Mat3::Identity();
-  Vec3 translation = Vec3::Zero();
+  Vec3 translation = Vec3::Zero();  // m
+
   Vec3 to_world(const Vec3& X) const { return rotation * X + translation; }
   Vec3 to_body(const Vec3& x) const { return rotation.transpose() * (x - translation); }
+  Vec3 direction_to_world(const Vec3& D) const { return rotation * D; }
+  Vec3 direction_to_body(const Vec3& d) const { return rotation.transpose() * d; }
 };
+
+// First the right one: (a * b).to_world(X) = a.to_world(b.to_world(X)).
+inline Pose operator*(const Pose& a, const Pose& b) {
+  return {a.rotation * b.rotation, a.to_world(b.translation)};
+}
+
+inline Pose inverse(const Pose& pose) { return {pose.rotation.transpose(), pose.to_body(Vec3::Zero())}; }
+
 }  // namespace drape

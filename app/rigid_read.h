@@ -1,0 +1,12 @@
+// The keys of an obstacle that moves by what acts on it: mass, inertia, velocity, spin.
+#pragma once
+
+#include "app/scene.h"
+#include "app/table.h"
+
+namespace drape {
+
+// Reads them into entry.rigid; the shape and the placement of the entry are read already.
+void read_rigid(Table& table, ObstacleEntry& entry);
+
+}  // namespace drape
