@@ -58,7 +58,7 @@ void check_moments(const Table& table, const Vec3& inertia) {
 
 }  // namespace
 
-void read_rigid(Table& table, ObstacleEntry& entry) {
+void read_rigid(Table& table, ObstacleEntry& entry, const Vec3& middle) {
   RigidBodyEntry rigid;
   table.read("mass", rigid.mass, dimension::mass, Range::positive);
   for (const char* key : {"inertia", "velocity", "spin"})
@@ -78,6 +78,7 @@ void read_rigid(Table& table, ObstacleEntry& entry) {
   rigid.spin = read_spin(table);
   rigid.inertia = solid_moments(entry.obstacle.shape, rigid.mass);
   rigid.axes = own_axes(entry);
+  rigid.centre = middle;
   if (table.has("inertia")) {
     Vec3 inertia;
     table.read("inertia", inertia, dimension::moment_of_inertia);

@@ -10,7 +10,6 @@
 #include "app/settings.h"
 #include "app/words.h"
 #include "constraints/constraints.h"
-#include "constraints/motion.h"
 #include "solver/fabric.h"
 #include "solver/integrator.h"
 
@@ -45,6 +44,7 @@ struct ClothEntry {
 struct RigidBodyEntry {
   double mass = 0;               // kg
   std::optional<Vec3> inertia;   // kg m^2, about the axes through its centre of mass; a mesh's: by the mesh
+  Vec3 centre = Vec3::Zero();    // m, of mass, at first; a mesh's: by the mesh
   Mat3 axes = Mat3::Identity();  // as it stands at first: a box's edges, a capsule's a b and two across
   Vec3 velocity = Vec3::Zero();  // m/s, of the centre of mass, at first
   Vec3 spin = Vec3::Zero();      // rad/s
@@ -55,7 +55,6 @@ struct ObstacleEntry {
   Obstacle obstacle;           // a mesh's shape is null until it is loaded
   std::filesystem::path mesh;  // OBJ, of the shape "mesh"
   Placement placement;         // of the mesh
-  Motion motion;
   std::optional<RigidBodyEntry> rigid;
   std::string where;
 };

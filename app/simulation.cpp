@@ -4,6 +4,7 @@
 
 #include "app/warnings.h"
 #include "mesh/obj.h"
+#include "mesh/solid.h"
 #include "solver/fabric.h"
 
 namespace drape {
@@ -44,12 +45,23 @@ void add_cloths(const Scene& scene, Simulation& simulation) {
   }
 }
 
+void pin_down(const PinEntry& pin, const Cloth& cloth, const Scene& scene, Simulation& simulation) {
+  std::vector<int> particles = select(pin.rule, cloth.mesh);
+  for (int& v : particles) v += cloth.first_particle;
+  Constraints& constraints = *simulation.constraints;
+  if (pin.motion) return constraints.pin_along(particles, *pin.motion, simulation.state.x);
+  if (pin.follow.empty()) return constraints.pin(particles);
+  const auto body = std::find_if(scene.obstacles.begin(), scene.obstacles.end(),
+                                 [&](const ObstacleEntry& o) { return o.name == pin.follow; });
+  constraints.pin_to_body(particles, static_cast<int>(body - scene.obstacles.begin()), simulation.state.x);
+}
+
 void add_pins(const Scene& scene, Simulation& simulation) {
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
     const Cloth& cloth = simulation.cloths[k];
     for (const PinEntry& pin : scene.cloths[k].pins) {
       try {
-        for (int v : select(pin.rule, cloth.mesh)) simulation.constraints->pin(cloth.first_particle + v);
+        pin_down(pin, cloth, scene, simulation);
       } catch (const InputError& error) {
         throw InputError(pin.where + ": " + error.what());
       }
@@ -71,12 +83,30 @@ MeshBody load_body(const ObstacleEntry& entry, Body& body, Names& messages) {
   return surface;
 }
 
+// The body that reacts. What the scene leaves to a mesh: the solid of uniform density within it.
+RigidBody rigid_body(const ObstacleEntry& entry, const Obstacle& obstacle, const Vec3& gravity) {
+  const RigidBodyEntry& given = *entry.rigid;
+  RigidBody body{given.mass, Mat3::Identity(), given.centre, given.velocity, given.spin, gravity};
+  if (const auto* mesh = std::get_if<MeshBody>(&obstacle.shape)) {
+    if (!(*mesh)->closed())
+      throw InputError(
+          entry.where + ": mass: " + entry.mesh.string() +
+          ": the mesh is not closed: it has no inside that could weigh; close it, or leave the mass out");
+    const Solid solid = solid_of((*mesh)->mesh());
+    body.centre = solid.centre;
+    body.inertia = given.mass / solid.volume * solid.inertia;
+  }
+  if (given.inertia) body.inertia = given.axes * given.inertia->asDiagonal() * given.axes.transpose();
+  return body;
+}
+
 void add_obstacles(const Scene& scene, Simulation& simulation) {
   for (const ObstacleEntry& entry : scene.obstacles) {
     Obstacle obstacle = entry.obstacle;
     Body body;
     body.name = entry.name;
     if (!entry.mesh.empty()) obstacle.shape = load_body(entry, body, simulation.messages);
+    if (entry.rigid) obstacle.rigid = rigid_body(entry, obstacle, scene.simulation.gravity);
     try {
       simulation.constraints->add(std::move(obstacle));
     } catch (const InputError& error) {
@@ -117,8 +147,8 @@ Simulation make_simulation(const Scene& scene) {
   Simulation simulation;
   simulation.constraints = std::make_unique<Constraints>(scene.simulation.contact);
   add_cloths(scene, simulation);
-  add_pins(scene, simulation);
   add_obstacles(scene, simulation);
+  add_pins(scene, simulation);  // some of them to bodies
   add_warnings(scene, simulation);
   simulation.integrator =
       make_integrator(scene.simulation.integrator, *simulation.system, *simulation.constraints,

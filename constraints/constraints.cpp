@@ -273,7 +273,8 @@ void Constraints::receive(const VecX& v, const VecX& r) {
     push(f.body, f.particle, f.body_velocity, f.impulse - h_ * (f.damping * slip));
   }
   for (const MovingPin& pin : moving_pins_) {
-    const Vec3 impulse = r.segment<3>(3 * pin.particle), velocity = pin_velocity_.segment<3>(3 * pin.particle);
+    const Vec3 impulse = r.segment<3>(3 * pin.particle),
+               velocity = pin_velocity_.segment<3>(3 * pin.particle);
     if (pin.body >= 0)
       push(pin.body, pin.particle, velocity, impulse);
     else

@@ -121,8 +121,8 @@ bool Bdf::attempt(State& state, double h, bool whole, StepReport& report) {
   return true;
 }
 
-// More than what moving bodies bring and the error of a smooth motion: order 2 has looked back across a contact or a slackening of stiff
-// cloth, and the step is taken again by order 1.
+// More than what moving bodies bring and the error of a smooth motion: order 2 has looked back across a
+// contact or a slackening of stiff cloth, and the step is taken again by order 1.
 bool Bdf::makes_energy(const State& state) const {
   const auto energy = [&](const VecX& x, const VecX& v) {
     return system_.elastic_energy(x) + system_.gravity_energy(x) + system_.kinetic_energy(v);
@@ -264,7 +264,8 @@ LinearReport Bdf::solve_once(double tolerance) {
   const LinearOptions options{tolerance, options_.max_linear_iterations, weight_impulse_};
   const LinearReport linear = solver_->solve(*A_, b_rows_, filter_, options, dv_rows_);
   to_particles(pattern, dv_rows_, dv_);
-  if (!constraints_.bodies().empty() || !constraints_.moving_pins().empty()) reaction();  // while the friction stands in A
+  if (!constraints_.bodies().empty() || !constraints_.moving_pins().empty())
+    reaction();  // while the friction stands in A
   remove_contact_friction();
   return linear;
 }

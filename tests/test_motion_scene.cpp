@@ -26,7 +26,7 @@ const std::string cloth = "[[cloth]]\nmesh = \"sheet.obj\"\n";  // two lines: th
 const std::string ball =
     cloth + "[[obstacle]]\nshape = \"sphere\"\nradius = 0.3\ncentre = [1, 2, 3]\n";  // to line 6
 
-Motion motion_of(const std::string& line) { return read(ball + line + "\n").obstacles[0].motion; }
+Motion motion_of(const std::string& line) { return read(ball + line + "\n").obstacles[0].obstacle.motion; }
 
 double off(const Motion& motion, double time, const Vec3& X, const Vec3& x) {
   return (motion.at(time).to_world(X) - x).norm();
@@ -66,7 +66,7 @@ Vec3 moments_by_cubes(const Shape& shape, const Vec3& centre, const Mat3& axes, 
 
 TEST_CASE("a body without a motion stands", "[motion]") {
   const Scene scene = read(ball);
-  CHECK_FALSE(scene.obstacles[0].motion.moves());
+  CHECK_FALSE(scene.obstacles[0].obstacle.motion.moves());
   CHECK_FALSE(scene.obstacles[0].rigid);
 }
 
@@ -103,8 +103,8 @@ TEST_CASE("a body turns about its middle unless it says otherwise", "[motion]") 
     INFO(row.body);
     const Scene scene =
         read(cloth + "[[obstacle]]\n" + row.body + "motion.spin = { axis = [1, 1, 0], rate = 1 }\n");
-    CHECK(off(scene.obstacles[0].motion, 2, row.middle, row.middle) < 1e-14);
-    CHECK(off(scene.obstacles[0].motion, 2, Vec3(0, 0, 5), Vec3(0, 0, 5)) > 0.1);
+    CHECK(off(scene.obstacles[0].obstacle.motion, 2, row.middle, row.middle) < 1e-14);
+    CHECK(off(scene.obstacles[0].obstacle.motion, 2, Vec3(0, 0, 5), Vec3(0, 0, 5)) > 0.1);
   }
 }
 
@@ -136,7 +136,7 @@ TEST_CASE("poses are read from a CSV file beside the scene", "[motion]") {
                "\xEF\xBB\xBF# from the tracker\r\n\"time [ms]\", x [mm],y [mm],z [mm],qw,qx,qy,qz\r\n"
                "0,0,0,0,1,0,0,0\r\n\r\n1000,100,0,0,0.7071,0,0.7071,0\r\n2000,+1e2,0,0,-1,0,0,0\r\n");
   const Scene scene = read(ball + "motion = { poses = \"poses.csv\", centre = [0, 0, 0] }\n", folder.path);
-  const Motion& motion = scene.obstacles[0].motion;
+  const Motion& motion = scene.obstacles[0].obstacle.motion;
   CHECK(motion.last_time() == 2);
   CHECK(off(motion, 1, Vec3(0, 0, 1), Vec3(1.1, 0, 0)) < 1e-14);
   CHECK(off(motion, 2, Vec3(0, 0, 1), Vec3(0.1, 0, 1)) < 1e-14);  // -q is q

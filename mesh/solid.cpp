@@ -1,0 +1,29 @@
+#include "mesh/solid.h"
+
+#include <Eigen/LU>
+
+namespace drape {
+
+Solid solid_of(const TriangleMesh& surface) {
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& x : surface.positions) middle += x / static_cast<double>(surface.vertex_count());
+  double volume = 0;
+  Vec3 first = Vec3::Zero();   // integral of x
+  Mat3 second = Mat3::Zero();  // integral of x x^T
+  for (const Triangle& t : surface.triangles) {
+    Mat3 corners;
+    for (int k = 0; k < 3; ++k)
+      corners.col(k) = surface.positions[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])] - middle;
+    const double det = corners.determinant();
+    const Vec3 sum = corners.rowwise().sum();
+    volume += det / 6;
+    first += det / 24 * sum;
+    second += det / 120 * (corners * corners.transpose() + sum * sum.transpose());
+  }
+  if (volume < 0) volume = -volume, first = -first, second = -second;
+  const Vec3 offset = first / volume;
+  second -= volume * offset * offset.transpose();
+  return {volume, middle + offset, second.trace() * Mat3::Identity() - second};
+}
+
+}  // namespace drape
