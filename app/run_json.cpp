@@ -34,6 +34,7 @@ std::string run_json(const RunRecord& record) {
       {"scene", record.scene},
       {"cloths", cloths_json(record.cloths)},
       {"integrator", record.integrator},
+      {"contact", record.contact},
       {"linear_solver", record.linear_solver},
       {"threads", record.threads},
       {"duration", record.duration},

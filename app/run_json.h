@@ -22,7 +22,7 @@ struct Failure {
 };
 
 struct RunRecord {
-  std::string scene, integrator, linear_solver;
+  std::string scene, integrator, contact, linear_solver;
   std::vector<ClothCounts> cloths;
   Names warnings;
   int threads = 1;

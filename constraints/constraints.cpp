@@ -100,13 +100,11 @@ void Constraints::prepare(int particles, const std::vector<double>& masses) {
   for (auto& found : found_) found.reserve(chunk_size);
 }
 
-void Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double t,
-                             double h, bool foresight) {
-  const int n = static_cast<int>(x.size() / 3);
-  prepare(n, masses);
+void Constraints::open_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double t,
+                            double h) {
+  prepare(static_cast<int>(x.size() / 3), masses);
   t_ = t;
   h_ = h;
-  foresight_ = foresight;
   x_ = x;
   v_ = v;
   for (MovingBody& body : bodies_) body.begin_step(t, h);
@@ -117,6 +115,14 @@ void Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<dou
     correction_.segment<3>(3 * c.particle).setZero();
   }
   trial_.clear();
+}
+
+void Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double t,
+                             double h, bool foresight) {
+  open_step(x, v, masses, t, h);
+  foresight_ = foresight;
+  if (bodies_.empty()) return;
+  const int n = static_cast<int>(x.size() / 3);
   parallel_for(chunk_count(n), n < serial_below, [&](int k) {
     auto& found = found_[static_cast<std::size_t>(k)];
     double& deepest = deepest_[static_cast<std::size_t>(k)];

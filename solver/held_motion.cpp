@@ -10,7 +10,10 @@ namespace drape {
 
 void HeldMotion::begin(const State& state, double h, StepReport& report) {
   const Stopwatch watch(report.collide_ms);
-  constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h, false);
+  if (contact_ == ContactMode::constraint)
+    constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h, false);
+  else
+    constraints_.begin_response(state.x, state.v, system_.masses(), state.time, h);
   constraints_.filter(state.v, held_);
   v_start_ = state.v;
   for (const FilterEntry& e : held_.entries()) v_start_.segment<3>(3 * e.particle) += e.z;
@@ -43,8 +46,13 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
   x_new_ = x;
   v_new_ = v;
   if (!constraints_.bodies().empty()) {
-    set_free(v, h);
-    solve_contacts(state, x, v, h, options, report);
+    if (contact_ == ContactMode::constraint) {
+      set_free(v, h);
+      solve_contacts(state, x, v, h, options, report);
+    } else {
+      const Stopwatch watch(report.collide_ms);
+      constraints_.respond(contact_, x, v, x_new_, v_new_);
+    }
     end_step(constraints_, x_new_, v_new_, report);
   }
   state.x = x_new_;
