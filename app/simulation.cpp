@@ -6,6 +6,7 @@
 #include "mesh/obj.h"
 #include "mesh/solid.h"
 #include "solver/fabric.h"
+#include "solver/face_contact_force.h"
 
 namespace drape {
 namespace {
@@ -116,6 +117,22 @@ void add_obstacles(const Scene& scene, Simulation& simulation) {
   }
 }
 
+// Corners and rims of bodies are kept off the inside of triangles, too.
+void add_faces(const Scene& scene, Simulation& simulation) {
+  if (scene.obstacles.empty()) return;
+  for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
+    const Cloth& cloth = simulation.cloths[k];
+    const Fabric& fabric = scene.cloths[k].fabric;
+    std::vector<ClothFace> faces;
+    for (const Triangle& t : cloth.mesh.triangles)
+      faces.push_back(
+          {{cloth.first_particle + t[0], cloth.first_particle + t[1], cloth.first_particle + t[2]},
+           fabric.stretch_spring.value_or(fabric.stretch)});
+    simulation.constraints->add_faces(faces);
+  }
+  simulation.system->add(face_contact_force(*simulation.constraints));
+}
+
 }  // namespace
 
 const Cloth& Simulation::cloth_of(int particle) const {
@@ -148,6 +165,7 @@ Simulation make_simulation(const Scene& scene) {
   simulation.constraints = std::make_unique<Constraints>(scene.simulation.contact);
   add_cloths(scene, simulation);
   add_obstacles(scene, simulation);
+  add_faces(scene, simulation);
   add_pins(scene, simulation);  // some of them to bodies
   add_warnings(scene, simulation);
   simulation.integrator =

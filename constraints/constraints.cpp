@@ -126,6 +126,10 @@ void Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<dou
       if (!held(i)) look_for_contact(i, found, deepest);
   });
   take_found();
+  if (faces_.all().empty()) return;
+  x_new_ = x_;
+  if (foresight_) x_new_ += h_ * v_;
+  faces_.begin_step(bodies_, x_, x_new_, options_.recovery_speed * h_);
 }
 
 void Constraints::take_found() {
@@ -272,6 +276,13 @@ void Constraints::receive(const VecX& v, const VecX& r) {
     const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
     push(f.body, f.particle, f.body_velocity, f.impulse - h_ * (f.damping * slip));
   }
+  for (const FaceContact& c : faces_.touching()) {
+    Vec3 place = c.at(x_) + h_ * c.at(v) + c.at(correction_);
+    const double gap = c.gap + c.normal.dot(place);
+    const Vec3 impulse = h_ * (c.stiffness * std::max(-gap, 0.0) * c.normal - c.rubbing() * c.slip_at(v));
+    work_ += c.body_velocity.dot(impulse);
+    bodies_[static_cast<std::size_t>(c.body)].push(-impulse, place);
+  }
   for (const MovingPin& pin : moving_pins_) {
     const Vec3 impulse = r.segment<3>(3 * pin.particle),
                velocity = pin_velocity_.segment<3>(3 * pin.particle);
@@ -293,6 +304,7 @@ bool Constraints::move_bodies() {
       ContactPlane& p = c.plane[static_cast<std::size_t>(k)];
       p.body_velocity = bodies_[static_cast<std::size_t>(p.obstacle)].velocity(x_.segment<3>(3 * c.particle));
     }
+  faces_.follow(bodies_);
   move_pins();
   return true;
 }
@@ -397,6 +409,7 @@ ContactReport Constraints::end_step(VecX& x_new, VecX& v_new) {
     committed_.push_back(c);
     if (c.grip == Grip::breaking_loose) committed_.back().grip = Grip::slide;
   }
+  faces_.end_step(bodies_, x_, x_new);
   for (MovingBody& body : bodies_) body.end_step();
   last_h_ = h_;
   report.contacts = static_cast<int>(committed_.size());

@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include "constraints/contact.h"
+#include "constraints/face_contact.h"
 #include "constraints/filter.h"
 #include "constraints/moving_body.h"
 #include "constraints/pins.h"
@@ -59,6 +60,11 @@ class Constraints {
   void pin_to_body(const std::vector<int>& particles, int body, const VecX& x);
   void pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x);
 
+  // The triangles of the cloth, so that corners and rims of bodies do not come through between the vertices.
+  // They push by a force, which the system needs, too: solver/face_contact_force.h.
+  void add_faces(const std::vector<ClothFace>& faces) { faces_.add(faces); }
+  const FaceContacts& faces() const { return faces_; }
+
   const std::vector<MovingBody>& bodies() const { return bodies_; }
   const std::vector<int>& pinned() const { return pinned_; }  // ascending
   const std::vector<MovingPin>& moving_pins() const { return moving_pins_; }
@@ -77,6 +83,8 @@ class Constraints {
   // The same v and r; impulses below `noise` [N s] are round-off of the solve.
   bool react(const VecX& v, const VecX& r, double noise);
   bool check_paths(const VecX& x_new);
+  // The same motion, for the contacts of faces: true when other ones act, and their force has changed.
+  bool react_faces(const VecX& x_new, const VecX& v_new) { return faces_.react(x_new, v_new); }
   ContactReport end_step(VecX& x_new, VecX& v_new);
 
   // Of the step under way, and after it; those released in it have no planes.
@@ -112,6 +120,7 @@ class Constraints {
   std::vector<int> pinned_;
   std::vector<MovingPin> moving_pins_;
   std::vector<Motion> paths_;  // of pins
+  FaceContacts faces_;
 
   // Scratch of the step under way.
   double t_ = 0, h_ = 0;  // s
@@ -119,7 +128,7 @@ class Constraints {
   double work_ = 0;             // J
   double last_h_ = 0;           // s, of the last completed step
   std::vector<double> masses_;  // kg
-  VecX x_, v_, correction_;
+  VecX x_, v_, x_new_, correction_;
   VecX pin_velocity_;            // m/s; empty without moving pins
   std::vector<char> held_;       // pinned, or without mass
   std::vector<int> contact_of_;  // particle -> place in trial_, -1: none

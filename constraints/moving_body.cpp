@@ -28,6 +28,18 @@ void MovingBody::push(const Vec3& impulse, const Vec3& place) {
   if (reacting_) reacting_->push(impulse, place);
 }
 
+SurfacePoint MovingBody::near_start(const Vec3& x) const {
+  SurfacePoint s = closest(obstacle_.shape, start_.to_body(x));
+  s.normal = start_.direction_to_world(s.normal);
+  return s;
+}
+
+SurfacePoint MovingBody::near_end(const Vec3& x) const {
+  SurfacePoint s = closest(obstacle_.shape, end_.to_body(x));
+  s.normal = end_.direction_to_world(s.normal);
+  return s;
+}
+
 Vec3 MovingBody::carried(const Vec3& x) const { return end_.to_world(start_.to_body(x)); }
 
 double MovingBody::travel(const Vec3& x0, const Vec3& x1) const {

@@ -23,6 +23,8 @@ class MovingBody {
   MovingBody(Obstacle obstacle, int number);  // number: of the planes it makes
 
   const Obstacle& obstacle() const { return obstacle_; }
+  int number() const { return number_; }
+  double step() const { return h_; }         // s
   const Pose& pose() const { return now_; }  // at the end of the last completed step
   // The body that reacts, null when it does not.
   const ReactingBody* reacting() const { return reacting_ ? &*reacting_ : nullptr; }
@@ -43,7 +45,9 @@ class MovingBody {
   // Signed distance at the last completed step's end.
   double distance(const Vec3& x) const { return closest(obstacle_.shape, now_.to_body(x)).distance; }
 
-  // Of the step under way.
+  // Of the step under way: the surface at its start and at its end.
+  SurfacePoint near_start(const Vec3& x) const;
+  SurfacePoint near_end(const Vec3& x) const;
   Vec3 carried(const Vec3& x) const;
   Vec3 velocity(const Vec3& x) const { return (carried(x) - x) / h_; }
   // By how much the distance of a particle from the body can change on its way.

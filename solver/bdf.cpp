@@ -205,6 +205,8 @@ void Bdf::mark_touching() {
   for (const Contact& c : constraints_.touching()) past_.touched[static_cast<std::size_t>(c.particle)] = 1;
   for (const MovingPin& p : constraints_.moving_pins())
     past_.touched[static_cast<std::size_t>(p.particle)] = 1;
+  for (const FaceContact& c : constraints_.faces().touching())
+    for (int i : c.particles) past_.touched[static_cast<std::size_t>(i)] = 1;
 }
 
 void Bdf::assemble(Stiffness stiffness) {
@@ -240,13 +242,10 @@ LinearReport Bdf::solve_within_contacts(const State& state, Stiffness stiffness,
     // Twice the residual: what the solve left over is not a reaction.
     bool changed = constraints_.react(v_new_, r_, 2 * linear.residual_impulse);
     x_new_ = x_bar_ + c_ * v_new_;
-    if (constraints_.check_paths(x_new_)) {
-      changed = true;
-      if (back_ > 0) {  // what is caught now starts anew
-        mark_touching();
-        linearise(state, stiffness, report);
-      }
-    }
+    const bool caught = constraints_.check_paths(x_new_), faces = constraints_.react_faces(x_new_, v_new_);
+    changed = changed || caught || faces;
+    if (caught && back_ > 0) mark_touching();  // what is caught now starts anew
+    if ((caught && back_ > 0) || faces) linearise(state, stiffness, report);
     if (!changed && (tolerance == options_.tolerance || linear.residual <= options_.tolerance)) return linear;
     if (!changed) tolerance = options_.tolerance;
     guess_ = dv_;

@@ -45,6 +45,7 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
   if (!constraints_.bodies().empty()) {
     set_free(v, h);
     solve_contacts(state, x, v, h, options, report);
+    constraints_.react_faces(x_new_, v_new_);
     end_step(constraints_, x_new_, v_new_, report);
   }
   state.x = x_new_;

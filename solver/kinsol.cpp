@@ -162,6 +162,7 @@ bool NewtonKinsol::attempt(State& state, double h) {
     bool changed = constraints_.react(v_, r_, 2 * report_.residual * scale_);
     x_ = x_bar_ + h * v_;
     if (constraints_.check_paths(x_)) changed = true;
+    constraints_.react_faces(x_, v_);  // its force is followed by the search itself
     if (!changed) break;
   }
   report_.converged = report_.converged && solved_;
