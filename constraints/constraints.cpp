@@ -34,6 +34,7 @@ Vec3 tangential(const Contact& contact, const Vec3& v) {
 
 void Constraints::add(Obstacle obstacle) {
   bodies_.emplace_back(std::move(obstacle), static_cast<int>(bodies_.size()));
+  two_way_ = two_way_ || bodies_.back().reacting();
   clearance_.clear();
 }
 
@@ -258,7 +259,8 @@ void Constraints::receive(const VecX& v, const VecX& r) {
   const auto push = [&](int body, int particle, const Vec3& velocity, const Vec3& impulse) {
     work_ += velocity.dot(impulse);
     bodies_[static_cast<std::size_t>(body)].push(
-        -impulse, x_.segment<3>(3 * particle) + h_ * v.segment<3>(3 * particle));
+        -impulse, x_.segment<3>(3 * particle) + h_ * v.segment<3>(3 * particle),
+        (velocity - v_.segment<3>(3 * particle)).norm());
   };
   for (const Contact& c : trial_) {
     if (!c.active()) continue;
@@ -294,10 +296,10 @@ void Constraints::receive(const VecX& v, const VecX& r) {
 }
 
 // Bodies that moved otherwise than they were taken to: their planes and pins move with them.
-bool Constraints::move_bodies() {
+bool Constraints::move_bodies(double noise) {
   bool moved = false;
   for (MovingBody& body : bodies_)
-    if (body.correct()) moved = true;
+    if (body.correct(noise)) moved = true;
   if (!moved) return false;
   for (Contact& c : trial_)
     for (int k = 0; k < c.planes; ++k) {
@@ -310,12 +312,15 @@ bool Constraints::move_bodies() {
 }
 
 bool Constraints::react(const VecX& v, const VecX& r, double noise) {
-  bool changed = move_bodies();
+  bool changed = false;
   for (Contact& c : trial_) {
     if (!c.active()) continue;
     if (update_grip(c, v, r.segment<3>(3 * c.particle), noise)) changed = true;
   }
-  return changed;
+  if (!two_way_) return changed;
+  if (changed)
+    for (MovingBody& body : bodies_) body.forget();
+  return changed || move_bodies(noise);  // bodies wait for the contacts to come to a decision
 }
 
 bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double noise) const {
@@ -410,7 +415,8 @@ ContactReport Constraints::end_step(VecX& x_new, VecX& v_new) {
     if (c.grip == Grip::breaking_loose) committed_.back().grip = Grip::slide;
   }
   faces_.end_step(bodies_, x_, x_new);
-  for (MovingBody& body : bodies_) body.end_step();
+  for (MovingBody& body : bodies_)
+    if (!body.end_step()) report.converged = false;
   last_h_ = h_;
   report.contacts = static_cast<int>(committed_.size());
   return report;

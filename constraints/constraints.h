@@ -45,6 +45,7 @@ struct MovingPin {
 struct ContactReport {
   int contacts = 0;
   int guarded = 0;     // particles stopped at a surface after the solve, outside the equations
+  bool converged = true;  // the motion of bodies that react agrees with the impulses on them
   double deepest = 0;  // m, how far the deepest particle was inside a body when the step began
 };
 
@@ -66,6 +67,8 @@ class Constraints {
   const FaceContacts& faces() const { return faces_; }
 
   const std::vector<MovingBody>& bodies() const { return bodies_; }
+  // How often a step may be solved again for the sake of bodies that react.
+  int most_corrections() const { return two_way_ ? ReactingBody::most_corrections : 0; }
   const std::vector<int>& pinned() const { return pinned_; }  // ascending
   const std::vector<MovingPin>& moving_pins() const { return moving_pins_; }
 
@@ -113,7 +116,7 @@ class Constraints {
   }
   const Friction& friction_of(const Contact& contact) const { return body_of(contact).obstacle().friction; }
   void move_pins();
-  bool move_bodies();
+  bool move_bodies(double noise);
 
   ContactOptions options_;
   std::vector<MovingBody> bodies_;
@@ -126,6 +129,7 @@ class Constraints {
   double t_ = 0, h_ = 0;  // s
   bool foresight_ = true;
   double work_ = 0;             // J
+  bool two_way_ = false;        // a body reacts
   double last_h_ = 0;           // s, of the last completed step
   std::vector<double> masses_;  // kg
   VecX x_, v_, x_new_, correction_;

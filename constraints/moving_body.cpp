@@ -15,17 +15,21 @@ void MovingBody::begin_step(double t, double h) {
   end_ = reacting_ ? reacting_->begin_step(h) : obstacle_.motion.at(t + h);
 }
 
-void MovingBody::end_step() {
+bool MovingBody::end_step() {
   now_ = end_;
-  if (reacting_) reacting_->end_step(end_);
+  return !reacting_ || reacting_->end_step(end_);
+}
+
+void MovingBody::forget() {
+  if (reacting_) reacting_->forget();
 }
 
 void MovingBody::clear_impulse() {
   if (reacting_) reacting_->clear_impulse();
 }
 
-void MovingBody::push(const Vec3& impulse, const Vec3& place) {
-  if (reacting_) reacting_->push(impulse, place);
+void MovingBody::push(const Vec3& impulse, const Vec3& place, double approach) {
+  if (reacting_) reacting_->push(impulse, place, approach);
 }
 
 SurfacePoint MovingBody::near_start(const Vec3& x) const {

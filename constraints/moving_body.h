@@ -34,13 +34,14 @@ class MovingBody {
   Vec3 carried_mark(const Vec3& place) const { return end_.to_world(place); }
 
   void begin_step(double t, double h);
-  void end_step();  // a step that is abandoned does not move it
+  bool end_step();  // false: its reaction has not converged. A step that is abandoned does not move it.
 
   // What the particles push it with in this step, from zero; where it then moves otherwise than it was taken
   // to `correct` is true, and the planes it made are to be moved (velocity has changed).
   void clear_impulse();
-  void push(const Vec3& impulse, const Vec3& place);
-  bool correct() { return reacting_ && reacting_->correct(end_); }
+  void push(const Vec3& impulse, const Vec3& place, double approach = 0);
+  void forget();  // the contacts have changed
+  bool correct(double noise) { return reacting_ && reacting_->correct(end_, noise); }
 
   // Signed distance at the last completed step's end.
   double distance(const Vec3& x) const { return closest(obstacle_.shape, now_.to_body(x)).distance; }

@@ -226,8 +226,9 @@ LinearReport Bdf::solve_within_contacts(const State& state, Stiffness stiffness,
   const bool contact = !constraints_.bodies().empty();
   double tolerance =
       contact ? std::max(options_.tolerance, std::sqrt(options_.tolerance)) : options_.tolerance;
+  const int rounds = options_.max_contact_solves + constraints_.most_corrections();
   for (int round = 0;; ++round) {
-    if (round == options_.max_contact_solves) tolerance = options_.tolerance;
+    if (round == rounds) tolerance = options_.tolerance;
     LinearReport linear;
     {
       const Stopwatch watch(report.solve_ms);
@@ -236,7 +237,7 @@ LinearReport Bdf::solve_within_contacts(const State& state, Stiffness stiffness,
     ++report.linear_solves;
     report.linear_iterations += linear.iterations;
     if (linear.reason == StopReason::indefinite || linear.reason == StopReason::not_finite) return linear;
-    if (!contact || round == options_.max_contact_solves) return linear;
+    if (!contact || round == rounds) return linear;
 
     const Stopwatch watch(report.collide_ms);
     // Twice the residual: what the solve left over is not a reaction.
