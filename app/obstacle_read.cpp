@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 
+#include "app/body_frames.h"
 #include "mesh/obj.h"
 
 namespace drape {
@@ -119,6 +120,7 @@ ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
   if (shape == "mesh") {
     entry.mesh = read_path(table, "mesh", folder);
     entry.placement = read_placement(table);
+    entry.frames = read_frames(table, folder);
     entry.obstacle.shape = MeshBody();
   }
   entry.name = shape == "mesh" ? entry.mesh.filename().string() : shape;

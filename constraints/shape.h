@@ -64,16 +64,16 @@ std::string_view name(const Shape& shape);  // "plane", "sphere", ...
 SurfacePoint closest(const Shape& shape, const Vec3& x, double s = 0);
 
 // Only a DeformingBody does anything in a step: its surface goes from where it is at t0 to where it is at t1.
-void move(Shape& shape, double t0, double t1);  // s
+void move(Shape& shape, double t0, double t1);    // s
 double largest_displacement(const Shape& shape);  // m: the most that a point of the surface moves in the step
 Vec3 carried(const Shape& shape, const Vec3& x);  // where a point at s = 0 beside the surface is taken by it
 
-// Where the straight path from x0 (at s = 0) to x1 (at s = 1) first comes as near as `margin` to the surface: the fraction of the
-// path in [0, 1] and the surface there. Nothing when it stays clear. Found by conservative advancement along
-// the distance, so that a thin body is not stepped over (its limits: shape.cpp). A path that starts nearer
-// than the margin meets the surface at once only if it comes nearer still; one that moves away is clear until
-// it turns back towards the surface. The surface of a DeformingBody moves meanwhile, the fraction is s, and
-// the surface is told as it is then; it may hit what does not move.
+// Where the straight path from x0 (at s = 0) to x1 (at s = 1) first comes as near as `margin` to the surface:
+// the fraction of the path in [0, 1] and the surface there. Nothing when it stays clear. Found by
+// conservative advancement along the distance, so that a thin body is not stepped over (its limits:
+// shape.cpp). A path that starts nearer than the margin meets the surface at once only if it comes nearer
+// still; one that moves away is clear until it turns back towards the surface. The surface of a DeformingBody
+// moves meanwhile, the fraction is s, and the surface is told as it is then; it may hit what does not move.
 struct Hit {
   double fraction;
   SurfacePoint surface;

@@ -26,9 +26,9 @@ int roots_of_cubic(const std::array<double, 4>& c, std::array<double, 3>& roots)
 int crossings(const StraightWay& x, const std::array<StraightWay, 3>& corners, double tolerance,
               std::array<double, 3>& found);
 
-// How steeply x goes through the triangle at s, where it is at a point of it: the sine of the angle between its
-// way, seen from that point, and the plane; negative against the triangle's normal. Not a number without an
-// area or a way.
+// How steeply x goes through the triangle at s, where it is at a point of it: the sine of the angle between
+// its way, seen from that point, and the plane; negative against the triangle's normal. Not a number without
+// an area or a way.
 double steepness(const StraightWay& x, const std::array<StraightWay, 3>& corners, double s);
 
 }  // namespace drape

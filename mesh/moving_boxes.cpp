@@ -43,8 +43,8 @@ int MovingBoxes::grow(std::vector<std::pair<Vec3, int>>& middles, int begin, int
   return node;
 }
 
-void MovingBoxes::fit_leaf(Node& node, int child, const std::vector<Face>& faces, const std::vector<Vec3>& start,
-                           const std::vector<Vec3>& end) const {
+void MovingBoxes::fit_leaf(Node& node, int child, const std::vector<Face>& faces,
+                           const std::vector<Vec3>& start, const std::vector<Vec3>& end) const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   for (int s = 0; s < 2; ++s) {
     const std::vector<Vec3>& places = s == 0 ? start : end;

@@ -1,4 +1,5 @@
-// A tree of boxes about triangles whose corners go straight from one place to another while s goes from 0 to 1.
+// A tree of boxes about triangles whose corners go straight from one place to another while s goes from 0
+// to 1.
 //   lower(s) = (1 - s) lower(0) + s lower(1),  and so the upper one: no corner leaves its box on the way
 // Four boxes a node; halved at the median where it is made, refitted to the places of every step afterwards.
 // Boxes are floats about the middle of the surface. What rounding can do is less than `slack`, by which a
@@ -30,8 +31,8 @@ class MovingBoxes {
   template <class Ask>
   void near(const Vec3& x, double s, const Ask& ask) const;
 
-  // ask(face) -> the s that is still of interest, for every face whose box the straight way from x0 (at s = 0)
-  // to x1 (at s = 1) is in at some s in [from, the last answer].
+  // ask(face) -> the s that is still of interest, for every face whose box the straight way from x0 (at s =
+  // 0) to x1 (at s = 1) is in at some s in [from, the last answer].
   template <class Ask>
   void along(const Vec3& x0, const Vec3& x1, double from, const Ask& ask) const;
 
@@ -109,7 +110,8 @@ void MovingBoxes::along(const Vec3& x0, const Vec3& x1, double from, const Ask& 
     const Node& node = nodes_[at.first];
     for (int child = 0; child < 4; ++child) {
       double enter = from, leave = node.count[child] == 0 ? -1 : until;
-      const auto keep = [&](double at_0, double at_1) {  // the s where what goes from the one to the other >= 0
+      const auto keep = [&](double at_0,
+                            double at_1) {  // the s where what goes from the one to the other >= 0
         if (at_0 < 0 && at_1 < 0) leave = -1;
         if (at_0 < 0 && at_1 >= 0) enter = std::max(enter, at_0 / (at_0 - at_1));
         if (at_0 >= 0 && at_1 < 0) leave = std::min(leave, at_0 / (at_0 - at_1));

@@ -103,8 +103,7 @@ struct SurfaceDistance::Tree {
   // f(pose) in the configuration at s.
   template <class F>
   auto in_pose(double s, const F& f) const {
-    return moving ? f(Pose<Moving>(surface, {start, end, s}))
-                  : f(Pose<Standing>(surface, {mesh.positions}));
+    return moving ? f(Pose<Moving>(surface, {start, end, s})) : f(Pose<Standing>(surface, {mesh.positions}));
   }
 };
 
