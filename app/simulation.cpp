@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/body_frames.h"
 #include "app/warnings.h"
 #include "mesh/obj.h"
 #include "mesh/solid.h"
@@ -70,10 +71,10 @@ void add_pins(const Scene& scene, Simulation& simulation) {
   }
 }
 
-MeshBody load_body(const ObstacleEntry& entry, Body& body, Names& messages) {
+Shape load_body(const ObstacleEntry& entry, Body& body, Names& messages) {
   const std::string name = entry.mesh.string();
   const TriangleMesh mesh = load(entry.mesh, entry.where, entry.placement, body.report, messages);
-  const auto surface = std::make_shared<const SurfaceDistance>(mesh);
+  const auto surface = std::make_shared<SurfaceDistance>(mesh);
   if (!surface->closed())
     messages.push_back(
         "warning: " + name +
@@ -81,7 +82,10 @@ MeshBody load_body(const ObstacleEntry& entry, Body& body, Names& messages) {
         "cloth keeps its margin on either side");
   if (surface->inside_out())
     messages.push_back("note: " + name + ": the body's triangles are wound inside out; it is turned round");
-  return surface;
+  if (entry.frames.files.empty()) return MeshBody(surface);
+  Shape shape = DeformingBody{surface, load_frames(entry, mesh)};
+  move(shape, 0, 0);  // where it starts
+  return shape;
 }
 
 // The body that reacts. What the scene leaves to a mesh: the solid of uniform density within it.

@@ -61,7 +61,7 @@ void Constraints::pin_along(const std::vector<int>& particles, const Motion& mot
   const Pose start = motion.at(0);
   for (int i : particles)
     if (!std::binary_search(pinned_.begin(), pinned_.end(), i))
-      moving_pins_.push_back({i, -1, path, start.to_body(x.segment<3>(3 * i))});
+      moving_pins_.push_back({i, -1, path, {start.to_body(x.segment<3>(3 * i)), {}}});
   pin(particles);
 }
 
@@ -70,8 +70,8 @@ void Constraints::move_pins() {
   if (moving_pins_.empty()) return;
   pin_velocity_.setZero(x_.size());
   for (const MovingPin& pin : moving_pins_) {
-    const Vec3 end = pin.body < 0 ? paths_[static_cast<std::size_t>(pin.path)].at(t_ + h_).to_world(pin.place)
-                                  : bodies_[static_cast<std::size_t>(pin.body)].carried_mark(pin.place);
+    const Vec3 end = pin.body < 0 ? paths_[static_cast<std::size_t>(pin.path)].at(t_ + h_).to_world(pin.mark.place)
+                                  : bodies_[static_cast<std::size_t>(pin.body)].carried(pin.mark);
     pin_velocity_.segment<3>(3 * pin.particle) = (end - x_.segment<3>(3 * pin.particle)) / h_;
   }
 }
@@ -159,9 +159,11 @@ void Constraints::look_for_contact(int particle, std::vector<Contact>& found, do
     const Vec3 x_new = foresight_ ? Vec3(x + h_ * v) : body.carried(x);
     const double travel = body.travel(x, x_new);
     if (clearance(o, particle) > margin + std::max(travel, keeps(margin))) continue;
-    const ContactPlane plane = body.plane(x);
-    clearance(o, particle) = plane.gap + margin;
-    deepest = std::max(deepest, -plane.gap - margin);
+    const SurfacePoint start = body.at_start(x);
+    clearance(o, particle) = start.distance;
+    deepest = std::max(deepest, -start.distance);
+    if (start.distance > margin + std::max(travel, keeps(margin))) continue;
+    const ContactPlane plane = body.plane(x, start);
     const bool touched = plane_with(before, o) != nullptr;
     if (touched ? plane.gap < keeps(margin)
                 : plane.gap < 0 && plane.gap + body.approach(x, x_new, plane) < 0) {

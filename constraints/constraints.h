@@ -39,14 +39,14 @@ struct MovingPin {
   int particle;
   int body;  // that carries it; -1: its own path
   int path;
-  Vec3 place;  // m, in the frame that moves
+  MovingBody::Mark mark;
 };
 
 struct ContactReport {
   int contacts = 0;
-  int guarded = 0;     // particles stopped at a surface after the solve, outside the equations
+  int guarded = 0;        // particles stopped at a surface after the solve, outside the equations
   bool converged = true;  // the motion of bodies that react agrees with the impulses on them
-  double deepest = 0;  // m, how far the deepest particle was inside a body when the step began
+  double deepest = 0;     // m, how far the deepest particle was inside a body when the step began
 };
 
 class Constraints {

@@ -88,7 +88,8 @@ double ReactingBody::change() const { return (h_ * body_.gravity).norm() + J_.no
 
 bool ReactingBody::correct(Pose& end, double noise) {
   const Vec6 d = difference();
-  if (corrections_ == most_corrections || d.norm() <= close_enough * change() + noise / body_.mass) return false;
+  if (corrections_ == most_corrections || d.norm() <= close_enough * change() + noise / body_.mass)
+    return false;
   if (relaxation_ == 0) {
     const double Z = J_.norm() / std::max(approach_, h_ * body_.gravity.norm() + 1e-12);
     relaxation_ = 1 / (1 + Z / body_.mass);

@@ -4,19 +4,18 @@
 // the solve (and of friction) on the particles that touch it, and their moment about c.
 //
 // Staggered: the cloth is solved with a prescribed motion q = (u, rho w) of the body (rho: its radius of
-// gyration), and gives the impulse that makes q' = (v', rho w'). While the difference d = q' - q is not small the
-// step is solved again with
+// gyration), and gives the impulse that makes q' = (v', rho w'). While the difference d = q' - q is not small
+// the step is solved again with
 //   q += sum c_i dq_i + a (d + sum c_i dd_i),   c = argmin |d + sum c_i dd_i|
-// over the changes dq_i, dd_i between the solves of this step.       [Degroote, Bathe & Vierendeels 2009, IQN-ILS]
-// As long as the same contacts hold, d is linear in q, of six unknowns: a few solves do, also for a ball much
-// lighter than the cloth that it meets, which the impulses alone (q <- q') would throw back and forth, ever
-// farther. a = 1/(1 + Z/m), Z = |J| / the speed that J took away: the cloth's share of the inertia; later in the
-// same contact it is what the last step found.
-// At the start q is what the last step's impulses would give: at rest that is right at once. The body gets the
-// impulses of the last solve, so momentum is kept; only where d is not small to the end it gets the motion
-// that was prescribed, and the step is not `converged`.
-// Contact between such bodies, and of them with obstacles, is not looked for.
-// m [kg], I [kg m^2] about c in the body's frame, c [m], v, u [m/s], w [rad/s], J [N s], T [N m s], h [s].
+// over the changes dq_i, dd_i between the solves of this step.       [Degroote, Bathe & Vierendeels 2009,
+// IQN-ILS] As long as the same contacts hold, d is linear in q, of six unknowns: a few solves do, also for a
+// ball much lighter than the cloth that it meets, which the impulses alone (q <- q') would throw back and
+// forth, ever farther. a = 1/(1 + Z/m), Z = |J| / the speed that J took away: the cloth's share of the
+// inertia; later in the same contact it is what the last step found. At the start q is what the last step's
+// impulses would give: at rest that is right at once. The body gets the impulses of the last solve, so
+// momentum is kept; only where d is not small to the end it gets the motion that was prescribed, and the step
+// is not `converged`. Contact between such bodies, and of them with obstacles, is not looked for. m [kg], I
+// [kg m^2] about c in the body's frame, c [m], v, u [m/s], w [rad/s], J [N s], T [N m s], h [s].
 #pragma once
 
 #include <optional>
@@ -57,8 +56,8 @@ class ReactingBody {
   void push(const Vec3& impulse, const Vec3& place, double approach = 0);
   // The contacts have changed, and what was learnt of them in this step with them.
   void forget() { changes_ = 0, known_ = false; }
-  // True when the motion that was prescribed is not the one that the impulse makes: then `end` is the new one.
-  // noise [N s]: of the impulses.
+  // True when the motion that was prescribed is not the one that the impulse makes: then `end` is the new
+  // one. noise [N s]: of the impulses.
   bool correct(Pose& end, double noise);
   bool end_step(const Pose& end);  // false: not converged
 

@@ -145,7 +145,7 @@ TEST_CASE("a corner that comes up under a coarse triangle lifts it and does not 
       }
       double height = 0;
       for (int i = 0; i < 3; ++i) height += cloth.state.x[3 * i + 1] / 3;
-      CHECK(height > 0.0866 + 0.6 * speed);
+      CHECK(height > 0.0866 + 0.6 * speed - 0.03);  // it tilts
     }
   }
 }
