@@ -73,6 +73,10 @@ void check_scene(const std::filesystem::path& file) {
                 std::string(name(o.shape)).c_str(), rounded(o.friction.statics, 3).c_str(),
                 rounded(o.friction.kinetic, 3).c_str(), rounded(1000 * o.margin, 3).c_str());
     if (!scene.obstacles[k].mesh.empty()) print_report("  mesh", simulation.bodies[k].report);
+    if (const auto* body = std::get_if<DeformingBody>(&o.shape))
+      std::printf("  %s, %s to %s s\n", counted(body->frames->frame_count(), "frame").c_str(),
+                  rounded(body->frames->first_time(), 4).c_str(),
+                  rounded(body->frames->last_time(), 4).c_str());
   }
   for (const std::string& message : simulation.messages) std::printf("%s\n", one_line(message).c_str());
 }

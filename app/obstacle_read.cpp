@@ -1,5 +1,6 @@
 #include "app/obstacle_read.h"
 
+#include "app/body_frames.h"
 #include "app/motion_read.h"
 #include "app/rigid_read.h"
 #include "mesh/obj.h"
@@ -143,6 +144,7 @@ ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
   if (shape == "mesh") {
     entry.mesh = read_path(table, "mesh", folder);
     entry.placement = read_placement(table);
+    entry.frames = read_frames(table, folder);
     entry.obstacle.shape = MeshBody();
   }
   entry.name = shape == "mesh" ? entry.mesh.filename().string() : shape;

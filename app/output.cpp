@@ -4,6 +4,7 @@
 #include <system_error>
 #include <utility>
 
+#include "app/body_frames.h"
 #include "mesh/obj.h"
 
 namespace drape {
@@ -16,18 +17,28 @@ std::vector<Vec3> positions_of(const Cloth& cloth, const State& state) {
 }
 
 // Results are named after the cloth and must not replace what they are made from.
-void spare_inputs(const fs::path& folder, const Scene& scene) {
+void spare_inputs(const fs::path& folder, const Scene& scene, Frames frames) {
+  const auto same = [](const fs::path& a, const fs::path& b) {
+    std::error_code error;
+    return fs::equivalent(a, b, error) && !error;
+  };
   const auto spare = [&](const fs::path& input) {
     for (const ClothEntry& cloth : scene.cloths) {
-      std::error_code error;
-      const fs::path result = folder / (cloth.name + ".obj");
-      if (!input.empty() && fs::equivalent(result, input, error) && !error)
-        throw InputError(result.string() +
+      bool replaced = same(folder / (cloth.name + ".obj"), input);
+      if (frames == Frames::pc2) replaced = replaced || same(folder / (cloth.name + ".pc2"), input);
+      if (frames == Frames::obj)
+        replaced = replaced || (input.filename().string().starts_with(cloth.name + "_") &&
+                                same(folder / "frames", input.parent_path()));
+      if (replaced)
+        throw InputError(input.string() +
                          ": is a mesh of the scene and would be overwritten; choose another --out");
     }
   };
   for (const ClothEntry& cloth : scene.cloths) spare(cloth.mesh);
-  for (const ObstacleEntry& obstacle : scene.obstacles) spare(obstacle.mesh);
+  for (const ObstacleEntry& obstacle : scene.obstacles) {
+    if (!obstacle.mesh.empty()) spare(obstacle.mesh);
+    for (const fs::path& frame : frame_files(obstacle.frames)) spare(frame);
+  }
 }
 
 }  // namespace
@@ -47,7 +58,7 @@ void make_output_folder(const fs::path& folder) {
 
 Output::Output(fs::path folder, const Scene& scene, const Simulation& simulation, Frames frames)
     : folder_(std::move(folder)), simulation_(simulation), frames_(frames) {
-  spare_inputs(folder_, scene);
+  spare_inputs(folder_, scene, frames_);
   make_output_folder(folder_);
   if (frames_ == Frames::obj) make_output_folder(folder_ / "frames");
   if (frames_ == Frames::pc2)

@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <string>
 #include <vector>
 
 #include "app/atomic_file.h"
@@ -24,6 +26,27 @@ class Pc2Writer {
  private:
   AtomicFile file_;
   int points_, samples_ = 0;
+  std::vector<unsigned char> bytes_;
+};
+
+// Reads one sample after the other. Throws InputError when the file is no point cache, ends early or holds a
+// number that is not finite.
+class Pc2Reader {
+ public:
+  explicit Pc2Reader(const std::filesystem::path& path);
+
+  int points() const { return points_; }
+  int samples() const { return samples_; }
+  double spacing() const { return spacing_; }  // frames from one sample to the next
+  void read(std::vector<Vec3>& positions);     // m; there must be a sample left
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const;
+
+  std::filesystem::path path_;
+  std::ifstream file_;
+  int points_ = 0, samples_ = 0, next_ = 0;
+  double spacing_ = 1;
   std::vector<unsigned char> bytes_;
 };
 

@@ -50,11 +50,22 @@ struct RigidBodyEntry {
   Vec3 spin = Vec3::Zero();      // rad/s
 };
 
+// Where a deforming body is in time: app/body_frames.h reads it.
+struct FramesEntry {
+  std::vector<std::filesystem::path>
+      files;             // OBJ files in order, one PC2 file, or one pattern; none: it stands
+  bool pattern = false;  // "walk/body_%04d.obj"
+  double rate = 25;      // 1/s
+  double start = 0;      // s, time of the first frame
+  std::string where;
+};
+
 struct ObstacleEntry {
   std::string name;
   Obstacle obstacle;           // a mesh's shape is null until it is loaded
   std::filesystem::path mesh;  // OBJ, of the shape "mesh"
-  Placement placement;         // of the mesh
+  Placement placement;         // of the mesh and its frames
+  FramesEntry frames;          // of a mesh
   std::optional<RigidBodyEntry> rigid;
   std::string where;
 };

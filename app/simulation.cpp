@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "app/body_frames.h"
 #include "app/warnings.h"
 #include "mesh/obj.h"
 #include "mesh/solid.h"
 #include "solver/fabric.h"
+#include "solver/face_contact_force.h"
 
 namespace drape {
 namespace {
@@ -69,10 +71,10 @@ void add_pins(const Scene& scene, Simulation& simulation) {
   }
 }
 
-MeshBody load_body(const ObstacleEntry& entry, Body& body, Names& messages) {
+Shape load_body(const ObstacleEntry& entry, Body& body, Names& messages) {
   const std::string name = entry.mesh.string();
   const TriangleMesh mesh = load(entry.mesh, entry.where, entry.placement, body.report, messages);
-  const auto surface = std::make_shared<const SurfaceDistance>(mesh);
+  const auto surface = std::make_shared<SurfaceDistance>(mesh);
   if (!surface->closed())
     messages.push_back(
         "warning: " + name +
@@ -80,7 +82,10 @@ MeshBody load_body(const ObstacleEntry& entry, Body& body, Names& messages) {
         "cloth keeps its margin on either side");
   if (surface->inside_out())
     messages.push_back("note: " + name + ": the body's triangles are wound inside out; it is turned round");
-  return surface;
+  if (entry.frames.files.empty()) return MeshBody(surface);
+  Shape shape = DeformingBody{surface, load_frames(entry, mesh)};
+  move(shape, 0, 0);  // where it starts
+  return shape;
 }
 
 // The body that reacts. What the scene leaves to a mesh: the solid of uniform density within it.
@@ -116,6 +121,22 @@ void add_obstacles(const Scene& scene, Simulation& simulation) {
   }
 }
 
+// Corners and rims of bodies are kept off the inside of triangles, too.
+void add_faces(const Scene& scene, Simulation& simulation) {
+  if (scene.obstacles.empty()) return;
+  for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
+    const Cloth& cloth = simulation.cloths[k];
+    const Fabric& fabric = scene.cloths[k].fabric;
+    std::vector<ClothFace> faces;
+    for (const Triangle& t : cloth.mesh.triangles)
+      faces.push_back(
+          {{cloth.first_particle + t[0], cloth.first_particle + t[1], cloth.first_particle + t[2]},
+           fabric.stretch_spring.value_or(fabric.stretch)});
+    simulation.constraints->add_faces(faces);
+  }
+  simulation.system->add(face_contact_force(*simulation.constraints));
+}
+
 }  // namespace
 
 const Cloth& Simulation::cloth_of(int particle) const {
@@ -148,6 +169,7 @@ Simulation make_simulation(const Scene& scene) {
   simulation.constraints = std::make_unique<Constraints>(scene.simulation.contact);
   add_cloths(scene, simulation);
   add_obstacles(scene, simulation);
+  add_faces(scene, simulation);
   add_pins(scene, simulation);  // some of them to bodies
   add_warnings(scene, simulation);
   simulation.integrator =

@@ -34,6 +34,7 @@ Vec3 tangential(const Contact& contact, const Vec3& v) {
 
 void Constraints::add(Obstacle obstacle) {
   bodies_.emplace_back(std::move(obstacle), static_cast<int>(bodies_.size()));
+  two_way_ = two_way_ || bodies_.back().reacting();
   clearance_.clear();
 }
 
@@ -60,7 +61,7 @@ void Constraints::pin_along(const std::vector<int>& particles, const Motion& mot
   const Pose start = motion.at(0);
   for (int i : particles)
     if (!std::binary_search(pinned_.begin(), pinned_.end(), i))
-      moving_pins_.push_back({i, -1, path, start.to_body(x.segment<3>(3 * i))});
+      moving_pins_.push_back({i, -1, path, {start.to_body(x.segment<3>(3 * i)), {}}});
   pin(particles);
 }
 
@@ -69,8 +70,8 @@ void Constraints::move_pins() {
   if (moving_pins_.empty()) return;
   pin_velocity_.setZero(x_.size());
   for (const MovingPin& pin : moving_pins_) {
-    const Vec3 end = pin.body < 0 ? paths_[static_cast<std::size_t>(pin.path)].at(t_ + h_).to_world(pin.place)
-                                  : bodies_[static_cast<std::size_t>(pin.body)].carried_mark(pin.place);
+    const Vec3 end = pin.body < 0 ? paths_[static_cast<std::size_t>(pin.path)].at(t_ + h_).to_world(pin.mark.place)
+                                  : bodies_[static_cast<std::size_t>(pin.body)].carried(pin.mark);
     pin_velocity_.segment<3>(3 * pin.particle) = (end - x_.segment<3>(3 * pin.particle)) / h_;
   }
 }
@@ -132,6 +133,10 @@ void Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<dou
       if (!held(i)) look_for_contact(i, found, deepest);
   });
   take_found();
+  if (faces_.all().empty()) return;
+  x_new_ = x_;
+  if (foresight_) x_new_ += h_ * v_;
+  faces_.begin_step(bodies_, x_, x_new_, options_.recovery_speed * h_);
 }
 
 void Constraints::take_found() {
@@ -160,9 +165,11 @@ void Constraints::look_for_contact(int particle, std::vector<Contact>& found, do
     const Vec3 x_new = foresight_ ? Vec3(x + h_ * v) : body.carried(x);
     const double travel = body.travel(x, x_new);
     if (clearance(o, particle) > margin + std::max(travel, keeps(margin))) continue;
-    const ContactPlane plane = body.plane(x);
-    clearance(o, particle) = plane.gap + margin;
-    deepest = std::max(deepest, -plane.gap - margin);
+    const SurfacePoint start = body.at_start(x);
+    clearance(o, particle) = start.distance;
+    deepest = std::max(deepest, -start.distance);
+    if (start.distance > margin + std::max(travel, keeps(margin))) continue;
+    const ContactPlane plane = body.plane(x, start);
     const bool touched = plane_with(before, o) != nullptr;
     if (touched ? plane.gap < keeps(margin)
                 : plane.gap < 0 && plane.gap + body.approach(x, x_new, plane) < 0) {
@@ -260,7 +267,8 @@ void Constraints::receive(const VecX& v, const VecX& r) {
   const auto push = [&](int body, int particle, const Vec3& velocity, const Vec3& impulse) {
     work_ += velocity.dot(impulse);
     bodies_[static_cast<std::size_t>(body)].push(
-        -impulse, x_.segment<3>(3 * particle) + h_ * v.segment<3>(3 * particle));
+        -impulse, x_.segment<3>(3 * particle) + h_ * v.segment<3>(3 * particle),
+        (velocity - v_.segment<3>(3 * particle)).norm());
   };
   for (const Contact& c : trial_) {
     if (!c.active()) continue;
@@ -278,6 +286,7 @@ void Constraints::receive(const VecX& v, const VecX& r) {
     const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
     push(f.body, f.particle, f.body_velocity, f.impulse - h_ * (f.damping * slip));
   }
+  receive_faces(v);
   for (const MovingPin& pin : moving_pins_) {
     const Vec3 impulse = r.segment<3>(3 * pin.particle),
                velocity = pin_velocity_.segment<3>(3 * pin.particle);
@@ -288,28 +297,42 @@ void Constraints::receive(const VecX& v, const VecX& r) {
   }
 }
 
+void Constraints::receive_faces(const VecX& v) {
+  for (const FaceContact& c : faces_.touching()) {
+    Vec3 place = c.at(x_) + h_ * c.at(v) + c.at(correction_);
+    const double gap = c.gap + c.normal.dot(place);
+    const Vec3 impulse = h_ * (c.stiffness * std::max(-gap, 0.0) * c.normal - c.rubbing() * c.slip_at(v));
+    work_ += c.body_velocity.dot(impulse);
+    bodies_[static_cast<std::size_t>(c.body)].push(-impulse, place);
+  }
+}
+
 // Bodies that moved otherwise than they were taken to: their planes and pins move with them.
-bool Constraints::move_bodies() {
+bool Constraints::move_bodies(double noise) {
   bool moved = false;
   for (MovingBody& body : bodies_)
-    if (body.correct()) moved = true;
+    if (body.correct(noise)) moved = true;
   if (!moved) return false;
   for (Contact& c : trial_)
     for (int k = 0; k < c.planes; ++k) {
       ContactPlane& p = c.plane[static_cast<std::size_t>(k)];
       p.body_velocity = bodies_[static_cast<std::size_t>(p.obstacle)].velocity(x_.segment<3>(3 * c.particle));
     }
+  faces_.follow(bodies_);
   move_pins();
   return true;
 }
 
 bool Constraints::react(const VecX& v, const VecX& r, double noise) {
-  bool changed = move_bodies();
+  bool changed = false;
   for (Contact& c : trial_) {
     if (!c.active()) continue;
     if (update_grip(c, v, r.segment<3>(3 * c.particle), noise)) changed = true;
   }
-  return changed;
+  if (!two_way_) return changed;
+  if (changed)
+    for (MovingBody& body : bodies_) body.forget();
+  return changed || move_bodies(noise);  // bodies wait for the contacts to come to a decision
 }
 
 bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double noise) const {
@@ -403,7 +426,9 @@ ContactReport Constraints::end_step(VecX& x_new, VecX& v_new) {
     committed_.push_back(c);
     if (c.grip == Grip::breaking_loose) committed_.back().grip = Grip::slide;
   }
-  for (MovingBody& body : bodies_) body.end_step();
+  faces_.end_step(bodies_, x_, x_new);
+  for (MovingBody& body : bodies_)
+    if (!body.end_step()) report.converged = false;
   last_h_ = h_;
   report.contacts = static_cast<int>(committed_.size());
   return report;

@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include "constraints/contact.h"
+#include "constraints/face_contact.h"
 #include "constraints/filter.h"
 #include "constraints/moving_body.h"
 #include "constraints/pins.h"
@@ -39,13 +40,14 @@ struct MovingPin {
   int particle;
   int body;  // that carries it; -1: its own path
   int path;
-  Vec3 place;  // m, in the frame that moves
+  MovingBody::Mark mark;
 };
 
 struct ContactReport {
   int contacts = 0;
-  int guarded = 0;     // particles stopped at a surface after the solve, outside the equations
-  double deepest = 0;  // m, how far the deepest particle was inside a body when the step began
+  int guarded = 0;        // particles stopped at a surface after the solve, outside the equations
+  bool converged = true;  // the motion of bodies that react agrees with the impulses on them
+  double deepest = 0;     // m, how far the deepest particle was inside a body when the step began
 };
 
 class Constraints {
@@ -60,7 +62,14 @@ class Constraints {
   void pin_to_body(const std::vector<int>& particles, int body, const VecX& x);
   void pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x);
 
+  // The triangles of the cloth, so that corners and rims of bodies do not come through between the vertices.
+  // They push by a force, which the system needs, too: solver/face_contact_force.h.
+  void add_faces(const std::vector<ClothFace>& faces) { faces_.add(faces); }
+  const FaceContacts& faces() const { return faces_; }
+
   const std::vector<MovingBody>& bodies() const { return bodies_; }
+  // How often a step may be solved again for the sake of bodies that react.
+  int most_corrections() const { return two_way_ ? ReactingBody::most_corrections : 0; }
   const std::vector<int>& pinned() const { return pinned_; }  // ascending
   const std::vector<MovingPin>& moving_pins() const { return moving_pins_; }
 
@@ -78,13 +87,16 @@ class Constraints {
   // The same v and r; impulses below `noise` [N s] are round-off of the solve.
   bool react(const VecX& v, const VecX& r, double noise);
   bool check_paths(const VecX& x_new);
+  // The same motion, for the contacts of faces: true when other ones act, and their force has changed.
+  bool react_faces(const VecX& x_new, const VecX& v_new) { return faces_.react(x_new, v_new); }
   ContactReport end_step(VecX& x_new, VecX& v_new);
 
   // Without a filter for contacts, only for pins: in the place of begin_step, and of all from friction on to
   // check_paths. A free motion to x [m], v [m/s] ends at x_new, v_new after the response of the bodies
   // (constraints/response.h); bodies that react get the other side of it.
   void begin_response(const VecX& x, const VecX& v, const std::vector<double>& masses, double t, double h);
-  void respond(ContactMode mode, const VecX& x, const VecX& v, VecX& x_new, VecX& v_new);
+  void respond(ContactMode mode, const VecX& x, const VecX& v, VecX& x_new, VecX& v_new,
+               double noise);
 
   // Of the step under way, and after it; those released in it have no planes.
   const std::vector<Contact>& touching() const { return trial_; }
@@ -100,10 +112,12 @@ class Constraints {
     Vec3 impulse;        // N s, on the particle
     Vec3 place;          // m
     Vec3 body_velocity;  // m/s
+    double approach;     // m/s
   };
   void respond(ContactMode mode, int particle, std::size_t chunk, VecX& x_new, VecX& v_new);
   bool respond(ContactMode mode, int body, std::size_t chunk, StepVelocities& step, Contact& contact);
-  void take_responses();
+  void take_responses(const VecX& v_new);
+  void receive_faces(const VecX& v);
   void open_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double t, double h);
   void prepare(int particles, const std::vector<double>& masses);
   void look_for_contact(int particle, std::vector<Contact>& found, double& deepest);
@@ -122,21 +136,23 @@ class Constraints {
   }
   const Friction& friction_of(const Contact& contact) const { return body_of(contact).obstacle().friction; }
   void move_pins();
-  bool move_bodies();
+  bool move_bodies(double noise);
 
   ContactOptions options_;
   std::vector<MovingBody> bodies_;
   std::vector<int> pinned_;
   std::vector<MovingPin> moving_pins_;
   std::vector<Motion> paths_;  // of pins
+  FaceContacts faces_;
 
   // Scratch of the step under way.
   double t_ = 0, h_ = 0;  // s
   bool foresight_ = true;
   double work_ = 0;             // J
+  bool two_way_ = false;        // a body reacts
   double last_h_ = 0;           // s, of the last completed step
   std::vector<double> masses_;  // kg
-  VecX x_, v_, correction_;
+  VecX x_, v_, x_new_, correction_;
   VecX pin_velocity_;            // m/s; empty without moving pins
   std::vector<char> held_;       // pinned, or without mass
   std::vector<int> contact_of_;  // particle -> place in trial_, -1: none

@@ -6,48 +6,82 @@ MovingBody::MovingBody(Obstacle obstacle, int number) : obstacle_(std::move(obst
   check(obstacle_);
   if (auto* plane = std::get_if<Plane>(&obstacle_.shape)) plane->normal.normalize();
   now_ = start_ = end_ = obstacle_.motion.at(0);
+  move(obstacle_.shape, 0, 0);
   if (obstacle_.rigid) reacting_.emplace(*obstacle_.rigid, now_);
 }
 
 void MovingBody::begin_step(double t, double h) {
   h_ = h;
+  move(obstacle_.shape, t, t + h);
   start_ = reacting_ ? reacting_->pose() : obstacle_.motion.at(t);
   end_ = reacting_ ? reacting_->begin_step(h) : obstacle_.motion.at(t + h);
 }
 
-void MovingBody::end_step() {
+bool MovingBody::end_step() {
   now_ = end_;
-  if (reacting_) reacting_->end_step(end_);
+  return !reacting_ || reacting_->end_step(end_);
+}
+
+void MovingBody::forget() {
+  if (reacting_) reacting_->forget();
 }
 
 void MovingBody::clear_impulse() {
   if (reacting_) reacting_->clear_impulse();
 }
 
-void MovingBody::push(const Vec3& impulse, const Vec3& place) {
-  if (reacting_) reacting_->push(impulse, place);
+void MovingBody::push(const Vec3& impulse, const Vec3& place, double approach) {
+  if (reacting_) reacting_->push(impulse, place, approach);
 }
 
-Vec3 MovingBody::carried(const Vec3& x) const { return end_.to_world(start_.to_body(x)); }
+SurfacePoint MovingBody::at_start(const Vec3& x) const { return closest(obstacle_.shape, start_.to_body(x)); }
+
+SurfacePoint MovingBody::near_start(const Vec3& x) const {
+  const SurfacePoint s = at_start(x);
+  return {s.distance, start_.direction_to_world(s.normal)};
+}
+
+SurfacePoint MovingBody::near_end(const Vec3& x) const {
+  const SurfacePoint s = closest(obstacle_.shape, end_.to_body(x), 1);
+  return {s.distance, end_.direction_to_world(s.normal)};
+}
+
+Vec3 MovingBody::carried(const Vec3& x) const {
+  return end_.to_world(drape::carried(obstacle_.shape, start_.to_body(x)));
+}
+
+MovingBody::Mark MovingBody::mark(const Vec3& x) const {
+  const Vec3 X = now_.to_body(x);
+  if (const auto* body = std::get_if<DeformingBody>(&obstacle_.shape)) return {X, body->surface->anchor(X, 1)};
+  return {X, {}};
+}
+
+Vec3 MovingBody::carried(const Mark& mark) const {
+  if (const auto* body = std::get_if<DeformingBody>(&obstacle_.shape))
+    return end_.to_world(body->surface->place(*mark.anchor, 1));
+  return end_.to_world(mark.place);
+}
 
 double MovingBody::travel(const Vec3& x0, const Vec3& x1) const {
-  return (end_.to_body(x1) - start_.to_body(x0)).norm();
+  return (end_.to_body(x1) - start_.to_body(x0)).norm() + largest_displacement(obstacle_.shape);
 }
 
 ContactPlane MovingBody::plane_at(const Vec3& x, const Vec3& normal, double gap) const {
-  return {number_, end_.rotation * normal, gap, velocity(x)};
+  return {number_, end_.direction_to_world(normal), gap, velocity(x)};
 }
 
-ContactPlane MovingBody::plane(const Vec3& x) const {
-  const SurfacePoint s = closest(obstacle_.shape, start_.to_body(x));
+ContactPlane MovingBody::plane(const Vec3& x, const SurfacePoint& at_start) const {
+  const SurfacePoint s = deforms() ? closest(obstacle_.shape, drape::carried(obstacle_.shape, start_.to_body(x)), 1)
+                                   : at_start;
   return plane_at(x, s.normal, s.distance - obstacle_.margin);
 }
 
 std::optional<ContactPlane> MovingBody::meeting(const Vec3& x0, const Vec3& x1) const {
-  const Vec3 X0 = start_.to_body(x0), way = end_.to_body(x1) - X0;
-  const auto hit = first_hit(obstacle_.shape, X0, X0 + way, obstacle_.margin);
+  const Vec3 X0 = start_.to_body(x0), X1 = end_.to_body(x1);
+  const auto hit = first_hit(obstacle_.shape, X0, X1, obstacle_.margin);
   if (!hit) return std::nullopt;
   const SurfacePoint& s = hit->surface;
+  const Vec3 way = X1 - drape::carried(obstacle_.shape, X0);  // against the surface
   const double gap = -hit->fraction * way.dot(s.normal) + s.distance - obstacle_.margin;
   return plane_at(x0, s.normal, std::max(gap, 0.0));
 }
@@ -58,14 +92,14 @@ std::optional<Vec3> MovingBody::stop(const Vec3& x0, Vec3& x1, double start_dist
   if (start_distance >= 0) {
     const auto hit = first_hit(obstacle_.shape, X0, X1, 0);
     if (!hit) return std::nullopt;
-    end = X0 + hit->fraction * (X1 - X0);
+    end = drape::carried(obstacle_.shape, X0 + hit->fraction * (X1 - X0), hit->fraction);
   }
-  const SurfacePoint s = closest(obstacle_.shape, end);
+  const SurfacePoint s = closest(obstacle_.shape, end, 1);
   const double floor = std::min(start_distance, 0.0);
   if (s.distance < floor) end += (floor - s.distance) * s.normal;
   if (end == X1) return std::nullopt;
   x1 = end_.to_world(end);
-  return end_.rotation * s.normal;
+  return end_.direction_to_world(s.normal);
 }
 
 }  // namespace drape

@@ -23,32 +23,42 @@ class MovingBody {
   MovingBody(Obstacle obstacle, int number);  // number: of the planes it makes
 
   const Obstacle& obstacle() const { return obstacle_; }
+  int number() const { return number_; }
+  double step() const { return h_; }         // s
   const Pose& pose() const { return now_; }  // at the end of the last completed step
   // The body that reacts, null when it does not.
   const ReactingBody* reacting() const { return reacting_ ? &*reacting_ : nullptr; }
 
-  // A point that the body carries with it, from where it is now; and where that is at the end of the step.
-  Vec3 mark(const Vec3& x) const { return now_.to_body(x); }
-  Vec3 carried_mark(const Vec3& place) const { return end_.to_world(place); }
+  // A point that the body carries with it, from where it is now; of a body that deforms, by the triangle beside it.
+  struct Mark {
+    Vec3 place;  // m, in the body's frame
+    std::optional<SurfaceDistance::Anchor> anchor;
+  };
+  Mark mark(const Vec3& x) const;
 
   void begin_step(double t, double h);
-  void end_step();  // a step that is abandoned does not move it
+  bool end_step();  // false: its reaction has not converged. A step that is abandoned does not move it.
 
   // What the particles push it with in this step, from zero; where it then moves otherwise than it was taken
   // to `correct` is true, and the planes it made are to be moved (velocity has changed).
   void clear_impulse();
-  void push(const Vec3& impulse, const Vec3& place);
-  bool correct() { return reacting_ && reacting_->correct(end_); }
+  void push(const Vec3& impulse, const Vec3& place, double approach = 0);
+  void forget();  // the contacts have changed
+  bool correct(double noise) { return reacting_ && reacting_->correct(end_, noise); }
 
   // Signed distance at the last completed step's end.
-  double distance(const Vec3& x) const { return closest(obstacle_.shape, now_.to_body(x)).distance; }
+  double distance(const Vec3& x) const { return closest(obstacle_.shape, now_.to_body(x), 1).distance; }
 
-  // Of the step under way.
+  // Of the step under way: the surface at its start and at its end.
+  SurfacePoint near_start(const Vec3& x) const;
+  SurfacePoint near_end(const Vec3& x) const;
+  SurfacePoint at_start(const Vec3& x) const;  // in the body's frame
   Vec3 carried(const Vec3& x) const;
+  Vec3 carried(const Mark& mark) const;
   Vec3 velocity(const Vec3& x) const { return (carried(x) - x) / h_; }
   // By how much the distance of a particle from the body can change on its way.
   double travel(const Vec3& x0, const Vec3& x1) const;
-  ContactPlane plane(const Vec3& x) const;
+  ContactPlane plane(const Vec3& x, const SurfacePoint& at_start) const;
   // How far the way leads away from the plane that moves with the body: negative, it comes nearer [m].
   double approach(const Vec3& x0, const Vec3& x1, const ContactPlane& plane) const {
     return (x1 - carried(x0)).dot(plane.normal);
@@ -61,6 +71,7 @@ class MovingBody {
   std::optional<Vec3> stop(const Vec3& x0, Vec3& x1, double start_distance) const;
 
  private:
+  bool deforms() const { return std::holds_alternative<DeformingBody>(obstacle_.shape); }
   ContactPlane plane_at(const Vec3& x, const Vec3& normal, double gap) const;
 
   Obstacle obstacle_;

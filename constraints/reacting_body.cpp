@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -12,11 +13,8 @@
 namespace drape {
 namespace {
 
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-
-constexpr int most_corrections = 6;    // in a step
 constexpr double close_enough = 1e-3;  // of the change of velocity in the step
-constexpr double least_relaxation = 1e-3;
+constexpr double too_far = 0.1;        // of the same: not converged
 
 Mat3 turned_by(const Vec3& angle) {
   const double a = angle.norm();
@@ -51,54 +49,81 @@ Mat3 ReactingBody::world_inertia(const Pose& pose) const {
 Vec3 ReactingBody::spin() const { return world_inertia(pose_).inverse() * L_; }
 
 Pose ReactingBody::moved() const {
-  const Vec3 c = pose_.to_world(body_.centre) + h_ * u_;
-  const Mat3 R = turned_by(h_ * w_) * pose_.rotation;
+  const Vec3 c = pose_.to_world(body_.centre) + h_ * q_.head<3>();
+  const Mat3 R = turned_by(h_ / radius_ * q_.tail<3>()) * pose_.rotation;
   return {R, c - R * body_.centre};
 }
 
 Pose ReactingBody::begin_step(double h) {
   const double share = h_ > 0 ? h / h_ : 0;  // of the last step's impulses
   h_ = h;
-  u_ = v_ + h * body_.gravity + share * J_ / body_.mass;
-  w_ = world_inertia(pose_).inverse() * (L_ + share * T_);
+  q_.head<3>() = v_ + h * body_.gravity + share * J_ / body_.mass;
+  q_.tail<3>() = radius_ * (world_inertia(pose_).inverse() * (L_ + share * T_));
   corrections_ = 0;
+  if (J_.isZero(0)) relaxation_ = 0;
+  forget();
   return moved();
 }
 
-void ReactingBody::push(const Vec3& impulse, const Vec3& place) {
+void ReactingBody::clear_impulse() {
+  J_.setZero();
+  T_.setZero();
+  approach_ = 0;
+}
+
+void ReactingBody::push(const Vec3& impulse, const Vec3& place, double approach) {
   J_ += impulse;
-  T_ += (place - (pose_.to_world(body_.centre) + h_ * u_)).cross(impulse);
+  T_ += (place - (pose_.to_world(body_.centre) + h_ * q_.head<3>())).cross(impulse);
+  approach_ = std::max(approach_, approach);
 }
 
-Vec6 ReactingBody::difference() const {
+ReactingBody::Vec6 ReactingBody::difference() const {
   Vec6 d;
-  d.head<3>() = v_ + h_ * body_.gravity + J_ / body_.mass - u_;
-  d.tail<3>() = radius_ * (world_inertia(moved()).inverse() * (L_ + T_) - w_);
-  return d;
+  d.head<3>() = v_ + h_ * body_.gravity + J_ / body_.mass;
+  d.tail<3>() = radius_ * (world_inertia(moved()).inverse() * (L_ + T_));
+  return d - q_;
 }
 
-bool ReactingBody::correct(Pose& end) {
+double ReactingBody::change() const { return (h_ * body_.gravity).norm() + J_.norm() / body_.mass; }
+
+bool ReactingBody::correct(Pose& end, double noise) {
   const Vec6 d = difference();
-  const double change = (h_ * body_.gravity).norm() + J_.norm() / body_.mass;
-  if (corrections_ == most_corrections || d.norm() <= close_enough * change) return false;
-  if (corrections_ > 0) {
-    const Vec6 less = last_difference_ - d;
-    const double squared = less.squaredNorm();
-    if (squared > 0)
-      relaxation_ = std::clamp(relaxation_ * last_difference_.dot(less) / squared, least_relaxation, 1.0);
+  if (corrections_ == most_corrections || d.norm() <= close_enough * change() + noise / body_.mass)
+    return false;
+  if (relaxation_ == 0) {
+    const double Z = J_.norm() / std::max(approach_, h_ * body_.gravity.norm() + 1e-12);
+    relaxation_ = 1 / (1 + Z / body_.mass);
   }
+  if (known_ && changes_ < most_changes) {
+    dq_.col(changes_) = q_ - last_q_;
+    dd_.col(changes_++) = d - last_d_;
+  }
+  last_q_ = q_;
+  last_d_ = d;
+  known_ = true;
   ++corrections_;
-  last_difference_ = d;
-  u_ += relaxation_ * d.head<3>();
-  w_ += relaxation_ / radius_ * d.tail<3>();
+  Vec6 rest = d;
+  if (changes_ > 0) {
+    const auto dq = dq_.leftCols(changes_), dd = dd_.leftCols(changes_);
+    const Eigen::VectorXd c = dd.colPivHouseholderQr().solve(-d);
+    q_ += dq * c;
+    rest += dd * c;
+    if (changes_ == 1 && c[0] > 0)  // how much of d the first change should have been
+      relaxation_ = std::clamp(relaxation_ * (1 + c[0]), 1e-6, 1.0);
+  }
+  q_ += relaxation_ * rest;
   end = moved();
   return true;
 }
 
-void ReactingBody::end_step(const Pose& end) {
-  v_ += h_ * body_.gravity + J_ / body_.mass;
-  L_ += T_;
+bool ReactingBody::end_step(const Pose& end) {
+  const Vec6 d = difference();
+  const bool converged = d.norm() <= too_far * change();
+  const Vec6 q = converged ? Vec6(q_ + d) : q_;
+  v_ = q.head<3>();
+  L_ = converged ? Vec3(L_ + T_) : Vec3(world_inertia(end) * q.tail<3>() / radius_);
   pose_ = end;
+  return converged;
 }
 
 }  // namespace drape

@@ -3,15 +3,19 @@
 // c, v: its centre of mass and that one's velocity; L = R I R^T w: its spin. J, T: minus the impulses r of
 // the solve (and of friction) on the particles that touch it, and their moment about c.
 //
-// Staggered: the cloth is solved with a prescribed motion u, w of the body, and gives the impulse that makes
-// v', w'. While these differ, the step is solved again with
-//   (u, w) += a [(v', w') - (u, w)],   a <- a d_old . (d_old - d) / |d_old - d|^2
-// (d: the difference in brackets). Without a (a = 1) a ball lighter than the cloth it meets is thrown back
-// and forth, ever farther.                                    [Aitken's relaxation: Kuettler & Wall 2008, eq.
-// 44] At the start (u, w) is what the last step's impulses would give: at rest that is right at once. J and T
-// of the last solve are what the body gets, so momentum is conserved whether this has converged or not.
-// Contact between such bodies, and of them with obstacles, is not looked for.
-// m [kg], I [kg m^2] about c in the body's frame, c [m], v, u [m/s], w [rad/s], J [N s], T [N m s], h [s].
+// Staggered: the cloth is solved with a prescribed motion q = (u, rho w) of the body (rho: its radius of
+// gyration), and gives the impulse that makes q' = (v', rho w'). While the difference d = q' - q is not small
+// the step is solved again with
+//   q += sum c_i dq_i + a (d + sum c_i dd_i),   c = argmin |d + sum c_i dd_i|
+// over the changes dq_i, dd_i between the solves of this step.       [Degroote, Bathe & Vierendeels 2009,
+// IQN-ILS] As long as the same contacts hold, d is linear in q, of six unknowns: a few solves do, also for a
+// ball much lighter than the cloth that it meets, which the impulses alone (q <- q') would throw back and
+// forth, ever farther. a = 1/(1 + Z/m), Z = |J| / the speed that J took away: the cloth's share of the
+// inertia; later in the same contact it is what the last step found. At the start q is what the last step's
+// impulses would give: at rest that is right at once. The body gets the impulses of the last solve, so
+// momentum is kept; only where d is not small to the end it gets the motion that was prescribed, and the step
+// is not `converged`. Contact between such bodies, and of them with obstacles, is not looked for. m [kg], I
+// [kg m^2] about c in the body's frame, c [m], v, u [m/s], w [rad/s], J [N s], T [N m s], h [s].
 #pragma once
 
 #include <optional>
@@ -34,6 +38,8 @@ void check(const RigidBody& body);
 
 class ReactingBody {
  public:
+  static constexpr int most_corrections = 12;  // in a step
+
   ReactingBody(const RigidBody& body, const Pose& pose);
 
   // Of the last completed step.
@@ -45,29 +51,40 @@ class ReactingBody {
   Vec3 centre() const { return pose_.to_world(body_.centre); }
 
   Pose begin_step(double h);  // where it is expected at the end
-  void clear_impulse() { J_.setZero(), T_.setZero(); }
-  void push(const Vec3& impulse, const Vec3& place);
+  // What a solve pushes it with, from zero. approach: the speed that the impulse takes away from a particle.
+  void clear_impulse();
+  void push(const Vec3& impulse, const Vec3& place, double approach = 0);
+  // The contacts have changed, and what was learnt of them in this step with them.
+  void forget() { changes_ = 0, known_ = false; }
   // True when the motion that was prescribed is not the one that the impulse makes: then `end` is the new
-  // one.
-  bool correct(Pose& end);
-  void end_step(const Pose& end);
+  // one. noise [N s]: of the impulses.
+  bool correct(Pose& end, double noise);
+  bool end_step(const Pose& end);  // false: not converged
 
  private:
+  using Vec6 = Eigen::Matrix<double, 6, 1>;
+  static constexpr int most_changes = 6;
+
   Pose moved() const;
-  Eigen::Matrix<double, 6, 1> difference() const;
+  Vec6 difference() const;
+  double change() const;  // m/s, what the step does to it
   Mat3 world_inertia(const Pose& pose) const;
 
   RigidBody body_;
-  double radius_;  // m, of gyration: makes a speed of a spin
+  double radius_;  // m, of gyration
   Pose pose_;
   Vec3 v_, L_;
   Vec3 J_ = Vec3::Zero(), T_ = Vec3::Zero();
 
   // Of the step under way.
-  double h_ = 0, relaxation_ = 1;
-  int corrections_ = 0;
-  Vec3 u_ = Vec3::Zero(), w_ = Vec3::Zero();
-  Eigen::Matrix<double, 6, 1> last_difference_ = Eigen::Matrix<double, 6, 1>::Zero();
+  double h_ = 0;
+  double relaxation_ = 0;  // a; 0: nothing touches it
+  double approach_ = 0;    // m/s
+  Vec6 q_ = Vec6::Zero();
+  bool known_ = false;  // q and d of a solve before
+  Vec6 last_q_ = Vec6::Zero(), last_d_ = Vec6::Zero();
+  int corrections_ = 0, changes_ = 0;
+  Eigen::Matrix<double, 6, most_changes> dq_, dd_;
 };
 
 }  // namespace drape

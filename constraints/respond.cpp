@@ -18,12 +18,15 @@ double near_by(double margin) { return std::max(0.5 * margin, 1e-6); }
 void Constraints::begin_response(const VecX& x, const VecX& v, const std::vector<double>& masses, double t,
                                  double h) {
   open_step(x, v, masses, t, h);
-  if (bodies_.empty() || responses_.size() == found_.size()) return;
+  if (bodies_.empty()) return;
+  if (!faces_.all().empty()) faces_.begin_step(bodies_, x_, x_, options_.recovery_speed * h_);
+  if (responses_.size() == found_.size()) return;
   responses_.resize(found_.size());
   for (auto& responses : responses_) responses.reserve(3 * chunk_size);
 }
 
-void Constraints::respond(ContactMode mode, const VecX& x, const VecX& v, VecX& x_new, VecX& v_new) {
+void Constraints::respond(ContactMode mode, const VecX& x, const VecX& v, VecX& x_new, VecX& v_new,
+                          double noise) {
   const int n = static_cast<int>(x.size() / 3);
   bool moved = false;
   for (bool again = true; again; moved = moved || again) {
@@ -37,8 +40,11 @@ void Constraints::respond(ContactMode mode, const VecX& x, const VecX& v, VecX& 
       for (int i = k * chunk_size; i < std::min(n, (k + 1) * chunk_size); ++i)
         if (!held(i)) respond(mode, i, chunk, x_new, v_new);
     });
-    take_responses();
-    again = move_bodies();
+    const std::size_t touched = trial_.size();
+    take_responses(v_new);
+    if (trial_.size() != touched)
+      for (MovingBody& body : bodies_) body.forget();
+    again = two_way_ && move_bodies(noise);
   }
   if (!moved) return;
   for (const MovingPin& pin : moving_pins_) {  // with the body as it moves now
@@ -48,7 +54,7 @@ void Constraints::respond(ContactMode mode, const VecX& x, const VecX& v, VecX& 
   }
 }
 
-void Constraints::take_responses() {
+void Constraints::take_responses(const VecX& v_new) {
   trial_.clear();
   for (const auto& found : found_) trial_.insert(trial_.end(), found.begin(), found.end());
   work_ = 0;
@@ -56,8 +62,9 @@ void Constraints::take_responses() {
   for (const auto& responses : responses_)
     for (const Response& r : responses) {
       work_ += r.body_velocity.dot(r.impulse);
-      bodies_[static_cast<std::size_t>(r.body)].push(-r.impulse, r.place);
+      bodies_[static_cast<std::size_t>(r.body)].push(-r.impulse, r.place, r.approach);
     }
+  receive_faces(v_new);
 }
 
 void Constraints::respond(ContactMode mode, int particle, std::size_t chunk, VecX& x_new, VecX& v_new) {
@@ -94,12 +101,15 @@ bool Constraints::respond(ContactMode mode, int number, std::size_t chunk, StepV
     if (!changed) return false;
     add_plane(contact, plane);
     const Vec3 impulse = masses_[static_cast<std::size_t>(contact.particle)] * (step.end - before);
-    responses_[chunk].push_back({number, impulse, x + h_ * step.mean, plane.body_velocity});
+    responses_[chunk].push_back({number, impulse, x + h_ * step.mean, plane.body_velocity,
+                                 (plane.body_velocity - before).norm()});
     return true;
   };
-  const ContactPlane nearest = body.plane(x);
-  clearance(number, contact.particle) = nearest.gap + obstacle.margin;
-  deepest_[chunk] = std::max(deepest_[chunk], -nearest.gap - obstacle.margin);
+  const SurfacePoint start = body.at_start(x);
+  clearance(number, contact.particle) = start.distance;
+  deepest_[chunk] = std::max(deepest_[chunk], -start.distance);
+  if (start.distance > obstacle.margin + std::max(reach, touch)) return false;
+  const ContactPlane nearest = body.plane(x, start);
   if (nearest.gap < touch && changed_by(nearest)) return true;
   if (!(nearest.gap < reach)) return false;
   const auto met = body.meeting(x, x_mean);

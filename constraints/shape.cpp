@@ -8,6 +8,11 @@
 // is sought. A path that slides along a surface costs about length / r distances. Missed can be only what is
 // thinner than r - 2 margin and hidden from the path by a nearer surface. r = 1 mm for paths up to 256 mm, a
 // 256th of longer ones.
+//
+// Against a surface that deforms, s [m] counts the most by which the two can come nearer to each other,
+//   length = |x1 - x0 - m| + max_i |u_i - m|,  u_i displacements of the vertices, m their mean,
+// so that f still falls no faster than 1; f' = n . (x1 - x0 - u) / length, u that of the closest point. What
+// a margin below r / 2 could let through is found as a root of the triangles' cubics (mesh/crossing.h).
 #include "constraints/shape.h"
 
 #include <Eigen/Geometry>
@@ -23,6 +28,7 @@ namespace {
 constexpr double touch = 1e-8;       // m: f below this is a meeting
 constexpr double sliding = 1e-9;     // a slope that is none
 constexpr double resolution = 1e-3;  // m
+constexpr double rounding = 1e-12;   // m: what goes with a moving surface goes no farther from it
 constexpr int resolved_steps = 256;  // of a long path
 constexpr int most_steps = 2 * resolved_steps;
 constexpr int most_halvings = 40;
@@ -94,7 +100,8 @@ SurfacePoint closest(const Capsule& capsule, const Vec3& x) {
 SurfacePoint closest(const MeshBody& body, const Vec3& x) { return body->closest(x); }
 
 bool convex(const Shape& shape) {
-  return !std::holds_alternative<Bowl>(shape) && !std::holds_alternative<MeshBody>(shape);
+  return !std::holds_alternative<Bowl>(shape) && !std::holds_alternative<MeshBody>(shape) &&
+         !std::holds_alternative<DeformingBody>(shape);
 }
 
 // f and f' at a place of the path.
@@ -103,13 +110,20 @@ struct Station {
   SurfacePoint surface{};
 };
 
+// direction: of the particle for a metre of s; a unit vector where the surface stands.
 struct Path {
   const Shape& shape;
   Vec3 start, direction;
   double length, margin;
 
   Station at(double s) const {
-    Station here{s, 0, 0, drape::closest(shape, start + s * direction)};
+    const Vec3 x = start + s * direction;
+    if (const auto* body = std::get_if<DeformingBody>(&shape)) {
+      Vec3 displacement;
+      const SurfacePoint surface = body->surface->closest(x, s / length, displacement);
+      return {s, surface.distance - margin, surface.normal.dot(direction - displacement / length), surface};
+    }
+    Station here{s, 0, 0, drape::closest(shape, x)};
     here.f = here.surface.distance - margin;
     here.slope = here.surface.normal.dot(direction);
     return here;
@@ -153,8 +167,10 @@ std::optional<Hit> first_hit_convex(const Path& path) {
   return path.hit(here);
 }
 
+double resolution_of(const Path& path) { return std::max(resolution, path.length / resolved_steps); }
+
 std::optional<Hit> first_hit_any(const Path& path) {
-  const double r = std::max(resolution, path.length / resolved_steps);
+  const double r = resolution_of(path);
   Station here = path.at(0);
   if (nearer_still(here)) return path.hit(here);
   bool leaving = here.f <= touch;  // within the margin from the start, and not yet out of it
@@ -175,6 +191,22 @@ std::optional<Hit> first_hit_any(const Path& path) {
   if (here.s < path.length && here.f < r)
     return path.hit(here);  // too long a way to follow: stop where it is near
   return std::nullopt;
+}
+
+// The advancement along the distance, and what it may not see: a surface gone through within r, and one that
+// meets a path which starts within the margin and leaves.
+std::optional<Hit> first_hit_deforming(const SurfaceDistance& surface, const Path& path) {
+  const std::optional<Hit> hit = first_hit_any(path);
+  const Station start = path.at(0);
+  const bool leaves = start.f <= touch;
+  const bool seen = 2 * path.margin >= resolution_of(path) && !leaves;
+  const bool too_far = std::abs(start.surface.distance) > path.length;
+  if (seen || too_far || (hit && hit->fraction == 0)) return hit;
+  const bool on_it = !surface.closed() && start.surface.distance <= touch;  // and not yet going through it
+  const double from = on_it ? 2 * touch / path.length : 0;
+  const auto s = surface.first_crossing(path.start, path.start + path.length * path.direction, from);
+  if (!s || (hit && hit->fraction <= *s)) return hit;
+  return path.hit(path.at(std::max(0.0, *s * path.length - touch)));  // on the side that it comes from
 }
 
 void require(bool fine, const char* message, double value) {
@@ -216,20 +248,52 @@ void check_bowl(const Bowl& bowl) {
   require_direction(bowl.axis, "bowl: axis must have a length");
 }
 
+void check_deforming(const DeformingBody& body) {
+  if (!body.surface) throw InputError("mesh: there is no surface");
+  if (!body.frames || body.frames->frame_count() == 0) throw InputError("mesh: there are no frames");
+  const int vertices = body.surface->mesh().vertex_count();
+  if (body.frames->vertex_count() != vertices)
+    throw InputError("mesh: it has " + std::to_string(vertices) + " vertices, its frames have " +
+                     std::to_string(body.frames->vertex_count()));
+}
+
 }  // namespace
 
 std::string_view name(const Shape& shape) {
-  constexpr std::string_view names[] = {"plane", "sphere", "bowl", "box", "capsule", "mesh"};
+  constexpr std::string_view names[] = {"plane", "sphere", "bowl", "box", "capsule", "mesh", "mesh"};
   static_assert(std::variant_size_v<Shape> == std::size(names));
   return names[shape.index()];
 }
 
-SurfacePoint closest(const Shape& shape, const Vec3& x) {
-  return std::visit([&](const auto& s) { return closest(s, x); }, shape);
+SurfacePoint closest(const Shape& shape, const Vec3& x, double s) {
+  return std::visit(Match{[&](const DeformingBody& body) { return body.surface->closest(x, s); },
+                          [&](const auto& standing) { return closest(standing, x); }},
+                    shape);
+}
+
+void move(Shape& shape, double t0, double t1) {
+  if (const auto* body = std::get_if<DeformingBody>(&shape)) body->surface->move(*body->frames, t0, t1);
+}
+
+double largest_displacement(const Shape& shape) {
+  const auto* body = std::get_if<DeformingBody>(&shape);
+  return body ? body->surface->largest_displacement() : 0;
+}
+
+Vec3 carried(const Shape& shape, const Vec3& x, double s) {
+  const auto* body = std::get_if<DeformingBody>(&shape);
+  if (!body || body->surface->largest_displacement() == 0) return x;
+  return body->surface->place(body->surface->anchor(x, s), 1);
 }
 
 std::optional<Hit> first_hit(const Shape& shape, const Vec3& x0, const Vec3& x1, double margin) {
   const Vec3 way = x1 - x0;
+  if (const auto* body = std::get_if<DeformingBody>(&shape)) {
+    const SurfaceMotion& motion = body->surface->motion();
+    const double most = (way - motion.mean).norm() + motion.about_mean;
+    if (!(most > rounding)) return std::nullopt;
+    return first_hit_deforming(*body->surface, {shape, x0, way / most, most, margin});
+  }
   const double length = way.norm();
   if (!(length > 0)) return std::nullopt;
   const Path path{shape, x0, way / length, length, margin};
@@ -249,7 +313,8 @@ void check(const Shape& shape) {
                    [](const Capsule& capsule) { check_capsule(capsule); },
                    [](const MeshBody& body) {
                      if (!body) throw InputError("mesh: there is no surface");
-                   }},
+                   },
+                   [](const DeformingBody& body) { check_deforming(body); }},
              shape);
 }
 

@@ -205,6 +205,8 @@ void Bdf::mark_touching() {
   for (const Contact& c : constraints_.touching()) past_.touched[static_cast<std::size_t>(c.particle)] = 1;
   for (const MovingPin& p : constraints_.moving_pins())
     past_.touched[static_cast<std::size_t>(p.particle)] = 1;
+  for (const FaceContact& c : constraints_.faces().touching())
+    for (int i : c.particles) past_.touched[static_cast<std::size_t>(i)] = 1;
 }
 
 void Bdf::assemble(Stiffness stiffness) {
@@ -224,8 +226,9 @@ LinearReport Bdf::solve_within_contacts(const State& state, Stiffness stiffness,
   const bool contact = !constraints_.bodies().empty();
   double tolerance =
       contact ? std::max(options_.tolerance, std::sqrt(options_.tolerance)) : options_.tolerance;
+  const int rounds = options_.max_contact_solves + constraints_.most_corrections();
   for (int round = 0;; ++round) {
-    if (round == options_.max_contact_solves) tolerance = options_.tolerance;
+    if (round == rounds) tolerance = options_.tolerance;
     LinearReport linear;
     {
       const Stopwatch watch(report.solve_ms);
@@ -234,19 +237,16 @@ LinearReport Bdf::solve_within_contacts(const State& state, Stiffness stiffness,
     ++report.linear_solves;
     report.linear_iterations += linear.iterations;
     if (linear.reason == StopReason::indefinite || linear.reason == StopReason::not_finite) return linear;
-    if (!contact || round == options_.max_contact_solves) return linear;
+    if (!contact || round == rounds) return linear;
 
     const Stopwatch watch(report.collide_ms);
     // Twice the residual: what the solve left over is not a reaction.
     bool changed = constraints_.react(v_new_, r_, 2 * linear.residual_impulse);
     x_new_ = x_bar_ + c_ * v_new_;
-    if (constraints_.check_paths(x_new_)) {
-      changed = true;
-      if (back_ > 0) {  // what is caught now starts anew
-        mark_touching();
-        linearise(state, stiffness, report);
-      }
-    }
+    const bool caught = constraints_.check_paths(x_new_), faces = constraints_.react_faces(x_new_, v_new_);
+    changed = changed || caught || faces;
+    if (caught && back_ > 0) mark_touching();  // what is caught now starts anew
+    if ((caught && back_ > 0) || faces) linearise(state, stiffness, report);
     if (!changed && (tolerance == options_.tolerance || linear.residual <= options_.tolerance)) return linear;
     if (!changed) tolerance = options_.tolerance;
     guess_ = dv_;

@@ -4,6 +4,7 @@
 #include "constraints/constraints.h"
 #include "mesh/examine.h"
 #include "mesh/generate.h"
+#include "mesh/mesh_frames.h"
 #include "mesh/obj.h"
 #include "mesh/threads.h"
 #include "mesh/topology.h"

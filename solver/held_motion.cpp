@@ -51,8 +51,9 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
       solve_contacts(state, x, v, h, options, report);
     } else {
       const Stopwatch watch(report.collide_ms);
-      constraints_.respond(contact_, x, v, x_new_, v_new_);
+      constraints_.respond(contact_, x, v, x_new_, v_new_, impulse_noise(h));
     }
+    constraints_.react_faces(x_new_, v_new_);
     end_step(constraints_, x_new_, v_new_, report);
   }
   state.x = x_new_;
@@ -95,17 +96,22 @@ void HeldMotion::let_go(const VecX& x, const VecX& v) {
   }
 }
 
+// N s, below which an impulse is round-off.
+double HeldMotion::impulse_noise(double h) const {
+  double heaviest = 0;
+  for (double m : system_.masses()) heaviest = std::max(heaviest, m);
+  return 1e-9 * heaviest * h * system_.gravity_acceleration().norm();
+}
+
 void HeldMotion::solve_contacts(const State& state, const VecX& x, const VecX& v, double h,
                                 const StepOptions& options, StepReport& report) {
   const Stopwatch watch(report.collide_ms);
-  double weight = 0;
-  for (double m : system_.masses()) weight = std::max(weight, m);
-  const double noise = 1e-9 * weight * h * system_.gravity_acceleration().norm();
+  const double noise = impulse_noise(h);
   for (int round = 0;; ++round) {
     move_within_constraints(state, x, h);
     constraints_.receive(v_new_, r_);
     let_go(x, v);
-    if (round == options.max_contact_solves) return;
+    if (round == options.max_contact_solves + constraints_.most_corrections()) return;
     bool changed = constraints_.react(v_new_, r_, noise);
     if (constraints_.check_paths(x_new_)) changed = true;
     if (!changed) return;

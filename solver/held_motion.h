@@ -34,6 +34,7 @@ class HeldMotion {
               StepReport& report);
 
  private:
+  double impulse_noise(double h) const;
   void set_free(const VecX& v, double h);
   void move_within_constraints(const State& state, const VecX& x, double h);
   void let_go(const VecX& x, const VecX& v);

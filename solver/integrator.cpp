@@ -24,6 +24,7 @@ void end_step(Constraints& constraints, VecX& x, VecX& v, StepReport& report) {
   const ContactReport contact = constraints.end_step(x, v);
   report.contacts = contact.contacts;
   report.guarded += contact.guarded;
+  report.converged = report.converged && contact.converged;
   report.penetration = std::max(report.penetration, contact.deepest);
 }
 

@@ -158,10 +158,11 @@ bool NewtonKinsol::attempt(State& state, double h) {
     equation(v_);
     r_ = F_;
     constraints_.receive(v_, r_);
-    if (round == options_.max_contact_solves) break;
+    if (round == options_.max_contact_solves + constraints_.most_corrections()) break;
     bool changed = constraints_.react(v_, r_, 2 * report_.residual * scale_);
     x_ = x_bar_ + h * v_;
     if (constraints_.check_paths(x_)) changed = true;
+    constraints_.react_faces(x_, v_);  // its force is followed by the search itself
     if (!changed) break;
   }
   report_.converged = report_.converged && solved_;

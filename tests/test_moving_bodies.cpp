@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 
 #include "mesh/generate.h"
+#include "solver/pair_force.h"
+#include "solver/tension_spring.h"
 #include "tests/integrators.h"
 #include "tests/tables.h"
 
@@ -157,4 +159,78 @@ TEST_CASE("pins follow a body, and a path of their own", "[moving-bodies]") {
     for (int i : {0, 1}) CHECK((at(i) - turn.at(0.1).to_world(rest(i))).norm() < 1e-9);
     CHECK((at(5) - rest(5) - Vec3(0, 0.02, 0)).norm() < 1e-9);
   }
+}
+
+TEST_CASE("a cloth on a turning ball turns with it when it is rough, and stays when it is smooth",
+          "[moving-bodies]") {
+  for (double mu : {0.0, 0.9}) {
+    INFO(mu);
+    const TriangleMesh mesh = disc(8, 0.35);
+    const Fabric fabric{.area_density = 0.2, .stretch = 500, .bend = 1e-5, .damping = 5e-3};
+    System system(masses(mesh, fabric));
+    system.add(noh_jung(mesh, fabric));
+    system.add(Gravity{});
+    Constraints constraints;
+    State state = at_rest(mesh);
+    for (int i = 0; i < state.particles(); ++i) state.x[3 * i + 1] += 0.31;
+    // It spins up smoothly from 0.6 s on, when the cloth has come to lie on it.
+    const double rate = 1.5;  // rad/s
+    constraints.add(Obstacle{.shape = Sphere{{0, 0, 0}, 0.3},
+                             .friction = mu,
+                             .margin = 3e-3,
+                             .motion = Motion::keyframes({{0.6, Vec3::Zero(), Vec3::Zero()},
+                                                          {1.6, Vec3::Zero(), {0, 0.5 * rate, 0}},
+                                                          {3.6, Vec3::Zero(), {0, 2.5 * rate, 0}},
+                                                          {4.6, Vec3::Zero(), {0, 3 * rate, 0}}},
+                                                         Vec3::Zero())});
+    auto stepper = make_integrator("implicit-euler", system, constraints, make_linear_solver("mpcg"),
+                                   {.tolerance = 1e-5});
+    for (int n = 0; n < 300; ++n) REQUIRE(stepper->advance(state, h).done);
+    const Pose before = constraints.bodies()[0].pose();
+    REQUIRE(stepper->advance(state, h).done);
+    const double spin =
+        Eigen::AngleAxisd(constraints.bodies()[0].pose().rotation * before.rotation.transpose()).angle() / h;
+    double turning = 0, inertia = 0;  // of the cloth about the vertical
+    for (int i = 0; i < state.particles(); ++i) {
+      const Vec3 x = state.x.segment<3>(3 * i), v = state.v.segment<3>(3 * i);
+      const double m = system.masses()[static_cast<std::size_t>(i)];
+      turning += m * (x[2] * v[0] - x[0] * v[2]);
+      inertia += m * (x[0] * x[0] + x[2] * x[2]);
+    }
+    CHECK(spin > 1);
+    CHECK(turning / inertia == Approx(mu > 0 ? spin : 0.0).margin(0.05 * spin));
+  }
+}
+
+TEST_CASE("a rope over a drum holds up to the capstan's ratio of weights", "[moving-bodies]") {
+  // Particles on half a drum, joined by springs; weights hang at both ends. [Euler; validation: exp(mu phi)]
+  constexpr int links = 24;  // on the drum, 25 particles touch
+  const double mu = 0.3, radius = 0.1, light = 0.05, exact = std::exp(mu * M_PI);
+  const auto slides = [&](double ratio) {
+    std::vector<Vec3> places;
+    for (int k = 0; k <= links; ++k) {
+      const double a = M_PI - M_PI * k / links;
+      places.push_back({radius * std::cos(a), radius * std::sin(a), 0});
+    }
+    const double chord = (places[1] - places[0]).norm();
+    places.insert(places.begin(), {-radius, -0.05, 0});
+    places.push_back({radius, -0.05, 0});
+    const int n = static_cast<int>(places.size());
+    std::vector<double> weights(places.size(), 1e-5);
+    weights.front() = light;
+    weights.back() = light * ratio;
+    System system(weights);
+    std::vector<PairForce<TensionSpring>::Element> springs;
+    for (int k = 0; k + 1 < n; ++k) springs.push_back({k, k + 1, {k == 0 || k + 2 == n ? 0.05 : chord, 2e4}});
+    system.add(std::make_unique<PairForce<TensionSpring>>(springs));
+    system.add(Gravity{});
+    Constraints constraints;
+    constraints.add(Obstacle{.shape = Capsule{{0, 0, -1}, {0, 0, 1}, radius}, .friction = mu, .margin = 0});
+    State state{0, stacked(places), VecX::Zero(3 * n)};
+    auto stepper = make_integrator("implicit-euler", system, constraints, make_linear_solver("cholmod"));
+    for (int k = 0; k < 100; ++k) REQUIRE(stepper->advance(state, h).done);
+    return state.v[3 * (n - 1) + 1] < -0.02;  // the heavy end sinks
+  };
+  CHECK_FALSE(slides(0.97 * exact));
+  CHECK(slides(1.03 * exact));
 }

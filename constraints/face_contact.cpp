@@ -1,0 +1,182 @@
+#include "constraints/face_contact.h"
+
+#include <algorithm>
+
+#include "mesh/closest_on_triangle.h"
+#include "mesh/parallel.h"
+
+namespace drape {
+namespace {
+
+constexpr double slow = 1e-3;    // m/s
+constexpr int most_changes = 3;  // of a contact within a step, as of a particle's
+constexpr int most_steps = 24;   // of the search for the lowest point
+constexpr double fine = 0.01;    // of the size of a triangle: where the search ends
+
+struct Corners {
+  Vec3 a, b, c;
+  Corners(const ClothFace& face, const VecX& x)
+      : a(x.segment<3>(3 * face.particles[0])),
+        b(x.segment<3>(3 * face.particles[1])),
+        c(x.segment<3>(3 * face.particles[2])) {}
+  Vec3 middle() const { return (a + b + c) / 3; }
+  double radius() const {
+    const Vec3 m = middle();
+    return std::sqrt(std::max({(a - m).squaredNorm(), (b - m).squaredNorm(), (c - m).squaredNorm()}));
+  }
+};
+
+struct Lowest {
+  Vec3 point;
+  Vec3 weights;
+  double distance;
+};
+
+// The point of the triangle nearest to the body, from its middle downhill: towards the closest point of the
+// surface while outside (alternating projections, which find the nearest points of convex bodies), by ever
+// smaller steps against the normal where that does not come nearer.
+//                                                     [Cheney & Goldstein 1959]
+template <class Distance>
+Lowest lowest_point(const Corners& t, const Distance& distance, double enough) {
+  Vec3 p = t.middle();
+  SurfacePoint here = distance(p);
+  Vec3 weights = Vec3::Constant(1.0 / 3);
+  const double size = t.radius();
+  if (here.distance - size > enough) return {p, weights, here.distance - size};  // all of it is farther
+  double step = std::max(here.distance, size);
+  for (int i = 0; i < most_steps && step > fine * size; ++i) {
+    const auto [q, feature] = closest_on_triangle(p - step * here.normal, t.a, t.b, t.c);
+    const SurfacePoint there = distance(q);
+    if (there.distance < here.distance - 1e-9) {
+      weights = weights_on_triangle(q, feature, t.a, t.b, t.c);
+      p = q;
+      here = there;
+    } else {
+      step /= 2;
+    }
+  }
+  return {p, weights, here.distance};
+}
+
+}  // namespace
+
+double FaceContact::rubbing() const { return friction * push / std::max(slip, slow); }
+
+void FaceContacts::add(const std::vector<ClothFace>& faces) {
+  faces_.insert(faces_.end(), faces.begin(), faces.end());
+  room_.clear();
+}
+
+void FaceContacts::measure_travel(const MovingBody& body, const VecX& x, const VecX& x_new) {
+  travel_.resize(static_cast<std::size_t>(x.size() / 3));
+  for_chunks(static_cast<int>(travel_.size()), [&](int begin, int end) {
+    for (int i = begin; i < end; ++i)
+      travel_[static_cast<std::size_t>(i)] = body.travel(x.segment<3>(3 * i), x_new.segment<3>(3 * i));
+  });
+}
+
+double FaceContacts::travel(const ClothFace& face) const {
+  double most = 0;
+  for (int i : face.particles) most = std::max(most, travel_[static_cast<std::size_t>(i)]);
+  return most;
+}
+
+void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new,
+                              double recovery) {
+  const int n = static_cast<int>(faces_.size());
+  if (n == 0 || bodies.empty()) return;
+  if (room_.size() != bodies.size() * faces_.size()) {
+    room_.assign(bodies.size() * faces_.size(), 0.0);
+    found_.resize(static_cast<std::size_t>(chunk_count(n)));
+    touching_.clear();
+  }
+  std::swap(touching_, last_);
+  touching_.clear();
+  for (const MovingBody& body : bodies) {
+    measure_travel(body, x, x_new);
+    parallel_for(chunk_count(n), n < serial_below, [&](int k) {
+      auto& found = found_[static_cast<std::size_t>(k)];
+      found.clear();
+      for (int f = k * chunk_size; f < std::min(n, (k + 1) * chunk_size); ++f)
+        look(f, body, x, x_new, recovery, found);
+    });
+    for (const auto& found : found_) touching_.insert(touching_.end(), found.begin(), found.end());
+  }
+}
+
+void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX& x_new, double recovery,
+                        std::vector<FaceContact>& found) {
+  const ClothFace& face = faces_[static_cast<std::size_t>(f)];
+  double& room = room_[static_cast<std::size_t>(body.number()) * faces_.size() + static_cast<std::size_t>(f)];
+  const double offset = 0.5 * body.obstacle().margin, reach = offset + travel(face);
+  if (room > reach) return;
+  const Lowest start = lowest_point(
+      Corners(face, x), [&](const Vec3& p) { return body.near_start(p); }, reach);
+  room = start.distance;
+  if (room > reach) return;
+  const Lowest end = lowest_point(
+      Corners(face, x_new), [&](const Vec3& p) { return body.near_end(p); }, offset);
+  if (start.distance > offset && end.distance > offset) return;  // on its way past
+  const ContactPlane plane = body.plane(start.point, body.at_start(start.point));
+  const double depth = std::max(plane.gap + body.obstacle().margin - offset, -std::max(recovery, offset));
+  FaceContact contact{.body = body.number(),
+                      .face = f,
+                      .particles = face.particles,
+                      .weights = start.weights,
+                      .stiffness = face.stiffness,
+                      .normal = plane.normal,
+                      .place = start.point,
+                      .gap = depth - plane.normal.dot(body.carried(start.point)),
+                      .body_velocity = plane.body_velocity,
+                      .friction = body.obstacle().friction.kinetic};
+  contact.active = contact.gap_at(x_new) < 0;
+  if (const FaceContact* const old = before(contact.body, f)) {
+    contact.active = contact.active || old->active;
+    contact.push = old->push;
+    contact.slip = old->slip;
+  }
+  found.push_back(contact);
+}
+
+const FaceContact* FaceContacts::before(int body, int face) const {
+  const auto at = std::lower_bound(
+      last_.begin(), last_.end(), std::pair(body, face),
+      [](const FaceContact& c, const std::pair<int, int>& key) { return std::pair(c.body, c.face) < key; });
+  return at != last_.end() && at->body == body && at->face == face ? &*at : nullptr;
+}
+
+void FaceContacts::follow(const std::vector<MovingBody>& bodies) {
+  for (FaceContact& c : touching_) {
+    const MovingBody& body = bodies[static_cast<std::size_t>(c.body)];
+    const Vec3 before = c.body_velocity;
+    c.body_velocity = body.velocity(c.place);
+    c.gap -= body.step() * c.normal.dot(c.body_velocity - before);
+  }
+}
+
+bool FaceContacts::react(const VecX& x_new, const VecX& v_new) {
+  bool changed = false;
+  for (FaceContact& c : touching_) {
+    const double gap = c.gap_at(x_new);
+    c.push = std::max(-c.stiffness * gap, 0.0);
+    c.slip = c.slip_at(v_new).norm();
+    if (c.active == (gap < 0) || c.changes == most_changes) continue;
+    c.active = gap < 0;
+    ++c.changes;
+    changed = true;
+  }
+  return changed;
+}
+
+void FaceContacts::end_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new) {
+  if (faces_.empty()) return;
+  for (const MovingBody& body : bodies) {
+    measure_travel(body, x, x_new);
+    double* const room = &room_[static_cast<std::size_t>(body.number()) * faces_.size()];
+    for_chunks(static_cast<int>(faces_.size()), [&](int begin, int end) {
+      for (int f = begin; f < end; ++f) room[f] -= travel(faces_[static_cast<std::size_t>(f)]);
+    });
+  }
+}
+
+}  // namespace drape

@@ -1,0 +1,90 @@
+// Triangles of the cloth against bodies: what vertices alone would let through, the corner of a table in the
+// middle of a triangle or its rim across an edge, is kept off by a stiff spring on the triangle's three
+// corners.
+//   p = sum w_k x_k    the point of the triangle that is nearest to the body, or deepest in it
+//   g = g_0 + n . (sum w_k (x_k - x_k0) - h v_b)     its gap, linearised as a contact's is; the offset is
+//   half
+//                                                    the margin: where vertices rest, faces touch nothing
+//   E = k/2 g^2 for g < 0,   f_k = -k g w_k n,   K_kl = k w_k w_l n n^T
+//   friction: the damper mu N / |u| on the part u of sum w_k v_k - v_b along the surface, N = -k g and |u|
+//   those of the solve before; below slow [m/s] it creeps instead of sticking.
+// A constraint would lock two or three particles to each other, which a filter of 3x3 blocks cannot say; the
+// spring's blocks stand where the edges of the triangle have theirs. k is the cloth's own membrane stiffness:
+// so it changes neither the condition of the matrix nor the step that explicit methods bear, and a load that
+// stretches the cloth by a hundredth sinks in by as little.
+// Which springs act is an active set: foreseen at x + h v, corrected by react() until it agrees with the
+// solve. x [m], v [m/s], k [N/m], h [s].
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "constraints/moving_body.h"
+
+namespace drape {
+
+struct ClothFace {
+  std::array<int, 3> particles;
+  double stiffness;  // N/m
+};
+
+struct FaceContact {
+  int body, face;
+  std::array<int, 3> particles;
+  Vec3 weights;
+  double stiffness;    // N/m
+  Vec3 normal;         // unit, out of the body
+  Vec3 place;          // m, of p at the start
+  double gap;          // m, g above at x = 0, v_b = 0: so that g = gap + n . sum w_k x_k
+  Vec3 body_velocity;  // m/s
+  double friction;     // mu
+  bool active = false;
+  int changes = 0;  // of that, within this step
+  double push = 0;  // N, of the last solve
+  double slip = 0;  // m/s, |u| of the last solve
+
+  template <class Vector>
+  Vec3 at(const Vector& x) const {
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < 3; ++k)
+      sum += weights[k] * x.template segment<3>(3 * particles[static_cast<std::size_t>(k)]);
+    return sum;
+  }
+  double gap_at(const VecX& x) const { return gap + normal.dot(at(x)); }
+  Vec3 slip_at(const VecX& v) const {
+    const Vec3 u = at(v) - body_velocity;
+    return u - normal.dot(u) * normal;
+  }
+  double rubbing() const;  // N s/m, the damper
+};
+
+class FaceContacts {
+ public:
+  void add(const std::vector<ClothFace>& faces);
+  const std::vector<ClothFace>& all() const { return faces_; }
+
+  // x -> x_new is the motion that is foreseen. recovery: how far what starts inside is brought out in this
+  // step at most [m].
+  void begin_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new, double recovery);
+  void follow(const std::vector<MovingBody>& bodies);  // bodies whose motion in this step has changed
+  // After a solve: which act; true when that has changed.
+  bool react(const VecX& x_new, const VecX& v_new);
+  void end_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new);
+
+  const std::vector<FaceContact>& touching() const { return touching_; }
+
+ private:
+  void measure_travel(const MovingBody& body, const VecX& x, const VecX& x_new);
+  double travel(const ClothFace& face) const;
+  void look(int face, const MovingBody& body, const VecX& x, const VecX& x_new, double recovery,
+            std::vector<FaceContact>& found);
+  const FaceContact* before(int body, int face) const;
+
+  std::vector<ClothFace> faces_;
+  std::vector<double> room_;    // body, face: within this distance the body was not when last looked [m]
+  std::vector<double> travel_;  // of a particle, as the body at hand sees it [m]
+  std::vector<FaceContact> touching_, last_;     // by body, then by face
+  std::vector<std::vector<FaceContact>> found_;  // by chunk of faces
+};
+
+}  // namespace drape

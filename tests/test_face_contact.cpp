@@ -1,0 +1,197 @@
+// Faces of the cloth against corners and rims of bodies: the force and its derivatives, and that nothing
+// sharp comes through between the vertices.
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+
+#include "mesh/generate.h"
+#include "solver/face_contact_force.h"
+#include "tests/tables.h"
+
+using namespace drape;
+using namespace drape::test;
+
+namespace {
+
+constexpr double margin = 4e-3;  // m
+
+std::vector<ClothFace> faces_of(const TriangleMesh& mesh, double stiffness = 500) {
+  std::vector<ClothFace> faces;
+  for (const Triangle& t : mesh.triangles) faces.push_back({{t[0], t[1], t[2]}, stiffness});
+  return faces;
+}
+
+// A cloth of coarse triangles, with its faces.
+struct Cloth {
+  TriangleMesh mesh;
+  System system;
+  Constraints constraints;
+  State state;
+
+  Cloth(TriangleMesh m, const Vec3& lift, bool with_faces = true, const Vec3& g = {0, -9.81, 0})
+      : mesh(std::move(m)), system(masses(mesh, fabric())), state(at_rest(mesh)) {
+    for (int i = 0; i < state.particles(); ++i) state.x.segment<3>(3 * i) += lift;
+    system.add(noh_jung(mesh, fabric()));
+    system.add(Gravity{g});
+    if (!with_faces) return;
+    constraints.add_faces(faces_of(mesh));
+    system.add(face_contact_force(constraints));
+  }
+  static Fabric fabric() { return {.area_density = 0.2, .stretch = 500, .bend = 1e-5, .damping = 5e-3}; }
+
+  // The least distance of points spread over all triangles, the vertices and edges among them.
+  double lowest() const {
+    constexpr int n = 12;
+    double least = 1e300;
+    for (const Triangle& t : mesh.triangles)
+      for (int i = 0; i <= n; ++i)
+        for (int j = 0; i + j <= n; ++j) {
+          const double a = static_cast<double>(i) / n, b = static_cast<double>(j) / n;
+          const Vec3 p = a * state.x.segment<3>(3 * t[0]) + b * state.x.segment<3>(3 * t[1]) +
+                         (1 - a - b) * state.x.segment<3>(3 * t[2]);
+          for (const MovingBody& body : constraints.bodies()) least = std::min(least, body.distance(p));
+        }
+    return least;
+  }
+};
+
+Mat3 on_its_corner() {  // of a cube, (1, 1, 1) up
+  return Eigen::Quaterniond::FromTwoVectors(Vec3(1, 1, 1), Vec3::UnitY()).toRotationMatrix();
+}
+
+}  // namespace
+
+TEST_CASE("the force of a face's contact is the gradient of its energy, and its blocks the derivative",
+          "[faces]") {
+  TriangleMesh one;
+  one.positions = {{-0.1, 0, -0.08}, {0.12, 0.001, -0.07}, {0.01, -0.002, 0.13}};
+  one.triangles = {{0, 2, 1}};
+  System system(std::vector<double>(3, 0.01));
+  Constraints constraints;
+  constraints.add(Obstacle{
+      .shape = Box{{0.02, -0.105, 0.01}, {0.1, 0.1, 0.1}, on_its_corner()}, .friction = 0.4, .margin = 0.04});
+  constraints.add_faces(faces_of(one));
+  system.add(face_contact_force(constraints));
+  const State state = at_rest(one);
+  const VecX v = random_vector(9, 0.1, 3);
+  constraints.begin_step(state.x, v, system.masses(), 0, 0.01);
+  REQUIRE(constraints.faces().touching().size() == 1);
+  constraints.react_faces(state.x, v);
+  const FaceContact& contact = constraints.faces().touching()[0];
+  REQUIRE(contact.active);
+  CHECK(contact.weights.sum() == Approx(1));
+  CHECK(contact.push > 0);
+
+  const Force& force = *system.forces()[0];
+  const auto force_at = [&](const VecX& x, const VecX& velocity) {
+    VecX f = VecX::Zero(9);
+    force.add_force(x, velocity, f);
+    return f;
+  };
+  BlockMatrix A(system.bind());
+  const double c = 0.01, e = 1e-6;
+  A.set_to_mass({0, 0, 0});
+  VecX b = VecX::Zero(9);
+  const VecX y = random_vector(9, 1e-3, 4);
+  force.add_linearised(state.x, v, y, c, Stiffness::tangent, A, b);
+  Eigen::MatrixXd K(9, 9), D(9, 9);
+  VecX gradient(9);
+  const VecX still = VecX::Zero(9);
+  for (int k = 0; k < 9; ++k) {
+    const VecX d = e * VecX::Unit(9, k);
+    gradient[k] = (force.energy(state.x + d) - force.energy(state.x - d)) / (2 * e);
+    K.col(k) = -(force_at(state.x + d, v) - force_at(state.x - d, v)) / (2 * e);
+    D.col(k) = -(force_at(state.x, v + d) - force_at(state.x, v - d)) / (2 * e);
+  }
+  // Without friction's part, which is no gradient: f(x, v) - f_friction = -dE/dx.
+  const VecX friction =
+      force_at(state.x + 1e3 * stacked({contact.normal, contact.normal, contact.normal}), v);
+  CHECK((force_at(state.x, v) - friction + gradient).norm() < 1e-6 * gradient.norm());
+  CHECK((b - c * (force_at(state.x, v) - K * y)).norm() < 1e-6 * b.norm());
+  Eigen::MatrixXd whole(9, 9);
+  for (int k = 0; k < 9; ++k) {
+    VecX rows, product(9), column(9);
+    rows.resize(9);
+    to_rows(A.pattern(), VecX(VecX::Unit(9, k)), rows);
+    A.multiply(rows, product);
+    to_particles(A.pattern(), product, column);
+    whole.col(k) = column;
+  }
+  CHECK((whole - c * D - c * c * K).norm() < 1e-6 * whole.norm());
+  // Friction rubs against the slip with mu N.
+  Vec3 rub = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) rub += friction.segment<3>(3 * k);
+  CHECK(rub.norm() == Approx(0.4 * contact.push));
+  CHECK(rub.dot(contact.slip_at(v)) < 0);
+}
+
+TEST_CASE("a corner that comes up under a coarse triangle lifts it and does not come through", "[faces]") {
+  TriangleMesh one;
+  one.positions = {{-0.2, 0, -0.2}, {0.25, 0, -0.2}, {0, 0, 0.25}};
+  one.triangles = {{0, 2, 1}};
+  for (const std::string& name :
+       {std::string("implicit-euler"), std::string("bdf2"), std::string("newton-kinsol")}) {
+    for (double speed : {0.05, 1.0}) {
+      INFO(name << " " << speed);
+      Cloth cloth(one, {0, 0.1, 0}, true, Vec3::Zero());
+      const Box cube{{0, 0, 0}, {0.1, 0.1, 0.1}, on_its_corner()};  // its corner at 0.0866
+      cloth.constraints.add(Obstacle{.shape = cube,
+                                     .friction = 0.5,
+                                     .margin = margin,
+                                     .motion = Motion::constant({0, speed, 0}, Vec3::Zero(), Vec3::Zero())});
+      auto stepper = make_integrator(name, cloth.system, cloth.constraints, make_linear_solver("mpcg"));
+      for (int n = 0; n < 60; ++n) {
+        REQUIRE(stepper->advance(cloth.state, 0.01).done);
+        REQUIRE(cloth.lowest() > 0);
+      }
+      double height = 0;
+      for (int i = 0; i < 3; ++i) height += cloth.state.x[3 * i + 1] / 3;
+      CHECK(height > 0.0866 + 0.6 * speed - 0.03);  // it tilts
+    }
+  }
+}
+
+TEST_CASE("a coarse cloth on a sharp table keeps off its rims and corners", "[faces]") {
+  for (bool with_faces : {true, false}) {
+    Cloth cloth(grid(11, 11, 1, 1), {0.03, 0.12, 0.02}, with_faces);
+    cloth.constraints.add(Obstacle{.shape = Box{{0, 0, 0}, {0.57, 0.2, 0.63}}, .margin = margin});
+    ImplicitEuler stepper(cloth.system, cloth.constraints, make_linear_solver("mpcg"));
+    double lowest = 1;
+    for (int n = 0; n < 300; ++n) {
+      REQUIRE(stepper.advance(cloth.state, 0.01).done);
+      lowest = std::min(lowest, cloth.lowest());
+    }
+    if (with_faces) {
+      CHECK(lowest > -margin);    // never, however it fell
+      CHECK(cloth.lowest() > 0);  // and at rest clear of it
+      CHECK(max_speed(cloth.state) < 0.1);
+    } else {
+      CHECK(lowest < -margin);  // the vertices alone let it through: this is what the faces are for
+    }
+  }
+}
+
+TEST_CASE("what lies flat is held by its vertices, and its faces touch nothing", "[faces]") {
+  Cloth cloth(grid(9, 9, 0.3, 0.3), {0, 0.05, 0});
+  cloth.constraints.add(Obstacle{.shape = Plane{}, .margin = margin});
+  ImplicitEuler stepper(cloth.system, cloth.constraints, make_linear_solver("mpcg"));
+  for (int n = 0; n < 150; ++n) REQUIRE(stepper.advance(cloth.state, 0.01).done);
+  for (const FaceContact& c : cloth.constraints.faces().touching()) CHECK_FALSE(c.active);
+  for (int i = 0; i < cloth.state.particles(); ++i)
+    CHECK(cloth.state.x[3 * i + 1] == Approx(margin).margin(1e-9));
+}
+
+TEST_CASE("faces give the same bits with 1, 2 and 7 threads", "[faces]") {
+  const ThreadsRestored restored;
+  VecX first;
+  for (int count : {1, 2, 7}) {
+    set_threads(count);
+    Cloth cloth(grid(61, 61, 1, 1), {0.03, 0.11, 0.02});
+    cloth.constraints.add(
+        Obstacle{.shape = Box{{0, 0, 0}, {0.57, 0.2, 0.63}, rotation(0.3, {1, 1, 0})}, .margin = margin});
+    ImplicitEuler stepper(cloth.system, cloth.constraints, make_linear_solver("mpcg"), {.tolerance = 1e-3});
+    for (int n = 0; n < 25; ++n) REQUIRE(stepper.advance(cloth.state, 0.01).done);
+    REQUIRE_FALSE(cloth.constraints.faces().touching().empty());
+    if (first.size() == 0) first = cloth.state.x;
+    CHECK(same_bits(first, cloth.state.x));
+  }
+}
