@@ -285,7 +285,7 @@ void Constraints::receive(const VecX& v, const VecX& r) {
     const double gap = c.gap + c.normal.dot(place);
     const Vec3 impulse = h_ * (c.stiffness * std::max(-gap, 0.0) * c.normal - c.rubbing() * c.slip_at(v));
     work_ += c.body_velocity.dot(impulse);
-    bodies_[static_cast<std::size_t>(c.body)].push(-impulse, place);
+    bodies_[static_cast<std::size_t>(c.body)].push(-impulse, place, (c.at(v_) - c.body_velocity).norm());
   }
   for (const MovingPin& pin : moving_pins_) {
     const Vec3 impulse = r.segment<3>(3 * pin.particle),
@@ -311,6 +311,11 @@ bool Constraints::move_bodies(double noise) {
   faces_.follow(bodies_);
   move_pins();
   return true;
+}
+
+bool Constraints::bodies_converged() const {
+  return std::all_of(bodies_.begin(), bodies_.end(),
+                     [](const MovingBody& body) { return !body.reacting() || body.reacting()->converged(); });
 }
 
 bool Constraints::react(const VecX& v, const VecX& r, double noise) {

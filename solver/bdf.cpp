@@ -109,6 +109,8 @@ bool Bdf::attempt(State& state, double h, bool whole, StepReport& report) {
     ++report.rescues;
     return attempt(state, h, false, report);
   }
+  if (!constraints_.bodies_converged())  // in a shorter step the cloth weighs less on them
+    return fail(report, "the motion of a body that reacts and that of the cloth do not agree", linear);
   x_new_ = x_;
   v_new_ = v_;
   end_step(constraints_, x_new_, v_new_, report);
