@@ -1,47 +1,34 @@
 // Laws of the preconditioners, and of solvers that keep something from one system to the next.
 #include <catch2/catch.hpp>
 
+#include "app/compare/recording_solver.h"
 #include "mesh/threads.h"
-#include "solver/linear/preconditioner.h"
+#include "solver/linear/pcg.h"
+#include "tests/allocations.h"
 #include "tests/tables.h"
-
-namespace drape {
-std::unique_ptr<LinearSolver> make_pcg(std::string name, bool prefiltered,
-                                       std::unique_ptr<Preconditioner> preconditioner);
-}  // namespace drape
 
 using namespace drape;
 using namespace drape::test;
 
 namespace {
 
-// Keeps the right-hand side and the guess of the last system it solved.
-class Recorder final : public LinearSolver {
- public:
-  Recorder(VecX& b, VecX& guess) : b_(b), guess_(guess) {}
-  std::string_view name() const override { return "recorder"; }
-  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
-                     VecX& dv) override {
-    b_ = b;
-    guess_ = dv;
-    return inner_->solve(A, b, filter, options, dv);
-  }
-
- private:
-  std::unique_ptr<LinearSolver> inner_ = make_linear_solver("mpcg");
-  VecX &b_, &guess_;
-};
-
 // A hung sheet after some steps: the matrix of a real fall, slack and taut edges in it.
 struct FallingSheet : HungSheet {
+  Recording recording;
   ImplicitEuler stepper;
   Filter filter;
   VecX b, guess;
 
   FallingSheet(int side, int steps, double stretch = 2000)
       : HungSheet(side, stretch, 1e-5),
-        stepper(system, constraints, std::make_unique<Recorder>(b, guess), {.tolerance = 1e-3}) {
-    for (int k = 0; k < steps; ++k) stepper.advance(state, 0.01);
+        stepper(system, constraints, std::make_unique<RecordingSolver>(make_linear_solver("mpcg"), recording),
+                {.tolerance = 1e-3}) {
+    for (int k = 0; k < steps; ++k) {
+      recording.on = k + 1 == steps;
+      stepper.advance(state, 0.01);
+    }
+    b = recording.last->b;
+    guess = recording.last->guess;
     filter = held({0, side - 1});
   }
 
@@ -65,6 +52,7 @@ class Failing final : public Preconditioner {
  public:
   struct Told {
     int safer = 0, learnt = 0;
+    double decades = 0;
     bool forgotten = false;
   };
   Failing(int sound, bool can_be_safer, Told& told)
@@ -81,7 +69,10 @@ class Failing final : public Preconditioner {
     told_.safer += can_be_safer_ ? 1 : 0;
     return can_be_safer_;
   }
-  void learn(int iterations, double /*decades*/) override { told_.learnt = iterations; }
+  void learn(int iterations, double decades) override {
+    told_.learnt = iterations;
+    told_.decades = decades;
+  }
   void forget() override { told_.forgotten = true; }
 
  private:
@@ -178,6 +169,123 @@ TEST_CASE("contacts that come and go need no new analysis, and every solver stil
   }
 }
 
+TEST_CASE("a kept hierarchy knows what is held now", "[solvers]") {
+  const FallingSheet sheet(33, 15);
+  const BlockMatrix& A = sheet.stepper.matrix();
+  const auto multigrid = make_preconditioner("multigrid");
+  LinearReport report;
+  REQUIRE(multigrid->prepare(A, sheet.held({0, 32}), report));
+  CHECK(report.analyses == 1);
+  const Filter now = sheet.held({5, 300, 301, 555, 800});
+  report = {};
+  REQUIRE(multigrid->prepare(A, now, report));
+  CHECK(report.analyses == 0);  // kept
+  const VecX r = random_vector(sheet.b.size(), 1, 8);
+  VecX s = r;
+  multigrid->apply(r, s);
+  int locked = 0;
+  for (const FilterEntry& e : now.entries()) {  // a row of the identity, where S A S + I - S is that
+    if (!e.S.isZero(0)) continue;
+    ++locked;
+    CHECK((s.segment<3>(3 * e.particle) - r.segment<3>(3 * e.particle)).norm() < 1e-12);
+  }
+  CHECK(locked == 4);
+}
+
+TEST_CASE("a hierarchy is judged by what it took when new for a decade or more, and by nothing less",
+          "[solvers]") {
+  const FallingSheet sheet(33, 15);
+  const auto multigrid = make_preconditioner("multigrid");
+  const auto analyses = [&] {
+    LinearReport report;
+    REQUIRE(multigrid->prepare(sheet.stepper.matrix(), sheet.filter, report));
+    return report.analyses;
+  };
+  CHECK(analyses() == 1);
+  CHECK_FALSE(multigrid->outdated(1000, 1));  // nothing is newer than new
+  multigrid->learn(1, 0.9);                   // by luck, or from a good guess: says nothing
+  CHECK(analyses() == 0);
+  CHECK_FALSE(multigrid->outdated(100, 6));
+  multigrid->learn(30, 6);  // the first that says something
+  CHECK(analyses() == 0);
+  CHECK_FALSE(multigrid->outdated(44, 6));  // a third, and four, more
+  CHECK(multigrid->outdated(45, 6));
+  CHECK_FALSE(multigrid->outdated(10, 0.1));  // less than a decade counts as one
+  CHECK(multigrid->outdated(11, 0.1));
+  multigrid->learn(40, 6);  // slower, and not the new measure
+  CHECK(analyses() == 0);
+  CHECK(multigrid->outdated(45, 6));
+  multigrid->learn(45, 6);
+  CHECK(analyses() == 1);  // built anew, and measured anew
+  multigrid->learn(60, 6);
+  CHECK(analyses() == 0);
+  CHECK_FALSE(multigrid->outdated(84, 6));
+  CHECK(multigrid->outdated(85, 6));
+}
+
+TEST_CASE("one system over and over needs one analysis, wherever the iteration begins", "[solvers]") {
+  const FallingSheet sheet(65, 6);
+  const auto solver = make_linear_solver("ppcg+multigrid");
+  int analyses = 0;
+  const auto solve = [&](VecX dv, double tolerance) {
+    const LinearReport report =
+        solver->solve(sheet.stepper.matrix(), sheet.b, sheet.filter, {.tolerance = tolerance}, dv);
+    CHECK(report.reason == StopReason::converged);
+    analyses += report.analyses;
+    return report.iterations;
+  };
+  VecX solution = sheet.guess;
+  make_linear_solver("eigen-ldlt")->solve(sheet.stepper.matrix(), sheet.b, sheet.filter, {}, solution);
+  CHECK(solve(solution, 1e-3) == 0);
+  for (const double nearly : {1e-2, 5e-3, 3e-3}) {
+    VecX dv = sheet.guess;
+    make_linear_solver("ppcg+multigrid")
+        ->solve(sheet.stepper.matrix(), sheet.b, sheet.filter, {.tolerance = nearly}, dv);
+    CHECK(solve(dv, 0.5 * nearly) <= 3);  // less than a decade
+  }
+  for (const double tolerance : {1e-8, 1e-3, 1e-6}) CHECK(solve(sheet.guess, tolerance) > 3);
+  CHECK(analyses == 1);
+}
+
+TEST_CASE("of a set-up that threw nothing is used", "[solvers]") {
+  if (!counts_allocations()) return;  // with the sanitizers none can be made to fail
+  const ThreadsRestored restored;
+  set_threads(1);
+  const FallingSheet sheet(33, 15);
+  const BlockMatrix& A = sheet.stepper.matrix();
+  const VecX r = random_vector(sheet.b.size(), 1, 8);
+  VecX expected = r, s = r;
+  LinearReport report;
+  const auto fresh = make_preconditioner("multigrid");
+  REQUIRE(fresh->prepare(A, sheet.filter, report));
+  fresh->apply(r, expected);
+  for (const bool kept : {true, false}) {  // the hierarchy from before is used again, or built
+    int thrown = 0;
+    for (long after = 0; after < 5000; after = after < 20 ? after + 1 : 2 * after) {
+      INFO("allocation " << after << (kept ? " of a kept one" : " of a new one"));
+      const auto multigrid = make_preconditioner("multigrid");
+      if (kept) REQUIRE(multigrid->prepare(A, sheet.held({7, 8, 9}), report));
+      bool threw = false;
+      fail_allocation(after);
+      try {
+        multigrid->prepare(A, sheet.filter, report);
+      } catch (const std::bad_alloc&) {
+        threw = true;
+      }
+      const bool failed = fail_allocation(-1);
+      CHECK(threw == failed);
+      if (!threw) break;
+      ++thrown;
+      report = {};
+      REQUIRE(multigrid->prepare(A, sheet.filter, report));
+      CHECK(report.analyses == 1);
+      multigrid->apply(r, s);
+      CHECK(s == expected);
+    }
+    CHECK(thrown > (kept ? 0 : 20));
+  }
+}
+
 TEST_CASE("an incomplete factor that breaks down is built safer, and says so", "[solvers]") {
   const FallingSheet sheet(33, 15);
   const auto preconditioner = make_preconditioner("block-ic0");
@@ -205,7 +313,8 @@ TEST_CASE("a preconditioner that fails is made safer and the solve begun again, 
         CHECK(report.reason == StopReason::converged);
         CHECK((dv - expected).norm() <= 1e-5 * expected.norm());
         CHECK(told.safer == 1);
-        CHECK(told.learnt <= report.iterations);
+        CHECK(told.learnt == report.iterations - 4);  // of the safer one, and what it alone reached from z on
+        CHECK(told.decades == Approx(-std::log10(report.residual)).epsilon(1e-3));
         CHECK_FALSE(told.forgotten);
       } else {
         CHECK(report.reason == StopReason::indefinite);
