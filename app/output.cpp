@@ -1,5 +1,6 @@
 #include "app/output.h"
 
+#include <charconv>
 #include <cstdio>
 #include <system_error>
 #include <utility>
@@ -43,7 +44,7 @@ void spare_inputs(const fs::path& folder, const Scene& scene, Frames frames) {
 
 }  // namespace
 
-void make_output_folder(const fs::path& folder) {
+void make_output_folder(const fs::path& folder, const std::vector<std::string>& files) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder))
@@ -54,12 +55,15 @@ void make_output_folder(const fs::path& folder) {
   } catch (const InputError&) {
     throw InputError(folder.string() + ": the output folder cannot be written; choose another with --out");
   }
+  for (const std::string& file : files) AtomicFile(folder / file);  // not kept
 }
 
 Output::Output(fs::path folder, const Scene& scene, const Simulation& simulation, Frames frames)
     : folder_(std::move(folder)), simulation_(simulation), frames_(frames) {
   spare_inputs(folder_, scene, frames_);
-  make_output_folder(folder_);
+  std::vector<std::string> last = {"run.json"};  // written when the run is over
+  for (const Cloth& cloth : simulation.cloths) last.push_back(cloth.name + ".obj");
+  make_output_folder(folder_, last);
   if (frames_ == Frames::obj) make_output_folder(folder_ / "frames");
   if (frames_ == Frames::pc2)
     for (const Cloth& cloth : simulation.cloths)
@@ -67,10 +71,26 @@ Output::Output(fs::path folder, const Scene& scene, const Simulation& simulation
   steps_.emplace(folder_ / "steps.csv");
 }
 
-fs::path Output::frame_path(const Cloth& cloth) const {
-  char number[16];
-  std::snprintf(number, sizeof number, "_%04d.obj", frame_count_);
-  return folder_ / "frames" / (cloth.name + number);
+fs::path Output::frame_path(const Cloth& cloth, int number) const {
+  char ending[24];
+  std::snprintf(ending, sizeof ending, "_%04d.obj", number);
+  return folder_ / "frames" / (cloth.name + ending);
+}
+
+// Those of an earlier, longer run: they would go on where this one ends.
+void Output::remove_later_frames() const {
+  std::vector<fs::path> later;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "frames"))
+    for (const Cloth& cloth : simulation_.cloths) {
+      const std::string name = entry.path().filename().string(), start = cloth.name + "_";
+      int number = 0;
+      if (!name.starts_with(start) ||
+          std::from_chars(name.data() + start.size(), name.data() + name.size(), number).ec != std::errc())
+        continue;
+      if (number > frame_count_ && entry.path() == frame_path(cloth, number) && entry.is_regular_file())
+        later.push_back(entry.path());
+    }
+  for (const fs::path& path : later) fs::remove(path);
 }
 
 void Output::frame(const State& state) {
@@ -82,7 +102,7 @@ void Output::frame(const State& state) {
       caches_[k].add(state.x, cloth.first_particle);
       continue;
     }
-    AtomicFile file(frame_path(cloth));
+    AtomicFile file(frame_path(cloth, frame_count_));
     file.write(format_obj(cloth.mesh, positions_of(cloth, state)));
     file.keep();
   }
@@ -103,6 +123,7 @@ void Output::finish(const State& state, const RunRecord& record) {
   for (Pc2Writer& cache : caches_) cache.keep();
   steps_->keep();
   for (AtomicFile& text : texts) text.keep();
+  if (frames_ == Frames::obj && !record.interrupted && !record.failure) remove_later_frames();
   for (const Cloth& cloth : simulation_.cloths) written_.push_back(folder_ / (cloth.name + ".obj"));
   for (const Pc2Writer& cache : caches_) written_.push_back(cache.path());
   written_.push_back(folder_ / "steps.csv");

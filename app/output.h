@@ -13,8 +13,9 @@
 
 namespace drape {
 
-// Throws InputError when the folder cannot be made or written.
-void make_output_folder(const std::filesystem::path& folder);
+// Throws InputError when the folder cannot be made or written, or one of these files of it: now, and not when
+// all is computed.
+void make_output_folder(const std::filesystem::path& folder, const std::vector<std::string>& files = {});
 
 enum class Frames { pc2, obj, none };
 
@@ -32,7 +33,8 @@ class Output {
   int frames() const { return frame_count_; }
 
  private:
-  std::filesystem::path frame_path(const Cloth& cloth) const;
+  std::filesystem::path frame_path(const Cloth& cloth, int number) const;
+  void remove_later_frames() const;
 
   std::filesystem::path folder_;
   const Simulation& simulation_;

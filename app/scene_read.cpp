@@ -160,12 +160,13 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path
   Scene scene;
   scene.label = std::move(label);
   const std::vector<Table> simulation = table.tables("simulation");
+  std::vector<Table> cloths = table.tables("cloth"), obstacles = table.tables("obstacle");
+  table.finish();  // before anything is missed: it may be there with its name mistyped
   if (simulation.size() > 1) table.fail("simulation", "there may be only one");
   scene.simulation = read_simulation(simulation.empty() ? nullptr : simulation.data());
   table.require("cloth");
-  for (Table& cloth : table.tables("cloth")) scene.cloths.push_back(read_cloth(cloth, folder));
-  for (Table& obstacle : table.tables("obstacle")) scene.obstacles.push_back(read_obstacle(obstacle, folder));
-  table.finish();
+  for (Table& cloth : cloths) scene.cloths.push_back(read_cloth(cloth, folder));
+  for (Table& obstacle : obstacles) scene.obstacles.push_back(read_obstacle(obstacle, folder));
   if (scene.cloths.empty()) table.fail("cloth", "there is no cloth");
   check_names(scene.cloths);
   for (const ClothEntry& cloth : scene.cloths)

@@ -70,8 +70,9 @@ void Constraints::move_pins() {
   if (moving_pins_.empty()) return;
   pin_velocity_.setZero(x_.size());
   for (const MovingPin& pin : moving_pins_) {
-    const Vec3 end = pin.body < 0 ? paths_[static_cast<std::size_t>(pin.path)].at(t_ + h_).to_world(pin.mark.place)
-                                  : bodies_[static_cast<std::size_t>(pin.body)].carried(pin.mark);
+    const Vec3 end = pin.body < 0
+                         ? paths_[static_cast<std::size_t>(pin.path)].at(t_ + h_).to_world(pin.mark.place)
+                         : bodies_[static_cast<std::size_t>(pin.body)].carried(pin.mark);
     pin_velocity_.segment<3>(3 * pin.particle) = (end - x_.segment<3>(3 * pin.particle)) / h_;
   }
 }

@@ -52,7 +52,8 @@ Vec3 MovingBody::carried(const Vec3& x) const {
 
 MovingBody::Mark MovingBody::mark(const Vec3& x) const {
   const Vec3 X = now_.to_body(x);
-  if (const auto* body = std::get_if<DeformingBody>(&obstacle_.shape)) return {X, body->surface->anchor(X, 1)};
+  if (const auto* body = std::get_if<DeformingBody>(&obstacle_.shape))
+    return {X, body->surface->anchor(X, 1)};
   return {X, {}};
 }
 
@@ -71,8 +72,8 @@ ContactPlane MovingBody::plane_at(const Vec3& x, const Vec3& normal, double gap)
 }
 
 ContactPlane MovingBody::plane(const Vec3& x, const SurfacePoint& at_start) const {
-  const SurfacePoint s = deforms() ? closest(obstacle_.shape, drape::carried(obstacle_.shape, start_.to_body(x)), 1)
-                                   : at_start;
+  const SurfacePoint s =
+      deforms() ? closest(obstacle_.shape, drape::carried(obstacle_.shape, start_.to_body(x)), 1) : at_start;
   return plane_at(x, s.normal, s.distance - obstacle_.margin);
 }
 

@@ -29,7 +29,8 @@ class MovingBody {
   // The body that reacts, null when it does not.
   const ReactingBody* reacting() const { return reacting_ ? &*reacting_ : nullptr; }
 
-  // A point that the body carries with it, from where it is now; of a body that deforms, by the triangle beside it.
+  // A point that the body carries with it, from where it is now; of a body that deforms, by the triangle
+  // beside it.
   struct Mark {
     Vec3 place;  // m, in the body's frame
     std::optional<SurfaceDistance::Anchor> anchor;

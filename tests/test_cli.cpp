@@ -140,6 +140,31 @@ TEST_CASE("frames may be OBJ files or none, and only the last", "[cli]") {
   CHECK(fs::file_size(shop.path / "l/sheet.pc2") == 32 + 169 * 12);
 }
 
+TEST_CASE("a shorter run takes away the later frames of a longer one, and nothing else", "[cli]") {
+  const Workshop shop;
+  const std::string run = "simulate s.toml --out o --frames obj --quiet";
+  REQUIRE(shop.drape(run).exit_code == 0);
+  const auto frames = shop.files("o/frames");
+  REQUIRE(frames.size() == 8);
+  const std::set<std::string> others = {"sheet_5.obj",     "sheet_00006.obj",  "sheet_0009.obj.bak",
+                                        "sheet_0009.txt",  "sheet_0009a.obj",  "other_0009.obj",
+                                        "sheet_-0009.obj", "my_sheet_0009.obj"};
+  for (const std::string& name : others) shop.write("o/frames/" + name, "mine");
+  shop.write("o/frames/sheet_12345.obj", "of a long run");
+  fs::create_directory(shop.path / "o/frames/sheet_0010.obj");
+  CHECK(shop.drape(run + " --duration 100000 --set simulation.frame_rate=1e-5",
+                   "timeout --preserve-status -s INT 1")
+            .exit_code == 130);
+  CHECK(shop.files("o/frames").size() == frames.size() + others.size() + 2);  // not yet over: all stay
+  CHECK(shop.drape("simulate hung.toml --out o --frames obj --quiet --set cloth.0.stretch=1e300").exit_code ==
+        1);
+  CHECK(shop.files("o/frames").size() == frames.size() + others.size() + 2);
+  REQUIRE(shop.drape(run + " --duration 0.1").exit_code == 0);
+  std::set<std::string> left = others;
+  left.insert({"sheet_0001.obj", "sheet_0002.obj", "sheet_0003.obj", "sheet_0010.obj"});
+  CHECK(shop.files("o/frames") == left);
+}
+
 TEST_CASE("several cloths run together, each with its own files", "[cli]") {
   const Workshop shop;
   shop.write("two.toml", shop.cloth +
@@ -249,6 +274,10 @@ TEST_CASE("bad input: one line, exit code 2, nothing written", "[cli]") {
   shop.write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
   shop.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
   shop.write("unknown.toml", shop.cloth + "bent = 3\n");
+  shop.write("table.toml", "\n[[cloht]]\nmesh = \"sheet.obj\"\n");
+  shop.write("bodies.toml", shop.cloth + "[[obstacles]]\nshape = \"plane\"\n");
+  fs::create_directories(shop.path / "taken/sheet.obj");
+  fs::create_directories(shop.path / "json/run.json");
   shop.write("unit.toml", shop.cloth + "bend = \"10 N/m\"\n");
   shop.write("pin.toml", shop.cloth + "pins = [{ group = \"collar\" }]\n");
   shop.write("box.toml", shop.cloth + "pins = [{ box = [[5, 5, 5], [6, 6, 6]] }]\n");
@@ -268,6 +297,16 @@ TEST_CASE("bad input: one line, exit code 2, nothing written", "[cli]") {
       {"simulate s.toml --sped 3", "--sped"},
       {"simulate s.toml extra", "expected PATH=VALUE"},
       {"simulate none.toml", "none.toml: no such file"},
+      {"simulate ''", "the word after 'simulate' is empty"},
+      {"''", "the word after 'drape' is empty"},
+      {"simulate s.toml --out ''", "the word after '--out' is empty"},
+      {"simulate s.toml --out=", "there is nothing after '--out='"},
+      {"drop sheet.obj --onto ''", "the word after '--onto' is empty"},
+      {"simulate table.toml", "table.toml:2: unknown table 'cloht' in the scene; did you mean 'cloth'?"},
+      {"simulate bodies.toml",
+       "bodies.toml:4: unknown table 'obstacles' in the scene; did you mean 'obstacle'?"},
+      {"simulate s.toml --out taken", "taken/sheet.obj: cannot write: Is a directory"},
+      {"simulate s.toml --out json", "json/run.json: cannot write: Is a directory"},
       {"simulate locked", "is a directory"},
       {"simulate syntax.toml", "syntax.toml:4: is not TOML"},
       {"simulate binary.toml", "is binary"},
@@ -308,6 +347,8 @@ TEST_CASE("bad input: one line, exit code 2, nothing written", "[cli]") {
       {"drop sheet.obj --fabric wool", "--fabric: fabric = \"wool\": there is no such fabric"},
       {"drop sheet.obj --scale 0", "--scale"},
       {"drop sheet.obj --floor --friction -1", "--friction"},
+      {"drop sheet.obj --friction 0.2", "--friction: there is nothing to touch"},
+      {"drop sheet.obj --margin '1 mm'", "--margin: there is nothing to touch"},
       {"drop sheet.obj --pin collar", "--pin: pins: the mesh has no group 'collar'"},
       {"check none.obj", "none.obj: no such file"},
       {"check flat.obj", "no triangle has an area"},

@@ -85,8 +85,8 @@ TEST_CASE("the solid of a box mesh has the moments of the book", "[reacting]") {
 TEST_CASE("momentum of cloth and body together is kept in a collision", "[reacting]") {
   for (const std::string& name : integrator_names()) {
     if (name == "explicit-euler" || name == "midpoint") continue;  // unstable without damping at this step
-    // To the tolerance of the solve by implicit Euler. The others, which settle contact at the end of a step or
-    // look back over two, are of first order in it.
+    // To the tolerance of the solve by implicit Euler. The others, which settle contact at the end of a step
+    // or look back over two, are of first order in it.
     const bool exact = name == "implicit-euler" || name == "newton-kinsol";
     for (double mass : {0.02, 0.5}) {
       INFO(name << " " << mass);
