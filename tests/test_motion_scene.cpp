@@ -257,7 +257,7 @@ TEST_CASE("a body with a mass has a first velocity, a spin and moments", "[motio
   CHECK(entry.rigid->mass == 0.5);
   CHECK((entry.rigid->velocity - Vec3(0, 0.1, 0)).norm() < 1e-15);
   CHECK((entry.rigid->spin - Vec3(0, 0, 2 * pi)).norm() < 1e-14);
-  CHECK_FALSE(entry.motion.moves());
+  CHECK_FALSE(entry.obstacle.motion.moves());
   const ObstacleEntry given = read(ball + "mass = 2\ninertia = [1, \"2e4 g.m^2\", 20]\n").obstacles[0];
   REQUIRE(given.rigid->inertia);
   CHECK((*given.rigid->inertia - Vec3(1, 20, 20)).norm() < 1e-12);
