@@ -151,7 +151,7 @@ ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
   table.read("name", entry.name);
   entry.obstacle.friction = read_friction(table);
   table.read("margin", entry.obstacle.margin, dimension::length, Range::not_negative);
-  entry.obstacle.motion = read_motion(table, folder, middle(entry)).value_or(Motion());
+  entry.obstacle.motion = read_motion(table, folder, middle(entry), entry.poses).value_or(Motion());
   read_rigid(table, entry, middle(entry));
   table.finish();
   try {

@@ -102,12 +102,12 @@ PinRule read_pin_rule(Table& pin) {
 PinEntry read_pin(Table& pin, const fs::path& folder) {
   for (const char* key : {"vertices", "box", "group", "follow", "motion"}) pin.take(key);
   pin.finish();
-  PinEntry entry{read_pin_rule(pin), pin.where(), {}, {}};
+  PinEntry entry{read_pin_rule(pin), pin.where(), {}, {}, {}};
   pin.read("follow", entry.follow);
   if (pin.has("follow") && entry.follow.empty()) pin.fail("follow", "expected the name of an obstacle");
   if (pin.has("follow") && pin.has("motion"))
     pin.fail("follow", "a pin follows a body or has a motion of its own, not both");
-  entry.motion = read_motion(pin, folder, Vec3::Zero());
+  entry.motion = read_motion(pin, folder, Vec3::Zero(), entry.poses);
   return entry;
 }
 

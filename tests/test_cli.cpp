@@ -40,7 +40,8 @@ struct Workshop : Folder {
 
 long lines_of(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
-const std::set<std::string> usual_files = {"run.json", "sheet.obj", "sheet.pc2", "steps.csv"};
+const std::set<std::string> without_bodies = {"run.json", "sheet.obj", "sheet.pc2", "steps.csv"};
+const std::set<std::string> usual_files = {"bodies", "run.json", "sheet.obj", "sheet.pc2", "steps.csv"};
 
 }  // namespace
 
@@ -135,7 +136,7 @@ TEST_CASE("frames may be OBJ files or none, and only the last", "[cli]") {
   CHECK(read_obj(shop.path / "o/frames/sheet_0001.obj").positions ==
         read_obj(shop.path / "sheet.obj").positions);
   CHECK(shop.drape("simulate s.toml --out n --frames none --quiet").exit_code == 0);
-  CHECK(shop.files("n") == std::set<std::string>{"run.json", "sheet.obj", "steps.csv"});
+  CHECK(shop.files("n") == std::set<std::string>{"bodies", "run.json", "sheet.obj", "steps.csv"});
   CHECK(shop.drape("simulate s.toml --out l --set simulation.frame_rate=0 --quiet").exit_code == 0);
   CHECK(fs::file_size(shop.path / "l/sheet.pc2") == 32 + 169 * 12);
 }
@@ -217,7 +218,7 @@ TEST_CASE("a cloth is dropped onto shapes, meshes and the floor", "[cli]") {
   }
   CHECK_THAT(shop.json("o/run.json")["scene"].get<std::string>(), StartsWith("drape drop sheet.obj --floor"));
   CHECK(shop.drape("drop sheet.obj --duration 0.05").exit_code == 0);
-  CHECK(shop.files("out/sheet") == usual_files);
+  CHECK(shop.files("out/sheet") == without_bodies);
   CHECK(shop.drape("drop sheet.obj --onto sphere:0.3 --friction 0.1 --margin '3 mm' --fabric polyester-plain "
                    "--scale 0.5 "
                    "--duration 0.05 --set obstacle.0.friction=0.2 --set cloth.0.bend='5 uN.m' --out p")
@@ -385,7 +386,8 @@ TEST_CASE("a disk that fills up during a run leaves nothing half written", "[cli
   CHECK(run.exit_code == 2);
   CHECK(lines_of(run.err) == 1);
   CHECK_THAT(run.err, StartsWith("error: o/") && Contains("cannot write: File too large"));
-  CHECK(shop.files("o").empty());
+  CHECK(shop.files("o") == std::set<std::string>{"bodies"});
+  CHECK(shop.files("o/bodies").empty());
 }
 
 TEST_CASE("a disk that fills up leaves the results of the run before", "[cli]") {
@@ -406,7 +408,7 @@ TEST_CASE("an interrupted run leaves complete files", "[cli]") {
                    std::string("timeout --preserve-status -s ") + signal + " 2");
     CHECK(run.exit_code == 130);
     CHECK_THAT(run.out, Contains("interrupted after"));
-    CHECK(shop.files("o") == usual_files);
+    CHECK(shop.files("o") == without_bodies);
     const Json json = shop.json("o/run.json");
     CHECK(json["interrupted"] == true);
     const long steps = json["steps"].get<long>();
@@ -425,7 +427,7 @@ TEST_CASE("a failed computation says where, ends with 1 and keeps what went befo
     CHECK(lines_of(run.err) == 1);
     CHECK_THAT(run.err, StartsWith("error: step ") && Contains(" of sheet (at ") &&
                             Contains("the term is 'stretch'") && Contains("try a smaller --time-step"));
-    CHECK(shop.files("o") == usual_files);
+    CHECK(shop.files("o") == without_bodies);
     const Json json = shop.json("o/run.json");
     CHECK(json["state"] == "failed");
     for (const char* key : {"step", "time", "what", "term", "cloth", "vertex"})
