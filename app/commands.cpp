@@ -130,6 +130,8 @@ int list_parts() {
   print_line("gravity", "mass times gravity");
   std::printf("integrators:\n");
   for (const IntegratorInfo& info : integrators()) print_line(info.name, info.summary);
+  std::printf("contact modes:\n");
+  for (const ContactModeInfo& info : contact_modes()) print_line(info.name, info.summary);
   std::printf("linear solvers:\n");
   for (const LinearSolverInfo& info : linear_solvers()) print_line(info.name, info.summary);
   return 0;

@@ -152,7 +152,8 @@ void Output::remove_later_frames() const {
       if (!file.starts_with(start) ||
           std::from_chars(file.data() + start.size(), file.data() + file.size(), number).ec != std::errc())
         continue;
-      if (number > frame_count_ && entry.path() == frame_path(folder_, name, number) && entry.is_regular_file())
+      if (number > frame_count_ && entry.path() == frame_path(folder_, name, number) &&
+          entry.is_regular_file())
         later.push_back(entry.path());
     }
   for (const fs::path& path : later) fs::remove(path);

@@ -90,6 +90,7 @@ Run::Run(const Scene& scene, Simulation& simulation, Output& output, const RunOp
   }
   record_.scene = scene.label;
   record_.integrator = simulation.integrator->name();
+  record_.contact = name(contact_mode(record_.integrator, wanted_.step.contact));
   record_.linear_solver = wanted_.linear_solver;
   record_.threads = threads();
   record_.duration = wanted_.duration;

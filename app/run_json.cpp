@@ -56,6 +56,7 @@ std::string run_json(const RunRecord& record) {
       {"cloths", cloths_json(record.cloths)},
       {"bodies", bodies_json(record.bodies)},
       {"integrator", record.integrator},
+      {"contact", record.contact},
       {"linear_solver", record.linear_solver},
       {"threads", record.threads},
       {"duration", record.duration},

@@ -34,7 +34,7 @@ struct Failure {
 };
 
 struct RunRecord {
-  std::string scene, integrator, linear_solver;
+  std::string scene, integrator, contact, linear_solver;
   std::vector<ClothCounts> cloths;
   std::vector<BodyRecord> bodies;
   Names warnings;

@@ -37,6 +37,20 @@ void read_step(Table& table, StepOptions& step) {
   table.read("max_inner_steps", step.max_inner_steps, 1);
 }
 
+void read_contact(Table& table, SimulationOptions& options) {
+  const Node* const node = table.take("contact");
+  if (!node) return;
+  std::string word;
+  table.read("contact", word, names_of(contact_modes()));
+  for (const ContactModeInfo& info : contact_modes())
+    if (word == info.name) options.step.contact = info.mode;
+  try {
+    contact_mode(options.integrator, options.step.contact);
+  } catch (const InputError& error) {
+    throw InputError(node->where + ": " + error.what());
+  }
+}
+
 SimulationOptions read_simulation(const Table* given) {
   SimulationOptions options;
   if (!given) return options;
@@ -47,6 +61,7 @@ SimulationOptions read_simulation(const Table* given) {
   table.read("gravity", options.gravity, dimension::acceleration);
   table.read("integrator", options.integrator, names_of(integrators()));
   table.read("linear_solver", options.linear_solver, names_of(linear_solvers()));
+  read_contact(table, options);
   read_step(table, options.step);
   table.read("recovery_speed", options.contact.recovery_speed, dimension::speed, Range::positive);
   table.read("threads", options.threads, 1);

@@ -84,6 +84,17 @@ void warn_if_coarse(const Scene& scene, Simulation& simulation) {
   }
 }
 
+void warn_of_restitution(const Scene& scene, Names& messages) {
+  const SimulationOptions& options = scene.simulation;
+  const ContactMode mode = contact_mode(options.integrator, options.step.contact);
+  if (mode == ContactMode::restitution) return;
+  for (const ObstacleEntry& entry : scene.obstacles)
+    if (entry.obstacle.restitution > 0)
+      messages.push_back("warning: " + body_name(entry.obstacle, entry.name) +
+                         ": restitution has no effect with contact = \"" + std::string(name(mode)) +
+                         "\"; it needs contact = \"restitution\" and an explicit integrator");
+}
+
 void warn_of_time(const SimulationOptions& options, Names& messages) {
   constexpr double longest = 0.1;  // s: a fall of 5 cm within one step
   if (options.time_step > longest)
@@ -100,6 +111,7 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
   }
   warn_of_vertices_inside(scene, simulation);
   warn_if_coarse(scene, simulation);
+  warn_of_restitution(scene, simulation.messages);
   warn_of_time(scene.simulation, simulation.messages);
   if (simulation.constraints->bodies().empty() && simulation.constraints->pinned().empty() &&
       !scene.simulation.gravity.isZero(0))

@@ -102,13 +102,11 @@ void Constraints::prepare(int particles, const std::vector<double>& masses) {
   for (auto& found : found_) found.reserve(chunk_size);
 }
 
-void Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double t,
-                             double h, bool foresight) {
-  const int n = static_cast<int>(x.size() / 3);
-  prepare(n, masses);
+void Constraints::open_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double t,
+                            double h) {
+  prepare(static_cast<int>(x.size() / 3), masses);
   t_ = t;
   h_ = h;
-  foresight_ = foresight;
   x_ = x;
   v_ = v;
   for (MovingBody& body : bodies_) body.begin_step(t, h);
@@ -119,6 +117,14 @@ void Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<dou
     correction_.segment<3>(3 * c.particle).setZero();
   }
   trial_.clear();
+}
+
+void Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double t,
+                             double h, bool foresight) {
+  open_step(x, v, masses, t, h);
+  foresight_ = foresight;
+  if (bodies_.empty()) return;
+  const int n = static_cast<int>(x.size() / 3);
   parallel_for(chunk_count(n), n < serial_below, [&](int k) {
     auto& found = found_[static_cast<std::size_t>(k)];
     double& deepest = deepest_[static_cast<std::size_t>(k)];
@@ -281,13 +287,7 @@ void Constraints::receive(const VecX& v, const VecX& r) {
     const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
     push(f.body, f.particle, f.body_velocity, f.impulse - h_ * (f.damping * slip));
   }
-  for (const FaceContact& c : faces_.touching()) {
-    Vec3 place = c.at(x_) + h_ * c.at(v) + c.at(correction_);
-    const double gap = c.gap + c.normal.dot(place);
-    const Vec3 impulse = h_ * (c.stiffness * std::max(-gap, 0.0) * c.normal - c.rubbing() * c.slip_at(v));
-    work_ += c.body_velocity.dot(impulse);
-    bodies_[static_cast<std::size_t>(c.body)].push(-impulse, place, (c.at(v_) - c.body_velocity).norm());
-  }
+  receive_faces(v);
   for (const MovingPin& pin : moving_pins_) {
     const Vec3 impulse = r.segment<3>(3 * pin.particle),
                velocity = pin_velocity_.segment<3>(3 * pin.particle);
@@ -295,6 +295,16 @@ void Constraints::receive(const VecX& v, const VecX& r) {
       push(pin.body, pin.particle, velocity, impulse);
     else
       work_ += velocity.dot(impulse);
+  }
+}
+
+void Constraints::receive_faces(const VecX& v) {
+  for (const FaceContact& c : faces_.touching()) {
+    Vec3 place = c.at(x_) + h_ * c.at(v) + c.at(correction_);
+    const double gap = c.gap + c.normal.dot(place);
+    const Vec3 impulse = h_ * (c.stiffness * std::max(-gap, 0.0) * c.normal - c.rubbing() * c.slip_at(v));
+    work_ += c.body_velocity.dot(impulse);
+    bodies_[static_cast<std::size_t>(c.body)].push(-impulse, place);
   }
 }
 

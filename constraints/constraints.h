@@ -19,6 +19,7 @@
 #include "constraints/filter.h"
 #include "constraints/moving_body.h"
 #include "constraints/pins.h"
+#include "constraints/response.h"
 
 namespace drape {
 
@@ -91,6 +92,13 @@ class Constraints {
   bool react_faces(const VecX& x_new, const VecX& v_new) { return faces_.react(x_new, v_new); }
   ContactReport end_step(VecX& x_new, VecX& v_new);
 
+  // Without a filter for contacts, only for pins: in the place of begin_step, and of all from friction on to
+  // check_paths. A free motion to x [m], v [m/s] ends at x_new, v_new after the response of the bodies
+  // (constraints/response.h); bodies that react get the other side of it.
+  void begin_response(const VecX& x, const VecX& v, const std::vector<double>& masses, double t, double h);
+  void respond(ContactMode mode, const VecX& x, const VecX& v, VecX& x_new, VecX& v_new,
+               double noise);
+
   // Of the step under way, and after it; those released in it have no planes.
   const std::vector<Contact>& touching() const { return trial_; }
   const std::vector<Contact>& contacts() const { return committed_; }  // of the last completed step
@@ -100,6 +108,18 @@ class Constraints {
 
  private:
   bool held(int particle) const { return held_[static_cast<std::size_t>(particle)] != 0; }
+  struct Response {
+    int body;
+    Vec3 impulse;        // N s, on the particle
+    Vec3 place;          // m
+    Vec3 body_velocity;  // m/s
+    double approach;     // m/s
+  };
+  void respond(ContactMode mode, int particle, std::size_t chunk, VecX& x_new, VecX& v_new);
+  bool respond(ContactMode mode, int body, std::size_t chunk, StepVelocities& step, Contact& contact);
+  void take_responses(const VecX& v_new);
+  void receive_faces(const VecX& v);
+  void open_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double t, double h);
   void prepare(int particles, const std::vector<double>& masses);
   void look_for_contact(int particle, std::vector<Contact>& found, double& deepest);
   void look_along_path(int particle, const Vec3& x_new, std::vector<Contact>& found);
@@ -142,9 +162,10 @@ class Constraints {
   std::vector<Contact> trial_, committed_;
   std::vector<int> committed_of_;  // particle -> place in committed_, -1: none
   std::vector<ContactFriction> friction_;
-  std::vector<std::vector<Contact>> found_;  // by chunk of particles
-  std::vector<double> deepest_;              // by chunk of particles [m]
-  std::vector<int> guarded_;                 // by chunk of particles
+  std::vector<std::vector<Contact>> found_;       // by chunk of particles
+  std::vector<std::vector<Response>> responses_;  // by chunk of particles
+  std::vector<double> deepest_;                   // by chunk of particles [m]
+  std::vector<int> guarded_;                      // by chunk of particles
 };
 
 }  // namespace drape

@@ -20,6 +20,9 @@ void check(const Obstacle& obstacle) {
   if (!(obstacle.margin >= 0) || !std::isfinite(obstacle.margin))
     throw InputError(where + ": margin = " + std::to_string(obstacle.margin) +
                      " m: a margin is not negative");
+  if (!(obstacle.restitution >= 0 && obstacle.restitution <= 1))
+    throw InputError(where + ": restitution = " + std::to_string(obstacle.restitution) +
+                     ": a restitution is a number from 0 (stays) to 1 (springs back as fast as it came)");
   if (!obstacle.rigid) return;
   if (std::holds_alternative<Plane>(obstacle.shape) || std::holds_alternative<Bowl>(obstacle.shape))
     throw InputError(where + ": cannot react; give a mass to a sphere, a box, a capsule or a closed mesh");

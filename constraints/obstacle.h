@@ -5,6 +5,8 @@
 //             the straight edges between them stay clear of a curved body
 //   motion    where the body is at a time; the shape is given in the body's own frame, which is the world's
 //             where nothing moves
+//   restitution  which part of the normal velocity an impact gives back [-], with the contact mode
+//             "restitution" only (constraints/response.h)
 //   rigid     its mass, when it falls and the cloth pushes it (constraints/reacting_body.h)
 #pragma once
 
@@ -29,6 +31,7 @@ struct Obstacle {
   Friction friction = {};
   double margin = 2e-3;  // m
   Motion motion = {};
+  double restitution = 0;               // k_r, 0 to 1
   std::optional<RigidBody> rigid = {};  // reacts to the cloth, and then has no motion given but its start
 };
 

@@ -103,7 +103,8 @@ struct SurfaceDistance::Tree {
   // f(pose) in the configuration at s.
   template <class F>
   auto in_pose(double s, const F& f) const {
-    return moving ? f(SurfacePose<Moving>(surface, {start, end, s})) : f(SurfacePose<Standing>(surface, {mesh.positions}));
+    return moving ? f(SurfacePose<Moving>(surface, {start, end, s}))
+                  : f(SurfacePose<Standing>(surface, {mesh.positions}));
   }
 };
 

@@ -128,8 +128,7 @@ bool Bdf::makes_energy(const State& state) const {
   const double kinetic = system_.kinetic_energy(state.v), elastic = system_.elastic_energy(x_);
   const double before = kinetic + system_.elastic_energy(state.x) + system_.gravity_energy(state.x);
   const double after = system_.kinetic_energy(v_) + elastic + system_.gravity_energy(x_);
-  return after >
-         before + constraints_.work() + 0.05 * fall_energy_ + 1e-3 * kinetic + noise_.energy(elastic);
+  return after > before + constraints_.work() + 0.05 * fall_energy_ + 1e-3 * kinetic + noise_.energy(elastic);
 }
 
 void Bdf::choose_coefficients(const State& state, double h, bool whole) {

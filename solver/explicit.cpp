@@ -23,8 +23,8 @@ const std::vector<Tableau>& tableaux() {
 }
 
 Explicit::Explicit(const Tableau& tableau, System& system, Constraints& constraints,
-                   const StepOptions& options)
-    : tableau_(tableau), system_(system), motion_(system, constraints), options_(options) {}
+                   const StepOptions& options, ContactMode contact)
+    : tableau_(tableau), system_(system), motion_(system, constraints, contact), options_(options) {}
 
 StepReport Explicit::advance(State& state, double h) {
   check_step(system_, state, h);

@@ -33,7 +33,8 @@ const std::vector<Tableau>& tableaux();
 
 class Explicit final : public Integrator {
  public:
-  Explicit(const Tableau& tableau, System& system, Constraints& constraints, const StepOptions& options);
+  Explicit(const Tableau& tableau, System& system, Constraints& constraints, const StepOptions& options,
+           ContactMode contact);
 
   std::string_view name() const override { return tableau_.name; }
   StepReport advance(State& state, double h) override;

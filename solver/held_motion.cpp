@@ -10,7 +10,10 @@ namespace drape {
 
 void HeldMotion::begin(const State& state, double h, StepReport& report) {
   const Stopwatch watch(report.collide_ms);
-  constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h, false);
+  if (contact_ == ContactMode::constraint)
+    constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h, false);
+  else
+    constraints_.begin_response(state.x, state.v, system_.masses(), state.time, h);
   constraints_.filter(state.v, held_);
   v_start_ = state.v;
   for (const FilterEntry& e : held_.entries()) v_start_.segment<3>(3 * e.particle) += e.z;
@@ -44,8 +47,13 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
   x_new_ = x;
   v_new_ = v;
   if (!constraints_.bodies().empty()) {
-    set_free(v, h);
-    solve_contacts(state, x, v, h, options, report);
+    if (contact_ == ContactMode::constraint) {
+      set_free(v, h);
+      solve_contacts(state, x, v, h, options, report);
+    } else {
+      const Stopwatch watch(report.collide_ms);
+      constraints_.respond(contact_, x, v, x_new_, v_new_, impulse_noise(h));
+    }
     constraints_.react_faces(x_new_, v_new_);
     end_step(constraints_, x_new_, v_new_, report);
   }
@@ -89,12 +97,17 @@ void HeldMotion::let_go(const VecX& x, const VecX& v) {
   }
 }
 
+// N s, below which an impulse is round-off.
+double HeldMotion::impulse_noise(double h) const {
+  double heaviest = 0;
+  for (double m : system_.masses()) heaviest = std::max(heaviest, m);
+  return 1e-9 * heaviest * h * system_.gravity_acceleration().norm();
+}
+
 void HeldMotion::solve_contacts(const State& state, const VecX& x, const VecX& v, double h,
                                 const StepOptions& options, StepReport& report) {
   const Stopwatch watch(report.collide_ms);
-  double weight = 0;
-  for (double m : system_.masses()) weight = std::max(weight, m);
-  const double noise = 1e-9 * weight * h * system_.gravity_acceleration().norm();
+  const double noise = impulse_noise(h);
   for (int round = 0;; ++round) {
     move_within_constraints(state, x, h);
     constraints_.receive(v_new_, r_);

@@ -8,6 +8,8 @@
 //             and slides (what is let go moves from the next step on); what touches moves to x = x_n +
 //             correction + h v.      [constraints/contact.h]
 //   So contact is of first order in h, whatever the method between; the rest keeps the method's order.
+// With a contact mode other than "constraint" only pins are held: what touches a body moves freely, and
+// finish changes where it went and how fast by the response of the body.      [constraints/response.h]
 // x [m], v [m/s], h [s], f [N], r [N s].
 #pragma once
 
@@ -17,7 +19,8 @@ namespace drape {
 
 class HeldMotion {
  public:
-  HeldMotion(System& system, Constraints& constraints) : system_(system), constraints_(constraints) {}
+  HeldMotion(System& system, Constraints& constraints, ContactMode contact = ContactMode::constraint)
+      : system_(system), constraints_(constraints), contact_(contact) {}
 
   void begin(const State& state, double h, StepReport& report);
   const VecX& start_velocity() const { return v_start_; }
@@ -32,6 +35,7 @@ class HeldMotion {
               StepReport& report);
 
  private:
+  double impulse_noise(double h) const;
   void set_free(const VecX& v, double h);
   void move_within_constraints(const State& state, const VecX& x, double h);
   void let_go(const VecX& x, const VecX& v);
@@ -40,6 +44,7 @@ class HeldMotion {
 
   System& system_;
   Constraints& constraints_;
+  ContactMode contact_;
   Filter held_, filter_;
   VecX v_start_, v_free_, x_new_, v_new_, a_, r_;
   double power_ = 0;

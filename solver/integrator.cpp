@@ -40,14 +40,31 @@ std::vector<IntegratorInfo> integrators() {
   return all;
 }
 
+ContactMode contact_mode(std::string_view integrator, std::optional<ContactMode> asked) {
+  std::string names;
+  for (const Tableau& tableau : tableaux()) {
+    if (integrator == tableau.name) return asked.value_or(ContactMode::velocity);
+    names += (names.empty() ? "" : ", ") + std::string(tableau.name);
+  }
+  if (asked.value_or(ContactMode::constraint) != ContactMode::constraint)
+    throw InputError("contact = \"" + std::string(name(*asked)) + "\": " + std::string(integrator) +
+                     " holds contacts as constraints while it solves for a step, and a velocity that is "
+                     "changed afterwards is not its solution; take contact = \"constraint\", or one of the "
+                     "explicit integrators: " +
+                     names);
+  return ContactMode::constraint;
+}
+
 std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,
                                             std::unique_ptr<LinearSolver> solver,
                                             const StepOptions& options) {
+  const ContactMode contact = contact_mode(name, options.contact);
   if (name == "implicit-euler")
     return std::make_unique<Bdf>(system, constraints, std::move(solver), options, 1);
   if (name == "bdf2") return std::make_unique<Bdf>(system, constraints, std::move(solver), options, 2);
   for (const Tableau& tableau : tableaux())
-    if (name == tableau.name) return std::make_unique<Explicit>(tableau, system, constraints, options);
+    if (name == tableau.name)
+      return std::make_unique<Explicit>(tableau, system, constraints, options, contact);
 #ifdef DRAPE_HAVE_SUNDIALS
   if (name == "newton-kinsol") return make_newton_kinsol(system, constraints, std::move(solver), options);
   for (const IntegratorInfo& info : sundials_ode_methods())

@@ -1,6 +1,7 @@
 // State(t) -> State(t + h), and a report that is data: what it took, how well it went, and where it failed.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -17,7 +18,8 @@ struct StepOptions {
   double tolerance = 1e-6;  // of the linear solve, see LinearOptions
   int max_linear_iterations =
       0;  // 0: chosen by size, and reaching it is a failure; given: the solve stops there and says so
-  int max_contact_solves = 8;  // how often a step may be solved again because a contact changed
+  std::optional<ContactMode> contact = {};  // none: what the integrator does best
+  int max_contact_solves = 8;          // how often a step may be solved again because a contact changed
   int max_rescues = 20;  // further Newton iterations when a full one would raise the incremental potential
   int max_halvings = 6;  // how often a failed step may be halved before it is given up
   // Of the integrators with inner steps (cvode-, arkode-): the error of one, relative to |x| and |v|, and
@@ -70,6 +72,10 @@ void end_step(Constraints& constraints, VecX& x, VecX& v, StepReport& report);
 std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,
                                             std::unique_ptr<LinearSolver> solver,
                                             const StepOptions& options = {});
+
+// How the integrator of that name treats contact: as asked for, else in its own way. Throws InputError where
+// it cannot do as asked.
+ContactMode contact_mode(std::string_view integrator, std::optional<ContactMode> asked);
 
 struct IntegratorInfo {
   std::string_view name, summary;

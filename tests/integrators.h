@@ -26,6 +26,26 @@ inline std::vector<std::string> integrator_names() {
   return names;
 }
 
+// An integrator with one way of treating contact.
+struct Method {
+  std::string name, label;
+  std::optional<ContactMode> contact;  // none: its own
+
+  StepOptions options(StepOptions others = {}) const {
+    others.contact = contact;
+    return others;
+  }
+};
+
+// All integrators in their own way, and the explicit ones with constraints, too.
+inline std::vector<Method> methods() {
+  std::vector<Method> all;
+  for (const std::string& name : integrator_names()) all.push_back({name, name, {}});
+  for (const std::string& name : integrator_names())
+    if (is_explicit(name)) all.push_back({name, name + " with constraints", ContactMode::constraint});
+  return all;
+}
+
 // A system that stays in one smooth branch of its forces, where it begins, and how long to follow it.
 struct Course {
   System system;

@@ -54,10 +54,16 @@ TEST_CASE("a scene is simulated and everything is written", "[cli]") {
   CHECK(shop.files("o") == usual_files);
 
   const Json json = shop.json("o/run.json");
-  for (const char* key :
-       {"drape_version", "scene", "cloths", "integrator", "linear_solver", "threads", "time_step", "steps",
-        "simulated_seconds", "wall_seconds", "ms_per_step", "phases_ms", "linear_iterations", "state",
-        "max_speed", "max_edge_strain", "max_penetration", "state_hash", "warnings"}) {
+  for (const char* key : {"drape_version",   "scene",
+                          "cloths",          "integrator",
+                          "contact",         "linear_solver",
+                          "threads",         "time_step",
+                          "steps",           "simulated_seconds",
+                          "wall_seconds",    "ms_per_step",
+                          "phases_ms",       "linear_iterations",
+                          "state",           "max_speed",
+                          "max_edge_strain", "max_penetration",
+                          "state_hash",      "warnings"}) {
     INFO(key);
     CHECK(json.contains(key));
   }

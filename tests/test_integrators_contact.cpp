@@ -45,7 +45,8 @@ int steps_for(std::string_view name, double duration) {
 }  // namespace
 
 TEST_CASE("pinned and massless particles stay, whatever the integrator", "[integrators]") {
-  for (const std::string& name : integrator_names()) {
+  for (const Method& method : methods()) {
+    const std::string& name = method.name;
     const TriangleMesh mesh = grid(6, 6, 0.3, 0.3);
     std::vector<double> masses = lumped_mass(mesh, 0.3);
     masses[35] = 0;
@@ -57,9 +58,9 @@ TEST_CASE("pinned and massless particles stay, whatever the integrator", "[integ
     State state = at_rest(mesh);
     state.x.array() += 0.1;  // not round
     const VecX start = state.x;
-    auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+    auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), method.options());
     for (int n = 0; n < steps_for(name, 0.3); ++n) REQUIRE(stepper->advance(state, step_for(name)).done);
-    INFO(name);
+    INFO(method.label);
     for (int i : {0, 5, 35}) {
       CHECK(state.x.segment<3>(3 * i) == start.segment<3>(3 * i));
       CHECK(state.v.segment<3>(3 * i).norm() == 0);
@@ -70,13 +71,15 @@ TEST_CASE("pinned and massless particles stay, whatever the integrator", "[integ
 }
 
 TEST_CASE("a cloth is never inside a body and comes to rest, whatever the integrator", "[integrators]") {
-  for (const std::string& name : integrator_names()) {
+  for (const Method& method : methods()) {
+    const std::string& name = method.name;
     for (const bool ball : {true, false}) {
       Drop drop = ball ? Drop(Sphere{{0, -0.1, 0}, 0.1}) : Drop(Plane{{0, 0, 0}, {0, 1, 0}});
-      auto stepper = make_integrator(name, drop.system, drop.constraints, make_linear_solver("mpcg"));
+      auto stepper =
+          make_integrator(name, drop.system, drop.constraints, make_linear_solver("mpcg"), method.options());
       double deepest = 0;
       int contacts = 0;
-      INFO(name << (ball ? " on a ball" : " on a plane"));
+      INFO(method.label << (ball ? " on a ball" : " on a plane"));
       for (int n = 0; n < steps_for(name, 2); ++n) {
         const StepReport report = stepper->advance(drop.state, step_for(name));
         INFO("step " << n << ": " << report.failure.what << " " << report.failure.force);
@@ -92,7 +95,8 @@ TEST_CASE("a cloth is never inside a body and comes to rest, whatever the integr
 }
 
 TEST_CASE("pins hold and the floor does, in one cloth, whatever the integrator", "[integrators]") {
-  for (const std::string& name : integrator_names()) {
+  for (const Method& method : methods()) {
+    const std::string& name = method.name;
     for (const double height : {0.01, 0.08}) {  // begins in contact within a step or two, or in flight
       const TriangleMesh mesh = grid(9, 9, 0.3, 0.3);
       System system(lumped_mass(mesh, 0.3));
@@ -104,8 +108,8 @@ TEST_CASE("pins hold and the floor does, in one cloth, whatever the integrator",
       State state = at_rest(mesh);
       for (int i = 0; i < state.particles(); ++i) state.x[3 * i + 1] = height + 0.1 * (state.x[3 * i] + 0.15);
       const State start = state;
-      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
-      INFO(name << " from " << height << " m");
+      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), method.options());
+      INFO(method.label << " from " << height << " m");
       double lowest = 1;
       int contacts = 0;
       for (int n = 0; n < steps_for(name, 1); ++n) {
@@ -145,7 +149,8 @@ TEST_CASE("newton-kinsol solves its equation on crumpled cloth", "[integrators]"
 }
 
 TEST_CASE("stiff cloth that vibrates within a step keeps its energy at a contact", "[integrators]") {
-  for (const std::string& name : integrator_names()) {
+  for (const Method& method : methods()) {
+    const std::string& name = method.name;
     if (is_explicit(name) || name == "cvode-adams" || name == "arkode-erk") continue;
     const TriangleMesh mesh = grid(11, 11, 0.6, 0.6);
     System system(lumped_mass(mesh, 0.15));
@@ -154,22 +159,24 @@ TEST_CASE("stiff cloth that vibrates within a step keeps its energy at a contact
     Constraints constraints;
     constraints.add(Obstacle{.shape = Sphere{{0, -0.22, 0}, 0.2}, .friction = 0.3});
     State state = at_rest(mesh);
-    auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+    auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), method.options());
     const double fall = 9.81 * 0.15 * 0.36 * 0.6;  // J: more than there is to gain
     for (int n = 0; n < 40; ++n) {
       REQUIRE(stepper->advance(state, 0.01).done);
-      INFO(name << ", step " << n);
+      INFO(method.label << ", step " << n);
       CHECK(system.kinetic_energy(state.v) + system.elastic_energy(state.x) < fall);
     }
   }
 }
 
 TEST_CASE("what lands does not bounce, whatever the integrator", "[integrators]") {
-  for (const std::string& name : integrator_names()) {
+  for (const Method& method : methods()) {
+    const std::string& name = method.name;
     for (const double height : {0.05, 0.051, 0.0525, 0.054}) {  // the plane is met anywhere within a step
       OverPlane m(height, {0.3, 0, 0}, 0.3);
       const State& state = m.state;
-      auto stepper = make_integrator(name, m.system, m.constraints, make_linear_solver("mpcg"));
+      auto stepper =
+          make_integrator(name, m.system, m.constraints, make_linear_solver("mpcg"), method.options());
       const double h = is_explicit(name) ? 0.002 : 0.01;
       double top = 0;  // after the first contact
       bool landed = false;
@@ -179,7 +186,7 @@ TEST_CASE("what lands does not bounce, whatever the integrator", "[integrators]"
         if (landed) top = std::max(top, state.x[1]);
         CHECK(state.x[1] > 0);
       }
-      INFO(name << " from " << height << " m");
+      INFO(method.label << " from " << height << " m");
       CHECK(top < 0.0011);
       CHECK(state.v[0] < 0.3);
     }
@@ -189,7 +196,8 @@ TEST_CASE("what lands does not bounce, whatever the integrator", "[integrators]"
 TEST_CASE("a particle on an incline sticks below the angle of friction and slides above it",
           "[integrators]") {
   const double mu = 0.3, g = 9.81;
-  for (const std::string& name : integrator_names()) {
+  for (const Method& method : methods()) {
+    const std::string& name = method.name;
     for (const double slope : {0.2, 0.6}) {
       const double angle = std::atan(slope);
       System system({0.1});
@@ -198,10 +206,10 @@ TEST_CASE("a particle on an incline sticks below the angle of friction and slide
       const Vec3 normal(-std::sin(angle), std::cos(angle), 0), down(-std::cos(angle), -std::sin(angle), 0);
       constraints.add(Obstacle{.shape = Plane{{0, 0, 0}, normal}, .friction = mu, .margin = 0.001});
       State state{0, VecX(0.001 * normal), VecX::Zero(3)};
-      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), method.options());
       const double h = is_explicit(name) ? 0.002 : 0.01;
       for (int n = 0; n < static_cast<int>(std::lround(1 / h)); ++n) REQUIRE(stepper->advance(state, h).done);
-      INFO(name << " on a slope of " << slope);
+      INFO(method.label << " on a slope of " << slope);
       CHECK(state.x.dot(normal) == Approx(0.001).margin(1e-9));
       if (slope < mu) {
         CHECK(state.v.norm() < 1e-9);
@@ -220,11 +228,13 @@ TEST_CASE("an impact from a hair's breadth: friction takes mu of it in that very
   // The plane bears m (w + g h) in the step of the impact and m g h in others, and friction takes mu of that,
   // or all there is: step by step, and to the digit in the first.
   const double mu = 0.3, w = 1, g = 9.81, h = 0.005;  // w [m/s]: onto the plane
-  for (const std::string& name : integrator_names()) {
+  for (const Method& method : methods()) {
+    const std::string& name = method.name;
     for (const double u : {2.0, 0.2}) {
-      INFO(name << ", thrown along the plane with " << u << " m/s");
+      INFO(method.label << ", thrown along the plane with " << u << " m/s");
       OverPlane m(0.001 - 1e-9, {u, -w, 0}, mu);
-      auto stepper = make_integrator(name, m.system, m.constraints, make_linear_solver("mpcg"));
+      auto stepper =
+          make_integrator(name, m.system, m.constraints, make_linear_solver("mpcg"), method.options());
       for (int n = 1; n <= 20; ++n) {
         REQUIRE(stepper->advance(m.state, h).done);
         CHECK(m.state.v[0] ==
@@ -242,12 +252,14 @@ TEST_CASE(
   // By the end the surface has taken all that gravity gave, and friction mu of that; how the impact is shared
   // out among the steps around it is the integrator's affair.
   const double mu = 0.3, g = 9.81;
-  for (const std::string& name : integrator_names()) {
+  for (const Method& method : methods()) {
+    const std::string& name = method.name;
     const double h = is_explicit(name) ? 0.002 : 0.005;
     for (const double height : {0.05, 0.051, 0.0525, 0.054, 0.0557}) {
-      INFO(name << " from " << height << " m");
+      INFO(method.label << " from " << height << " m");
       OverPlane m(height, {2, 0, 0}, mu);
-      auto stepper = make_integrator(name, m.system, m.constraints, make_linear_solver("mpcg"));
+      auto stepper =
+          make_integrator(name, m.system, m.constraints, make_linear_solver("mpcg"), method.options());
       while (m.state.time < 0.3 - 1e-9) REQUIRE(stepper->advance(m.state, h).done);
       const double impact = std::sqrt(2 * g * height);  // m/s
       CHECK(m.state.v[0] == Approx(2 - mu * g * 0.3).margin(0.2 * mu * impact));
@@ -256,14 +268,15 @@ TEST_CASE(
 }
 
 TEST_CASE("what starts inside a body is told, and comes out at the recovery speed", "[integrators]") {
-  for (const std::string& name : integrator_names()) {
-    INFO(name);
+  for (const Method& method : methods()) {
+    const std::string& name = method.name;
+    INFO(method.label);
     System system({0.1});
     system.add(Gravity{});
     Constraints constraints({.recovery_speed = 0.25});
     constraints.add(Obstacle{.shape = Plane{}, .friction = 0.3, .margin = 0});
     State state{0, VecX(Vec3(0, -0.01, 0)), VecX::Zero(3)};
-    auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+    auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), method.options());
     for (int n = 0; n < 12; ++n) {
       const double depth = std::max(0.01 - 0.25 * 0.004 * n, 0.0);
       const StepReport report = stepper->advance(state, 0.004);
@@ -277,9 +290,11 @@ TEST_CASE("what starts inside a body is told, and comes out at the recovery spee
 
 TEST_CASE("a particle with no solve left is stopped at the surface all the same, and it is told",
           "[integrators]") {
-  for (const std::string& name : integrator_names()) {
+  for (const Method& method : methods()) {
+    const std::string& name = method.name;
     if (name == "implicit-euler" || name == "bdf2" || name == "newton-kinsol") continue;  // foresee it
-    INFO(name);
+    if (contact_mode(name, method.contact) != ContactMode::constraint) continue;          // never needs it
+    INFO(method.label);
     System system({0.1});
     system.add(Gravity{});
     Constraints constraints;
@@ -287,7 +302,8 @@ TEST_CASE("a particle with no solve left is stopped at the surface all the same,
     State state{0, VecX(Vec3(0, 0.05, 0)), VecX(Vec3(0, -10, 0))};
     StepOptions options;
     options.max_contact_solves = 0;
-    auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), options);
+    auto stepper =
+        make_integrator(name, system, constraints, make_linear_solver("mpcg"), method.options(options));
     const StepReport report = stepper->advance(state, 0.01);
     CHECK(report.guarded == 1);
     CHECK(state.x[1] >= 0.01);
@@ -333,7 +349,8 @@ TEST_CASE("contact is of first order in the time step, whatever the integrator",
   const double mu = 0.2, g = 10, speed = 3, landing = 0.1, end = 0.3;
   const double exact = speed * landing + (speed - mu * g * landing) * (end - landing) -
                        0.5 * mu * g * (end - landing) * (end - landing);
-  for (const std::string& name : integrator_names()) {
+  for (const Method& method : methods()) {
+    const std::string& name = method.name;
     std::vector<double> error;
     for (const int steps :
          {30, 90, 270}) {  // it lands at the same place within a step, a third before its end
@@ -346,14 +363,15 @@ TEST_CASE("contact is of first order in the time step, whatever the integrator",
       StepOptions options = precise();
       options.relative_tolerance = options.absolute_tolerance_position = options.absolute_tolerance_velocity =
           1e-10;
-      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), options);
+      auto stepper =
+          make_integrator(name, system, constraints, make_linear_solver("mpcg"), method.options(options));
       const int whole = static_cast<int>(end / h);
       for (int n = 0; n < whole; ++n) REQUIRE(stepper->advance(state, h).done);
       if (end - whole * h > 1e-9) REQUIRE(stepper->advance(state, end - whole * h).done);
       CHECK(state.x[1] == Approx(0.001).margin(1e-9));
       error.push_back(std::abs(state.x[0] - exact));
     }
-    INFO(name << ": " << error[0] << ", " << error[1] << ", " << error[2]);
+    INFO(method.label << ": " << error[0] << ", " << error[1] << ", " << error[2]);
     CHECK(error[2] > 1e-6);
     CHECK(std::log(error[1] / error[2]) / std::log(3) == Approx(1).margin(0.35));
   }
@@ -362,7 +380,8 @@ TEST_CASE("contact is of first order in the time step, whatever the integrator",
 TEST_CASE("every integrator gives the same bits with 1, 2 and 7 threads", "[integrators]") {
   const ThreadsRestored restored;
   const TriangleMesh mesh = grid(64, 64, 1, 1);  // above the size where threads begin
-  for (const std::string& name : integrator_names()) {
+  for (const Method& method : methods()) {
+    const std::string& name = method.name;
     VecX first;
     for (int t : {1, 2, 7}) {
       set_threads(t);
@@ -375,12 +394,13 @@ TEST_CASE("every integrator gives the same bits with 1, 2 and 7 threads", "[inte
       State state = at_rest(mesh);
       StepOptions options;
       options.tolerance = 1e-4;
-      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), options);
+      auto stepper =
+          make_integrator(name, system, constraints, make_linear_solver("mpcg"), method.options(options));
       for (int n = 0; n < 4; ++n) REQUIRE(stepper->advance(state, is_explicit(name) ? 4e-4 : 4e-3).done);
       VecX all(2 * state.x.size());
       all << state.x, state.v;
       if (first.size() == 0) first = all;
-      INFO(name << ", " << t << " threads");
+      INFO(method.label << ", " << t << " threads");
       CHECK(same_bits(all, first));
     }
   }

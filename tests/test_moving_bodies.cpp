@@ -23,11 +23,14 @@ struct Particles {
   State state;
   std::unique_ptr<Integrator> integrator;
 
-  Particles(const std::vector<Vec3>& places, std::string_view name, const Vec3& g = {0, -9.81, 0})
+  Particles(const std::vector<Vec3>& places, const std::string& name, const Vec3& g = {0, -9.81, 0})
+      : Particles(places, Method{name, name, {}}, g) {}
+  Particles(const std::vector<Vec3>& places, const Method& method, const Vec3& g = {0, -9.81, 0})
       : system(std::vector<double>(places.size(), 0.01)), state{0, stacked(places), {}} {
     state.v = VecX::Zero(state.x.size());
     system.add(Gravity{g});
-    integrator = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
+    integrator =
+        make_integrator(method.name, system, constraints, make_linear_solver("mpcg"), method.options());
   }
   Vec3 x(int i = 0) const { return state.x.segment<3>(3 * i); }
   Vec3 v(int i = 0) const { return state.v.segment<3>(3 * i); }
@@ -35,12 +38,6 @@ struct Particles {
     for (int n = 0; n < steps; ++n) REQUIRE(integrator->advance(state, step).done);
   }
 };
-
-std::vector<std::string> all_integrators() {
-  std::vector<std::string> names;
-  for (const IntegratorInfo& info : integrators()) names.emplace_back(info.name);
-  return names;
-}
 
 Obstacle belt(double speed, double mu) {
   return {.shape = Plane{},
@@ -52,9 +49,9 @@ Obstacle belt(double speed, double mu) {
 }  // namespace
 
 TEST_CASE("a moving belt carries what lies on it at its own speed, by mu g", "[moving-bodies]") {
-  for (const std::string& name : all_integrators()) {
-    INFO(name);
-    Particles p({Vec3::Zero()}, name);
+  for (const Method& method : methods()) {
+    INFO(method.label);
+    Particles p({Vec3::Zero()}, method);
     p.constraints.add(belt(1, 0.3));
     p.run(20);  // v = mu g t until it sticks, at 0.34 s
     CHECK(p.v()[0] == Approx(0.3 * 9.81 * 0.2).epsilon(0.06));
@@ -72,10 +69,10 @@ TEST_CASE("without friction a moving belt carries nothing", "[moving-bodies]") {
 }
 
 TEST_CASE("a lift takes its load with it, up and down", "[moving-bodies]") {
-  for (const std::string& name : all_integrators()) {
-    INFO(name);
+  for (const Method& method : methods()) {
+    INFO(method.label);
     for (double speed : {0.5, -0.5}) {
-      Particles p({Vec3(0, 0.002, 0)}, name);
+      Particles p({Vec3(0, 0.002, 0)}, method);
       p.constraints.add(
           Obstacle{.shape = Plane{}, .motion = Motion::constant({0, speed, 0}, Vec3::Zero(), Vec3::Zero())});
       p.run(40);
@@ -86,10 +83,10 @@ TEST_CASE("a lift takes its load with it, up and down", "[moving-bodies]") {
 }
 
 TEST_CASE("what sticks to a turning body goes round with it", "[moving-bodies]") {
-  for (const std::string& name : all_integrators()) {
-    INFO(name);
+  for (const Method& method : methods()) {
+    INFO(method.label);
     // A turntable with the particle 0.2 m from its axis: mu g = 3.9 > 0.2 * 2^2 = 0.8 m/s^2.
-    Particles p({Vec3(0.2, 0, 0)}, name);
+    Particles p({Vec3(0.2, 0, 0)}, method);
     p.state.v = Vec3(0, 0, -0.4);
     p.constraints.add(Obstacle{.shape = Plane{},
                                .friction = 0.4,
@@ -103,9 +100,9 @@ TEST_CASE("what sticks to a turning body goes round with it", "[moving-bodies]")
 
 TEST_CASE("a body that moves fast does not pass through what is in its way", "[moving-bodies]") {
   constexpr double step = 1.0 / 60;  // s: 83 mm at 5 m/s
-  for (const std::string& name : all_integrators()) {
-    INFO(name);
-    Particles p({Vec3(0.04, 0, 0), Vec3(0.083, 0.01, 0.02), Vec3(0.7, 0, 0)}, name, Vec3::Zero());
+  for (const Method& method : methods()) {
+    INFO(method.label);
+    Particles p({Vec3(0.04, 0, 0), Vec3(0.083, 0.01, 0.02), Vec3(0.7, 0, 0)}, method, Vec3::Zero());
     const Box plate{{0, 0, 0}, {0.004, 0.5, 0.5}};
     p.constraints.add(Obstacle{.shape = plate,
                                .friction = 0,
@@ -140,8 +137,8 @@ TEST_CASE("a moving frame makes no difference: body and particle at the same spe
 
 TEST_CASE("pins follow a body, and a path of their own", "[moving-bodies]") {
   const TriangleMesh mesh = grid(5, 5, 0.1, 0.1);
-  for (const std::string& name : all_integrators()) {
-    INFO(name);
+  for (const Method& method : methods()) {
+    INFO(method.label);
     System system(masses(mesh, Fabric{.area_density = 0.2, .stretch = 50, .bend = 1e-6, .damping = 1e-3}));
     system.add(noh_jung(mesh, Fabric{.area_density = 0.2, .stretch = 50, .bend = 1e-6, .damping = 1e-3}));
     system.add(Gravity{});
@@ -152,8 +149,9 @@ TEST_CASE("pins follow a body, and a path of their own", "[moving-bodies]") {
     constraints.add(Obstacle{.shape = Sphere{{0, 9, 0}, 0.1}, .motion = turn});
     constraints.pin_to_body({0, 1}, 0, state.x);
     constraints.pin_along({1, 5}, rise, state.x);
-    auto integrator = make_integrator(name, system, constraints, make_linear_solver("mpcg"));
-    const double step = name == "explicit-euler" || name == "midpoint" ? 2e-4 : 2e-3;
+    auto integrator =
+        make_integrator(method.name, system, constraints, make_linear_solver("mpcg"), method.options());
+    const double step = method.name == "explicit-euler" || method.name == "midpoint" ? 2e-4 : 2e-3;
     const int steps = static_cast<int>(std::lround(0.1 / step));
     for (int n = 0; n < steps; ++n) REQUIRE(integrator->advance(state, step).done);
     const auto at = [&](int i) { return Vec3(state.x.segment<3>(3 * i)); };
