@@ -11,6 +11,7 @@ usage: ./build.sh WORD
   test            the same, then build and run every test
   build           install what is missing and build the program, build/release/drape
   bench           build and run the benchmarks
+  pictures        run the scenes of the gallery into out/pictures and draw them into data/pictures
   compare         compare solvers and integrators on gallery scenes and generated sheets, into out/compare
   lint            check the formatting, then clang-tidy
   format          format the sources in place; format --check only looks
@@ -211,6 +212,21 @@ compare() {
   [[ ${#failed[@]} -eq 0 ]] || die "these comparisons failed or differ, see above: ${failed[*]}"
 }
 
+# Every picture of data/pictures again.
+pictures() {
+  local out=out/pictures python=/usr/bin/python3 scene
+  build
+  get_required python3-numpy python3-scipy python3-pil
+  say "making the motion of a body"
+  "$python" data/meshes/make_motion.py || die "the motion could not be made, see above"
+  for scene in $("$python" data/pictures/make_pictures.py --scenes); do
+    say "running $scene into $out/$scene"
+    build/release/drape simulate "data/scenes/$scene.toml" --frames obj --out "$out/$scene" || die "$scene failed, see above"
+  done
+  say "drawing into data/pictures"
+  "$python" data/pictures/make_pictures.py "$out" || die "drawing failed, see above"
+}
+
 install_into() {
   [[ $# -eq 1 ]] || { warn "install needs one folder: ./build.sh install PREFIX"; exit 2; }
   build
@@ -266,7 +282,7 @@ tidy() {
 word=${1:-}
 [[ $# -eq 0 ]] || shift
 case "$word" in
-  demo | build | compare | lint | sanitize)
+  demo | build | pictures | compare | lint | sanitize)
     [[ $# -eq 0 ]] || { warn "'$word' takes nothing more, but got: $*"; exit 2; }
     "$word"
     ;;

@@ -154,8 +154,8 @@ void add_compare(CLI::App& app, int& exit_code) {
   add_scene_options(*command, words->run);
   command->footer(
       "The scene's linear solver (--linear-solver) decides the path. Exit code: 0 all solvers agree; 1 a "
-      "verdict "
-      "is 'differ',\nor the run failed; 2 bad input; 130 interrupted, and nothing is written.");
+      "verdict is 'differ',\nor the run or one of an integrator failed; 2 bad input; 130 interrupted, and "
+      "nothing is written.");
   command->callback(
       [=, &exit_code] { exit_code = compare(words->scene, words->compare, words->run.common(*command)); });
 }
@@ -177,7 +177,18 @@ void check_command(const CLI::App& app, const std::string& word) {
     throw InputError("there is no command '" + word + "'; " + suggestion(word, known));
 }
 
+// No command takes an empty word; each would read it as something else: no option given, the current folder.
+void check_words(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i], before = i > 1 ? argv[i - 1] : "drape";
+    if (word.empty()) throw InputError("the word after '" + before + "' is empty");
+    if (word.starts_with("--") && word.find('=') == word.size() - 1)
+      throw InputError("there is nothing after '" + word + "'");
+  }
+}
+
 int parse_and_run(int argc, char** argv) {
+  check_words(argc, argv);
   int exit_code = 0;
   std::string label = "drape";
   for (int i = 1; i < argc; ++i) label += " " + std::string(argv[i]);

@@ -39,13 +39,13 @@ std::vector<Keyframe> read_keyframes(Table& motion) {
   return all;
 }
 
-std::vector<Keyframe> read_pose_file(Table& motion, const fs::path& folder) {
+fs::path pose_file(Table& motion, const fs::path& folder) {
   std::string name;
   motion.read("poses", name);
   if (name.empty()) motion.fail("poses", "expected the name of a CSV file");
   const fs::path path = (folder / name).lexically_normal();
   if (!fs::exists(path)) motion.fail("poses", path.string() + ": no such file");
-  return read_poses(path);
+  return path;
 }
 
 Motion read_steady(Table& motion, const Vec3& centre) {
@@ -79,7 +79,8 @@ Vec3 read_spin(Table& table) {
   return rate * axis;
 }
 
-std::optional<Motion> read_motion(Table& table, const fs::path& folder, const Vec3& default_centre) {
+std::optional<Motion> read_motion(Table& table, const fs::path& folder, const Vec3& default_centre,
+                                  fs::path& poses) {
   const Node* const node = table.take("motion");
   if (!node) return std::nullopt;
   const std::string kinds = "one of velocity and spin, keyframes = [...], poses = \"poses.csv\"";
@@ -95,8 +96,9 @@ std::optional<Motion> read_motion(Table& table, const fs::path& folder, const Ve
   Vec3 centre = default_centre;
   motion.read("centre", centre, dimension::length);
   if (steady) return read_steady(motion, centre);
-  return Motion::keyframes(motion.has("keyframes") ? read_keyframes(motion) : read_pose_file(motion, folder),
-                           centre);
+  if (motion.has("keyframes")) return Motion::keyframes(read_keyframes(motion), centre);
+  poses = pose_file(motion, folder);
+  return Motion::keyframes(read_poses(poses), centre);
 }
 
 }  // namespace drape

@@ -10,8 +10,9 @@
 namespace drape {
 
 // Nothing when the table has no such key. `default_centre` [m]: what it turns about where no other is given.
+// `poses` becomes the CSV file that it is read from, if it is.
 std::optional<Motion> read_motion(Table& table, const std::filesystem::path& folder,
-                                  const Vec3& default_centre);
+                                  const Vec3& default_centre, std::filesystem::path& poses);
 
 Vec3 read_spin(Table& table);  // `spin = { axis, rate }` [rad/s], zero when absent
 

@@ -153,7 +153,7 @@ ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
   table.read("margin", entry.obstacle.margin, dimension::length, Range::not_negative);
   table.read("restitution", entry.obstacle.restitution, dimension::number, Range::not_negative);
   if (entry.obstacle.restitution > 1) table.fail("restitution", "expected a number from 0 to 1");
-  entry.obstacle.motion = read_motion(table, folder, middle(entry)).value_or(Motion());
+  entry.obstacle.motion = read_motion(table, folder, middle(entry), entry.poses).value_or(Motion());
   read_rigid(table, entry, middle(entry));
   table.finish();
   try {

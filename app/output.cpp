@@ -1,10 +1,11 @@
 #include "app/output.h"
 
-#include <cstdio>
+#include <charconv>
 #include <system_error>
 #include <utility>
 
 #include "app/body_frames.h"
+#include "app/words.h"
 #include "mesh/obj.h"
 
 namespace drape {
@@ -16,34 +17,37 @@ std::vector<Vec3> positions_of(const Cloth& cloth, const State& state) {
   return unstacked(state.x.segment(3 * cloth.first_particle, 3 * cloth.mesh.vertex_count()));
 }
 
-// Results are named after the cloth and must not replace what they are made from.
-void spare_inputs(const fs::path& folder, const Scene& scene, Frames frames) {
-  const auto same = [](const fs::path& a, const fs::path& b) {
-    std::error_code error;
-    return fs::equivalent(a, b, error) && !error;
+std::vector<fs::path> inputs_of(const Scene& scene) {
+  std::vector<fs::path> inputs;
+  const auto add = [&](const fs::path& path) {
+    if (!path.empty()) inputs.push_back(path);
   };
-  const auto spare = [&](const fs::path& input) {
-    for (const ClothEntry& cloth : scene.cloths) {
-      bool replaced = same(folder / (cloth.name + ".obj"), input);
-      if (frames == Frames::pc2) replaced = replaced || same(folder / (cloth.name + ".pc2"), input);
-      if (frames == Frames::obj)
-        replaced = replaced || (input.filename().string().starts_with(cloth.name + "_") &&
-                                same(folder / "frames", input.parent_path()));
-      if (replaced)
-        throw InputError(input.string() +
-                         ": is a mesh of the scene and would be overwritten; choose another --out");
-    }
-  };
-  for (const ClothEntry& cloth : scene.cloths) spare(cloth.mesh);
-  for (const ObstacleEntry& obstacle : scene.obstacles) {
-    if (!obstacle.mesh.empty()) spare(obstacle.mesh);
-    for (const fs::path& frame : frame_files(obstacle.frames)) spare(frame);
+  for (const ClothEntry& cloth : scene.cloths) {
+    add(cloth.mesh);
+    for (const PinEntry& pin : cloth.pins) add(pin.poses);
   }
+  for (const ObstacleEntry& obstacle : scene.obstacles) {
+    add(obstacle.mesh);
+    add(obstacle.poses);
+    for (const fs::path& frame : frame_files(obstacle.frames)) add(frame);
+  }
+  return inputs;
+}
+
+bool same(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  return fs::equivalent(a, b, error) && !error;
+}
+
+// frames/NAME_0001.obj and so on: how many there will be is not known yet.
+bool is_frame_of(const std::string& name, const fs::path& frames, const fs::path& input) {
+  const std::string file = input.filename().string();
+  return file.starts_with(name + "_") && file.ends_with(".obj") && same(frames, input.parent_path());
 }
 
 }  // namespace
 
-void make_output_folder(const fs::path& folder) {
+void make_output_folder(const fs::path& folder, const std::vector<std::string>& files) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder))
@@ -54,35 +58,64 @@ void make_output_folder(const fs::path& folder) {
   } catch (const InputError&) {
     throw InputError(folder.string() + ": the output folder cannot be written; choose another with --out");
   }
+  for (const std::string& file : files) AtomicFile(folder / file);  // not kept
 }
 
 Output::Output(fs::path folder, const Scene& scene, const Simulation& simulation, Frames frames)
-    : folder_(std::move(folder)), simulation_(simulation), frames_(frames) {
-  spare_inputs(folder_, scene, frames_);
-  make_output_folder(folder_);
+    : folder_(std::move(folder)),
+      simulation_(simulation),
+      frames_(frames),
+      bodies_(folder_, simulation, frames) {
+  spare_inputs(scene);
+  std::vector<std::string> last = {"run.json"};  // written when the run is over
+  for (const Cloth& cloth : simulation.cloths) last.push_back(cloth.name + ".obj");
+  make_output_folder(folder_, last);
   if (frames_ == Frames::obj) make_output_folder(folder_ / "frames");
+  if (bodies_.shapes() > 0) make_output_folder(folder_ / "bodies");
   if (frames_ == Frames::pc2)
     for (const Cloth& cloth : simulation.cloths)
-      caches_.emplace_back(folder_ / (cloth.name + ".pc2"), cloth.mesh.vertex_count());
+      caches_.emplace_back(cloth_path(cloth, ".pc2"), cloth.mesh.vertex_count());
+  bodies_.open();
   steps_.emplace(folder_ / "steps.csv");
 }
 
-fs::path Output::frame_path(const Cloth& cloth) const {
-  char number[16];
-  std::snprintf(number, sizeof number, "_%04d.obj", frame_count_);
-  return folder_ / "frames" / (cloth.name + number);
+fs::path Output::cloth_path(const Cloth& cloth, const char* extension) const {
+  return folder_ / (cloth.name + extension);
+}
+
+// Results are named after cloths and bodies and must not replace what they are made from.
+void Output::spare_inputs(const Scene& scene) const {
+  std::vector<fs::path> results = bodies_.results();
+  results.push_back(folder_ / "steps.csv");
+  Names framed = bodies_.frame_names();
+  for (const Cloth& cloth : simulation_.cloths) {
+    results.push_back(cloth_path(cloth, ".obj"));
+    if (frames_ == Frames::pc2) results.push_back(cloth_path(cloth, ".pc2"));
+    framed.push_back(cloth.name);
+  }
+  for (const fs::path& input : inputs_of(scene)) {
+    bool replaced = false;
+    for (const fs::path& result : results) replaced = replaced || same(result, input);
+    if (frames_ == Frames::obj)
+      for (const std::string& name : framed)
+        replaced = replaced || is_frame_of(name, folder_ / "frames", input);
+    if (replaced)
+      throw InputError(input.string() +
+                       ": the scene is made from it and it would be overwritten; choose another --out");
+  }
 }
 
 void Output::frame(const State& state) {
   if (frames_ == Frames::none) return;
   ++frame_count_;
+  bodies_.frame(frame_count_, state.time);
   for (std::size_t k = 0; k < simulation_.cloths.size(); ++k) {
     const Cloth& cloth = simulation_.cloths[k];
     if (frames_ == Frames::pc2) {
       caches_[k].add(state.x, cloth.first_particle);
       continue;
     }
-    AtomicFile file(frame_path(cloth));
+    AtomicFile file(frame_path(folder_, cloth.name, frame_count_));
     file.write(format_obj(cloth.mesh, positions_of(cloth, state)));
     file.keep();
   }
@@ -93,21 +126,48 @@ void Output::finish(const State& state, const RunRecord& record) {
   steps_->close();
   std::vector<AtomicFile> texts;
   for (const Cloth& cloth : simulation_.cloths) {
-    texts.emplace_back(folder_ / (cloth.name + ".obj"))
-        .write(format_obj(cloth.mesh, positions_of(cloth, state)));
+    texts.emplace_back(cloth_path(cloth, ".obj")).write(format_obj(cloth.mesh, positions_of(cloth, state)));
     texts.back().close();
   }
+  bodies_.finish(texts);
   texts.emplace_back(folder_ / "run.json").write(run_json(record));
   texts.back().close();
 
   for (Pc2Writer& cache : caches_) cache.keep();
   steps_->keep();
   for (AtomicFile& text : texts) text.keep();
-  for (const Cloth& cloth : simulation_.cloths) written_.push_back(folder_ / (cloth.name + ".obj"));
-  for (const Pc2Writer& cache : caches_) written_.push_back(cache.path());
-  written_.push_back(folder_ / "steps.csv");
-  written_.push_back(folder_ / "run.json");
-  if (frames_ == Frames::obj) written_.push_back(folder_ / "frames");
+  if (frames_ == Frames::obj && !record.interrupted && !record.failure) remove_later_frames();
+  list_written();
+}
+
+// Those of an earlier, longer run: they would go on where this one ends.
+void Output::remove_later_frames() const {
+  Names names = bodies_.frame_names();
+  for (const Cloth& cloth : simulation_.cloths) names.push_back(cloth.name);
+  std::vector<fs::path> later;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "frames"))
+    for (const std::string& name : names) {
+      const std::string file = entry.path().filename().string(), start = name + "_";
+      int number = 0;
+      if (!file.starts_with(start) ||
+          std::from_chars(file.data() + start.size(), file.data() + file.size(), number).ec != std::errc())
+        continue;
+      if (number > frame_count_ && entry.path() == frame_path(folder_, name, number) &&
+          entry.is_regular_file())
+        later.push_back(entry.path());
+    }
+  for (const fs::path& path : later) fs::remove(path);
+}
+
+void Output::list_written() {
+  const std::string frames = counted(frame_count_, "frame");
+  for (const Cloth& cloth : simulation_.cloths) written_.push_back({cloth_path(cloth, ".obj"), ""});
+  for (const Pc2Writer& cache : caches_) written_.push_back({cache.path(), frames});
+  if (bodies_.shapes() > 0) written_.push_back({folder_ / "bodies", counted(bodies_.shapes(), "shape")});
+  if (bodies_.has_poses()) written_.push_back({folder_ / "bodies.csv", frames});
+  written_.push_back({folder_ / "steps.csv", ""});
+  written_.push_back({folder_ / "run.json", ""});
+  if (frames_ == Frames::obj) written_.push_back({folder_ / "frames", frames});
 }
 
 }  // namespace drape

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "app/body_files.h"
 #include "app/pc2.h"
 #include "app/run_json.h"
 #include "app/simulation.h"
@@ -13,34 +14,41 @@
 
 namespace drape {
 
-// Throws InputError when the folder cannot be made or written.
-void make_output_folder(const std::filesystem::path& folder);
-
-enum class Frames { pc2, obj, none };
+// Throws InputError when the folder cannot be made or written, or one of these files of it: now, and not when
+// all is computed.
+void make_output_folder(const std::filesystem::path& folder, const std::vector<std::string>& files = {});
 
 class Output {
  public:
-  // Makes the folder and tries it. Throws InputError when it cannot be written, or a file of it is a mesh of
-  // the scene.
+  // Makes the folder and tries it. Throws InputError when it cannot be written, or the scene is made from
+  // a file of it.
   Output(std::filesystem::path folder, const Scene& scene, const Simulation& simulation, Frames frames);
 
   void frame(const State& state);  // pc2: a sample; obj: a file, from number 1
   void step(const StepRow& row) { steps_->add(row); }
   void finish(const State& state, const RunRecord& record);
 
-  const std::vector<std::filesystem::path>& written() const { return written_; }
-  int frames() const { return frame_count_; }
+  // What finish() left, and how much of it: "25 frames", or nothing.
+  struct Written {
+    std::filesystem::path path;
+    std::string amount;
+  };
+  const std::vector<Written>& written() const { return written_; }
 
  private:
-  std::filesystem::path frame_path(const Cloth& cloth) const;
+  std::filesystem::path cloth_path(const Cloth& cloth, const char* extension) const;
+  void spare_inputs(const Scene& scene) const;
+  void remove_later_frames() const;
+  void list_written();
 
   std::filesystem::path folder_;
   const Simulation& simulation_;
   Frames frames_;
+  BodyFiles bodies_;
   int frame_count_ = 0;
   std::vector<Pc2Writer> caches_;
   std::optional<StepsWriter> steps_;
-  std::vector<std::filesystem::path> written_;
+  std::vector<Written> written_;
 };
 
 }  // namespace drape

@@ -234,6 +234,7 @@ void Run::conclude() {
   record_.settled = record_.steps > 0 && record_.max_speed < wanted_.settle_speed;
   for (double depth : simulation_.constraints->penetration(simulation_.state.x))
     record_.max_penetration = std::max(record_.max_penetration, depth);
+  record_.bodies = body_records(simulation_);
   record_.state_hash = state_hash(simulation_.state);
   record_.wall_seconds = seconds_since(start_);
   output_.finish(simulation_.state, record_);

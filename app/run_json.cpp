@@ -17,6 +17,27 @@ Json cloths_json(const std::vector<ClothCounts>& cloths) {
   return list;
 }
 
+Json vector_json(const Vec3& v) { return Json::List{v[0], v[1], v[2]}; }
+
+Json bodies_json(const std::vector<BodyRecord>& bodies) {
+  Json::List list;
+  for (const BodyRecord& b : bodies) {
+    Json::Members json = {{"name", b.name},
+                          {"file", b.file.empty() ? Json() : Json(b.file)},
+                          {"shape", b.shape},
+                          {"moves", b.moves},
+                          {"reacts", b.reacting.has_value()}};
+    if (b.reacting) {
+      json.emplace_back("mass", b.reacting->mass);
+      json.emplace_back("position", vector_json(b.reacting->position));
+      json.emplace_back("velocity", vector_json(b.reacting->velocity));
+      json.emplace_back("momentum", vector_json(b.reacting->momentum));
+    }
+    list.emplace_back(std::move(json));
+  }
+  return list;
+}
+
 Json failure_json(const Failure& f) {
   return Json::Members{{"step", f.step},   {"time", f.time},
                        {"what", f.what},   {"term", f.term},
@@ -33,6 +54,7 @@ std::string run_json(const RunRecord& record) {
       {"drape_version", DRAPE_VERSION},
       {"scene", record.scene},
       {"cloths", cloths_json(record.cloths)},
+      {"bodies", bodies_json(record.bodies)},
       {"integrator", record.integrator},
       {"contact", record.contact},
       {"linear_solver", record.linear_solver},

@@ -6,12 +6,24 @@
 #include <vector>
 
 #include "app/words.h"
+#include "mesh/triangle_mesh.h"
 
 namespace drape {
 
 struct ClothCounts {
   std::string name;
   int particles = 0, triangles = 0, edges = 0, diagonals = 0;
+};
+
+struct BodyRecord {
+  std::string name, file, shape;  // file: below the output folder, empty for a plane
+  bool moves = false;             // is moved, as a motion says
+
+  struct Reacting {
+    double mass;                        // kg
+    Vec3 position, velocity, momentum;  // m, m/s, N s, of the centre of mass at the end
+  };
+  std::optional<Reacting> reacting;
 };
 
 struct Failure {
@@ -24,6 +36,7 @@ struct Failure {
 struct RunRecord {
   std::string scene, integrator, contact, linear_solver;
   std::vector<ClothCounts> cloths;
+  std::vector<BodyRecord> bodies;
   Names warnings;
   int threads = 1;
   double duration = 0, time_step = 0, simulated_seconds = 0, wall_seconds = 0;  // s

@@ -27,6 +27,7 @@ struct PinEntry {
   std::string where;             // "scene.toml:21"
   std::string follow;            // the obstacle that it is fastened to; empty: none
   std::optional<Motion> motion;  // or a path of its own
+  std::filesystem::path poses;   // the CSV file that the motion was read from, if it was
 };
 
 struct ClothEntry {
@@ -62,10 +63,11 @@ struct FramesEntry {
 
 struct ObstacleEntry {
   std::string name;
-  Obstacle obstacle;           // a mesh's shape is null until it is loaded
-  std::filesystem::path mesh;  // OBJ, of the shape "mesh"
-  Placement placement;         // of the mesh and its frames
-  FramesEntry frames;          // of a mesh
+  Obstacle obstacle;            // a mesh's shape is null until it is loaded
+  std::filesystem::path mesh;   // OBJ, of the shape "mesh"
+  Placement placement;          // of the mesh and its frames
+  FramesEntry frames;           // of a mesh
+  std::filesystem::path poses;  // the CSV file that its motion was read from, if it was
   std::optional<RigidBodyEntry> rigid;
   std::string where;
 };

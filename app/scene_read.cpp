@@ -117,12 +117,12 @@ PinRule read_pin_rule(Table& pin) {
 PinEntry read_pin(Table& pin, const fs::path& folder) {
   for (const char* key : {"vertices", "box", "group", "follow", "motion"}) pin.take(key);
   pin.finish();
-  PinEntry entry{read_pin_rule(pin), pin.where(), {}, {}};
+  PinEntry entry{read_pin_rule(pin), pin.where(), {}, {}, {}};
   pin.read("follow", entry.follow);
   if (pin.has("follow") && entry.follow.empty()) pin.fail("follow", "expected the name of an obstacle");
   if (pin.has("follow") && pin.has("motion"))
     pin.fail("follow", "a pin follows a body or has a motion of its own, not both");
-  entry.motion = read_motion(pin, folder, Vec3::Zero());
+  entry.motion = read_motion(pin, folder, Vec3::Zero(), entry.poses);
   return entry;
 }
 
@@ -175,12 +175,13 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path
   Scene scene;
   scene.label = std::move(label);
   const std::vector<Table> simulation = table.tables("simulation");
+  std::vector<Table> cloths = table.tables("cloth"), obstacles = table.tables("obstacle");
+  table.finish();  // before anything is missed: it may be there with its name mistyped
   if (simulation.size() > 1) table.fail("simulation", "there may be only one");
   scene.simulation = read_simulation(simulation.empty() ? nullptr : simulation.data());
   table.require("cloth");
-  for (Table& cloth : table.tables("cloth")) scene.cloths.push_back(read_cloth(cloth, folder));
-  for (Table& obstacle : table.tables("obstacle")) scene.obstacles.push_back(read_obstacle(obstacle, folder));
-  table.finish();
+  for (Table& cloth : cloths) scene.cloths.push_back(read_cloth(cloth, folder));
+  for (Table& obstacle : obstacles) scene.obstacles.push_back(read_obstacle(obstacle, folder));
   if (scene.cloths.empty()) table.fail("cloth", "there is no cloth");
   check_names(scene.cloths);
   for (const ClothEntry& cloth : scene.cloths)

@@ -39,12 +39,8 @@ std::string summary(const RunRecord& record, const Output& output) {
   text += "state: " + record.state() + ", largest speed " + rounded(record.max_speed, 2) +
           " m/s, largest edge strain " + rounded(100 * record.max_edge_strain, 2) + " %\n";
   text += hints(record);
-  for (const auto& path : output.written()) {
-    text += "wrote " + path.string();
-    const std::string extension = path.extension().string();
-    if (extension == ".pc2" || extension.empty()) text += " (" + counted(output.frames(), "frame") + ")";
-    text += "\n";
-  }
+  for (const auto& [path, amount] : output.written())
+    text += "wrote " + path.string() + (amount.empty() ? "" : " (" + amount + ")") + "\n";
   return text;
 }
 

@@ -31,6 +31,11 @@ bool is_number(const Node& node) {
   return node.kind == Node::Kind::number || node.kind == Node::Kind::integer;
 }
 
+bool holds_tables(const Node& node) {
+  if (node.kind == Node::Kind::array) return !node.items.empty() && holds_tables(node.items.front());
+  return node.kind == Node::Kind::table;
+}
+
 void want(const Node& node, Node::Kind kind) {
   if (node.kind != kind) throw InputError("expected " + kind_name(kind));
 }
@@ -171,8 +176,8 @@ void Table::require(const std::string& key) {
 void Table::finish() const {
   for (const auto& [key, member] : node_->members)
     if (std::find(asked_.begin(), asked_.end(), key) == asked_.end())
-      throw InputError(member.where + ": unknown key '" + key + "' in " + title_ + "; " +
-                       suggestion(key, asked_));
+      throw InputError(member.where + ": unknown " + (holds_tables(member) ? "table '" : "key '") + key +
+                       "' in " + title_ + "; " + suggestion(key, asked_));
 }
 
 }  // namespace drape

@@ -324,6 +324,11 @@ bool Constraints::move_bodies(double noise) {
   return true;
 }
 
+bool Constraints::bodies_converged() const {
+  return std::all_of(bodies_.begin(), bodies_.end(),
+                     [](const MovingBody& body) { return !body.reacting() || body.reacting()->converged(); });
+}
+
 bool Constraints::react(const VecX& v, const VecX& r, double noise) {
   bool changed = false;
   for (Contact& c : trial_) {

@@ -14,7 +14,7 @@ namespace drape {
 namespace {
 
 constexpr double close_enough = 1e-3;  // of the change of velocity in the step
-constexpr double too_far = 0.1;        // of the same: not converged
+constexpr double too_far = 0.02;       // of the same: not converged
 
 Mat3 turned_by(const Vec3& angle) {
   const double a = angle.norm();
@@ -59,6 +59,8 @@ Pose ReactingBody::begin_step(double h) {
   h_ = h;
   q_.head<3>() = v_ + h * body_.gravity + share * J_ / body_.mass;
   q_.tail<3>() = radius_ * (world_inertia(pose_).inverse() * (L_ + share * T_));
+  q_free_.head<3>() = v_ + h * body_.gravity;
+  q_free_.tail<3>() = radius_ * (world_inertia(pose_).inverse() * L_);
   corrections_ = 0;
   if (J_.isZero(0)) relaxation_ = 0;
   forget();
@@ -86,8 +88,16 @@ ReactingBody::Vec6 ReactingBody::difference() const {
 
 double ReactingBody::change() const { return (h_ * body_.gravity).norm() + J_.norm() / body_.mass; }
 
+// What touches it can throw it back at twice the speed at which they met, and no faster.
+void ReactingBody::stay_in_reach() {
+  const double reach = 2 * (meeting_ + (h_ * body_.gravity).norm());
+  const Vec6 away = q_ - q_free_;
+  if (away.norm() > reach) q_ = q_free_ + reach / away.norm() * away;
+}
+
 bool ReactingBody::correct(Pose& end, double noise) {
   const Vec6 d = difference();
+  if (corrections_ == 0) meeting_ = approach_;
   if (corrections_ == most_corrections || d.norm() <= close_enough * change() + noise / body_.mass)
     return false;
   if (relaxation_ == 0) {
@@ -112,13 +122,16 @@ bool ReactingBody::correct(Pose& end, double noise) {
       relaxation_ = std::clamp(relaxation_ * (1 + c[0]), 1e-6, 1.0);
   }
   q_ += relaxation_ * rest;
+  stay_in_reach();
   end = moved();
   return true;
 }
 
+bool ReactingBody::converged() const { return difference().norm() <= too_far * change(); }
+
 bool ReactingBody::end_step(const Pose& end) {
   const Vec6 d = difference();
-  const bool converged = d.norm() <= too_far * change();
+  const bool converged = this->converged();
   const Vec6 q = converged ? Vec6(q_ + d) : q_;
   v_ = q.head<3>();
   L_ = converged ? Vec3(L_ + T_) : Vec3(world_inertia(end) * q.tail<3>() / radius_);

@@ -59,6 +59,7 @@ class ReactingBody {
   // True when the motion that was prescribed is not the one that the impulse makes: then `end` is the new
   // one. noise [N s]: of the impulses.
   bool correct(Pose& end, double noise);
+  bool converged() const;
   bool end_step(const Pose& end);  // false: not converged
 
  private:
@@ -67,6 +68,7 @@ class ReactingBody {
 
   Pose moved() const;
   Vec6 difference() const;
+  void stay_in_reach();
   double change() const;  // m/s, what the step does to it
   Mat3 world_inertia(const Pose& pose) const;
 
@@ -80,7 +82,8 @@ class ReactingBody {
   double h_ = 0;
   double relaxation_ = 0;  // a; 0: nothing touches it
   double approach_ = 0;    // m/s
-  Vec6 q_ = Vec6::Zero();
+  double meeting_ = 0;     // m/s, the approach at the start of the step
+  Vec6 q_ = Vec6::Zero(), q_free_ = Vec6::Zero();
   bool known_ = false;  // q and d of a solve before
   Vec6 last_q_ = Vec6::Zero(), last_d_ = Vec6::Zero();
   int corrections_ = 0, changes_ = 0;

@@ -33,6 +33,21 @@ void add_quad(TriangleMesh& mesh, int p, int q, int r, int s, bool along_pr) {
   }
 }
 
+using Outline = std::vector<Eigen::Vector2d>;
+
+// Points of an arc about `centre`, from one angle to another [rad, from the outwards radius upwards]; the end
+// that lies on the axis is set on it.
+void add_arc(Outline& outline, const Eigen::Vector2d& centre, double radius, double from, double to,
+             int pieces) {
+  for (int k = 0; k <= pieces; ++k) {
+    const double angle = from + (to - from) * k / pieces;
+    Eigen::Vector2d point = centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    if (point[0] < 1e-9 * radius) point[0] = 0;
+    const bool repeated = !outline.empty() && (point - outline.back()).norm() < 1e-9 * radius;
+    if (!repeated) outline.push_back(point);
+  }
+}
+
 TriangleMesh icosahedron() {
   const double g = (1 + std::sqrt(5.0)) / 2;
   TriangleMesh mesh;
@@ -158,6 +173,70 @@ TriangleMesh tube(int around, int along, double radius, double height) {
     }
   }
   return mesh;
+}
+
+TriangleMesh box(const Vec3& size) {
+  require(size.minCoeff() > 0, "a box needs edges above 0");
+  TriangleMesh mesh;
+  for (int corner = 0; corner < 8; ++corner)
+    mesh.positions.emplace_back(spread(corner & 1, 2, size[0]), spread(corner >> 1 & 1, 2, size[1]),
+                                spread(corner >> 2, 2, size[2]));
+  constexpr int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                               {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+  for (const auto& f : faces) add_quad(mesh, f[0], f[1], f[2], f[3], true);
+  return mesh;
+}
+
+TriangleMesh turned(const std::vector<Eigen::Vector2d>& outline, int around) {
+  require(around >= 3 && outline.size() >= 3, "a turned body needs an outline of 3 points and 3 around");
+  require(outline.front()[0] == 0 && outline.back()[0] == 0, "an outline begins and ends on the axis");
+  const int rings = static_cast<int>(outline.size()) - 2;
+  TriangleMesh mesh;
+  for (int ring = 0; ring < rings; ++ring) {
+    const Eigen::Vector2d& point = outline[static_cast<std::size_t>(ring) + 1];
+    require(point[0] > 0, "an outline meets the axis at its ends only");
+    for (int i = 0; i < around; ++i) {
+      const double angle = kTurn * i / around;
+      mesh.positions.emplace_back(point[0] * std::cos(angle), point[1], -point[0] * std::sin(angle));
+    }
+  }
+  const int first = rings * around, last = first + 1, top = (rings - 1) * around;
+  mesh.positions.emplace_back(0, outline.front()[1], 0);
+  mesh.positions.emplace_back(0, outline.back()[1], 0);
+  for (int i = 0; i < around; ++i) {
+    const int next = (i + 1) % around;
+    mesh.triangles.push_back({first, next, i});
+    for (int ring = 0; ring + 1 < rings; ++ring) {
+      const int p = ring * around + i, q = ring * around + next;
+      add_quad(mesh, p, q, q + around, p + around, (i + ring) % 2 == 0);
+    }
+    mesh.triangles.push_back({top + i, top + next, last});
+  }
+  return mesh;
+}
+
+TriangleMesh capsule(int around, double radius, double length) {
+  require(around >= 4 && around % 4 == 0, "a capsule needs a multiple of 4 vertices around");
+  require(radius > 0 && length >= 0, "a capsule needs a radius above 0 and a length");
+  Outline outline;
+  add_arc(outline, {0, -length / 2}, radius, -kTurn / 4, 0, around / 4);
+  // Rings on the cylinder so that no cell is a needle, but not without end.
+  const double cells = length / (radius * kTurn / around);
+  const int pieces = static_cast<int>(std::clamp(std::ceil(cells / 8), 1.0, 256.0));
+  for (int k = 1; k < pieces; ++k) outline.emplace_back(radius, spread(k, pieces + 1, length));
+  add_arc(outline, {0, length / 2}, radius, 0, kTurn / 4, around / 4);
+  return turned(outline, around);
+}
+
+TriangleMesh bowl(int around, double radius, double thickness) {
+  require(around >= 4 && around % 4 == 0, "a bowl needs a multiple of 4 vertices around");
+  require(radius > 0 && thickness > 0, "a bowl needs a radius and a thickness above 0");
+  constexpr int round_the_rim = 16;
+  Outline outline;
+  add_arc(outline, {0, 0}, radius + thickness, -kTurn / 4, 0, around / 4);
+  add_arc(outline, {radius + thickness / 2, 0}, thickness / 2, 0, kTurn / 2, round_the_rim);
+  add_arc(outline, {0, 0}, radius, 0, -kTurn / 4, around / 4);
+  return turned(outline, around);
 }
 
 }  // namespace drape

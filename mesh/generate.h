@@ -21,4 +21,19 @@ TriangleMesh sphere(int subdivisions, double radius);
 // Open cylinder along y, centred, `around` x `along` vertices, normals out.
 TriangleMesh tube(int around, int along, double radius, double height);
 
+// Edge lengths [m], along the axes, centred: eight vertices, closed, normals out.
+TriangleMesh box(const Vec3& size);
+
+// Turned about y, `around` vertices in each ring, closed. The outline, (radius, height) [m], begins and ends
+// on the axis and has the outside on its right.
+TriangleMesh turned(const std::vector<Eigen::Vector2d>& outline, int around);
+
+// A cylinder along y, centred, of this length [m] between two half balls; normals out. `around` is a multiple
+// of 4.
+TriangleMesh capsule(int around, double radius, double length);
+
+// A hemispherical shell about the origin that opens upwards (+y), of this inner radius [m], with a rounded
+// rim; normals out of the material. `around` is a multiple of 4.
+TriangleMesh bowl(int around, double radius, double thickness);
+
 }  // namespace drape

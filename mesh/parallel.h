@@ -43,13 +43,14 @@ void for_chunks(int n, const F& f) {
                [&](int k) { f(k * chunk_size, std::min(n, (k + 1) * chunk_size)); });
 }
 
-// Sum of f(begin, end) over the chunks of [0, n): groups of up to `max_partials` chunks are summed in
-// parallel, then in order.
+// Sum of f(begin, end), a number or several that know +=, over the chunks of [0, n): groups of up to
+// `max_partials` chunks are summed in parallel, then in order.
 template <class F>
-double sum_chunks(int n, const F& f) {
+auto sum_chunks(int n, const F& f) {
+  using Sum = decltype(f(0, 0));
   constexpr int max_partials = 1024;
-  std::array<double, max_partials> partial;
-  double total = 0;
+  std::array<Sum, max_partials> partial;
+  Sum total{};
   const int chunks = chunk_count(n);
   for (int base = 0; base < chunks; base += max_partials) {
     const int here = std::min(max_partials, chunks - base);

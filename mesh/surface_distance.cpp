@@ -43,7 +43,7 @@ struct Candidate {
     return true;
   }
   template <class Places>
-  Vec3 weights(const Pose<Places>& pose) const {
+  Vec3 weights(const SurfacePose<Places>& pose) const {
     return weights_on_triangle(point, feature, pose.corner(face, 0), pose.corner(face, 1),
                                pose.corner(face, 2));
   }
@@ -90,20 +90,21 @@ struct SurfaceDistance::Tree {
     Candidate best;
   };
   static bool ask(RTCPointQueryFunctionArguments* call);
-  Candidate find(const Vec3& x, const Pose<Standing>& pose) const;
-  Candidate find(const Vec3& x, const Pose<Moving>& pose) const;
-  Vec3 vertex_normal(int v, const Pose<Standing>&) const { return vertex_normals[v]; }
-  Vec3 vertex_normal(int v, const Pose<Moving>& pose) const;
+  Candidate find(const Vec3& x, const SurfacePose<Standing>& pose) const;
+  Candidate find(const Vec3& x, const SurfacePose<Moving>& pose) const;
+  Vec3 vertex_normal(int v, const SurfacePose<Standing>&) const { return vertex_normals[v]; }
+  Vec3 vertex_normal(int v, const SurfacePose<Moving>& pose) const;
   template <class Places>
-  Vec3 pseudo_normal(const Candidate& c, const Pose<Places>& pose) const;
+  Vec3 pseudo_normal(const Candidate& c, const SurfacePose<Places>& pose) const;
   template <class Places>
-  SurfacePoint answer(const Vec3& x, const Candidate& c, const Pose<Places>& pose) const;
+  SurfacePoint answer(const Vec3& x, const Candidate& c, const SurfacePose<Places>& pose) const;
   Vec3 displacement(int face, const Vec3& weights) const;
 
   // f(pose) in the configuration at s.
   template <class F>
   auto in_pose(double s, const F& f) const {
-    return moving ? f(Pose<Moving>(surface, {start, end, s})) : f(Pose<Standing>(surface, {mesh.positions}));
+    return moving ? f(SurfacePose<Moving>(surface, {start, end, s}))
+                  : f(SurfacePose<Standing>(surface, {mesh.positions}));
   }
 };
 
@@ -125,7 +126,7 @@ SurfaceDistance::Tree::Tree(const TriangleMesh& given) : mesh(given), surface(su
   measure();
   grow();
   vertex_normals.assign(mesh.positions.size(), Vec3::Zero());
-  const Pose<Standing> pose(surface, {mesh.positions});
+  const SurfacePose<Standing> pose(surface, {mesh.positions});
   for (int f = 0; f < static_cast<int>(surface.faces.size()); ++f)
     for (int k = 0; k < 3; ++k) vertex_normals[surface.faces[f].v[k]] += pose.angle_weighted(f, k);
 }
@@ -194,7 +195,7 @@ void SurfaceDistance::Tree::begin_step() {
   }
 }
 
-Candidate SurfaceDistance::Tree::find(const Vec3& x, const Pose<Standing>&) const {
+Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Standing>&) const {
   Query query{*this, x, {}};
   const Vec3 local = x - centre;
   RTCPointQuery ball{static_cast<float>(local.x()), static_cast<float>(local.y()),
@@ -206,7 +207,7 @@ Candidate SurfaceDistance::Tree::find(const Vec3& x, const Pose<Standing>&) cons
 }
 
 // Faces that have no area at s are left to their neighbours, unless nothing else is there.
-Candidate SurfaceDistance::Tree::find(const Vec3& x, const Pose<Moving>& pose) const {
+Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Moving>& pose) const {
   Candidate best;
   for (bool flat_ones : {false, true}) {
     boxes->near(x, pose.places().s, [&](int f) {
@@ -222,7 +223,7 @@ Candidate SurfaceDistance::Tree::find(const Vec3& x, const Pose<Moving>& pose) c
 }
 
 // Of the faces around a vertex, each with its angle there.
-Vec3 SurfaceDistance::Tree::vertex_normal(int v, const Pose<Moving>& pose) const {
+Vec3 SurfaceDistance::Tree::vertex_normal(int v, const SurfacePose<Moving>& pose) const {
   Vec3 sum = Vec3::Zero();
   for (int i = corner_start[v]; i < corner_start[v + 1]; ++i)
     sum += pose.angle_weighted(corners[i] / 3, corners[i] % 3);
@@ -230,7 +231,7 @@ Vec3 SurfaceDistance::Tree::vertex_normal(int v, const Pose<Moving>& pose) const
 }
 
 template <class Places>
-Vec3 SurfaceDistance::Tree::pseudo_normal(const Candidate& c, const Pose<Places>& pose) const {
+Vec3 SurfaceDistance::Tree::pseudo_normal(const Candidate& c, const SurfacePose<Places>& pose) const {
   const Vec3 face_normal = pose.plain_normal(c.face);
   Vec3 n = face_normal;
   if (c.feature < on_edge) n = vertex_normal(surface.faces[c.face].v[c.feature], pose);
@@ -241,7 +242,7 @@ Vec3 SurfaceDistance::Tree::pseudo_normal(const Candidate& c, const Pose<Places>
 
 template <class Places>
 SurfacePoint SurfaceDistance::Tree::answer(const Vec3& x, const Candidate& c,
-                                           const Pose<Places>& pose) const {
+                                           const SurfacePose<Places>& pose) const {
   if (c.face < 0) return {std::numeric_limits<double>::quiet_NaN(), Vec3::UnitY()};  // x is not finite
   const Vec3 offset = x - c.point;
   const double d = offset.norm();
@@ -344,6 +345,13 @@ Vec3 SurfaceDistance::place(const Anchor& anchor, double s) const {
   const Vec3 a = at(anchor.triangle[0]), b = at(anchor.triangle[1]), c = at(anchor.triangle[2]);
   return anchor.weights[0] * a + anchor.weights[1] * b + anchor.weights[2] * c +
          frame(a, b, c) * anchor.offset;
+}
+
+std::vector<Vec3> SurfaceDistance::vertices(double s) const {
+  std::vector<Vec3> places = tree_->mesh.positions;
+  if (tree_->moving)
+    for (std::size_t i = 0; i < places.size(); ++i) places[i] = (1 - s) * tree_->start[i] + s * tree_->end[i];
+  return places;
 }
 
 bool SurfaceDistance::closed() const { return tree_->surface.closed; }

@@ -48,6 +48,8 @@ class SurfaceDistance {
   const SurfaceMotion& motion() const;
   double largest_displacement() const { return motion().largest; }
 
+  std::vector<Vec3> vertices(double s) const;  // of the mesh, m
+
   // All of these are safe to call from several threads.
   SurfacePoint closest(const Vec3& x, double s = 0) const;
   // displacement: of the surface's point closest to x, in the whole step [m].

@@ -16,9 +16,9 @@
 namespace drape {
 
 template <class Places>
-class Pose {
+class SurfacePose {
  public:
-  Pose(const SurfaceFaces& surface, Places places) : surface_(surface), places_(places) {}
+  SurfacePose(const SurfaceFaces& surface, Places places) : surface_(surface), places_(places) {}
 
   decltype(auto) corner(int f, int k) const { return places_(surface_.faces[f].v[k]); }
   bool flat(int f) const { return places_.flat(surface_, f); }
@@ -35,7 +35,7 @@ class Pose {
 };
 
 template <class Places>
-int Pose<Places>::longest_side(int f) const {
+int SurfacePose<Places>::longest_side(int f) const {
   double length[3];
   for (int k = 0; k < 3; ++k) length[k] = (corner(f, next(k)) - corner(f, k)).squaredNorm();
   return static_cast<int>(std::max_element(length, length + 3) - length);
@@ -43,7 +43,7 @@ int Pose<Places>::longest_side(int f) const {
 
 // Unit normal of a face. One without an area is a part of the face beyond its longest side.
 template <class Places>
-Vec3 Pose<Places>::plain_normal(int f) const {
+Vec3 SurfacePose<Places>::plain_normal(int f) const {
   if (flat(f)) {
     f = surface_.faces[f].across[longest_side(f)];
     if (f < 0 || flat(f)) return Vec3::Zero();
@@ -52,14 +52,14 @@ Vec3 Pose<Places>::plain_normal(int f) const {
 }
 
 template <class Places>
-Vec3 Pose<Places>::angle_weighted(int f, int k) const {
+Vec3 SurfacePose<Places>::angle_weighted(int f, int k) const {
   const Vec3 p = corner(f, next(k)) - corner(f, k), q = corner(f, next(next(k))) - corner(f, k);
   return std::atan2(p.cross(q).norm(), p.dot(q)) * plain_normal(f);
 }
 
 // Normal of the surface beyond a side of a face. Past the long side of a face without an area lie two.
 template <class Places>
-Vec3 Pose<Places>::normal_beyond(int f, int side) const {
+Vec3 SurfacePose<Places>::normal_beyond(int f, int side) const {
   const int g = surface_.faces[f].across[side];
   if (g < 0) return Vec3::Zero();
   const int longest = flat(g) ? longest_side(g) : -1;

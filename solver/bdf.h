@@ -21,9 +21,18 @@
 // x [m], v [m/s], M [kg], f [N], h [s].
 #pragma once
 
+#include <cmath>
+
 #include "solver/integrator.h"
 
 namespace drape {
+
+// What round-off makes of the incremental potential and of its gradient, see solver/potential.h.
+struct RoundOff {
+  double least = 0;    // J, N there
+  double impulse = 0;  // N s, of the gradient
+  double energy(double phi) const { return least + 2 * std::sqrt(std::abs(phi) * least); }  // J, of Phi = phi
+};
 
 class Bdf final : public Integrator {
  public:
@@ -102,8 +111,7 @@ class Bdf final : public Integrator {
   std::vector<std::pair<int, Mat3>> rubbed_;  // diagonal blocks as they were before contact friction
   double weight_impulse_ = 0;                 // N s, h |m g|
   double fall_energy_ = 0;                    // J, sum of m (h g)^2
-  double round_off_energy_ = 0;               // J, N of solver/potential.h where it was linearised last
-  double round_off_impulse_ = 0;              // N s
+  RoundOff noise_;                            // where it was linearised last
 };
 
 // The step of Baraff & Witkin, order 1.

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "mesh/parallel.h"
+#include "solver/four.h"
 
 namespace drape {
 namespace {
@@ -88,10 +89,6 @@ std::vector<int> locality_order(const Graph& g) {
   std::reverse(order.begin(), order.end());
   return order;
 }
-
-// Four doubles, read from anywhere.
-typedef double Four __attribute__((vector_size(32), aligned(8)));
-inline Four load(const double* p) { return *reinterpret_cast<const Four*>(p); }
 
 // y[0..2] += the sums of the lanes of p, q, r.
 inline void add_sums(const Four& p, const Four& q, const Four& r, double* y) {

@@ -28,11 +28,12 @@ void HeldMotion::acceleration(const VecX& x, const VecX& v, VecX& a) {
       a.segment<3>(3 * i) = a.segment<3>(3 * i) / std::max(mass[static_cast<std::size_t>(i)], 1e-300) +
                             system_.gravity_acceleration();
   });
+  power_ = 0;
   for (const FilterEntry& e : held_.entries()) {
-    if (e.S.isZero(0))
-      a.segment<3>(3 * e.particle).setZero();
-    else
-      a.segment<3>(3 * e.particle) = (e.S * a.segment<3>(3 * e.particle)).eval();
+    const Vec3 whole = a.segment<3>(3 * e.particle);
+    const Vec3 kept = e.S.isZero(0) ? Vec3(Vec3::Zero()) : Vec3(e.S * whole);
+    power_ -= mass[static_cast<std::size_t>(e.particle)] * v.segment<3>(3 * e.particle).dot(whole - kept);
+    a.segment<3>(3 * e.particle) = kept;
   }
 }
 

@@ -27,6 +27,7 @@ class HeldMotion {
   const Filter& held() const { return held_; }  // in particle order
 
   void acceleration(const VecX& x, const VecX& v, VecX& a);  // S M^-1 f
+  double power() const { return power_; }  // W, that what holds particles gave to them there
 
   // State(t) -> State(t + h), when the method came from v_start to x, v. False, and why in the report, when
   // they are not finite; the state is as it was then.
@@ -46,6 +47,7 @@ class HeldMotion {
   ContactMode contact_;
   Filter held_, filter_;
   VecX v_start_, v_free_, x_new_, v_new_, a_, r_;
+  double power_ = 0;
 };
 
 // Where x or v is not a finite number, and the force that is not either.

@@ -166,6 +166,8 @@ bool NewtonKinsol::attempt(State& state, double h) {
     if (!changed) break;
   }
   report_.converged = report_.converged && solved_;
+  if (!constraints_.bodies_converged())
+    return fail("the motion of a body that reacts and that of the cloth do not agree");
   x_ = x_bar_ + h * v_;
   if (!x_.allFinite()) return fail("the new positions are not finite numbers");
   end_step(constraints_, x_, v_, report_);

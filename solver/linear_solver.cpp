@@ -3,12 +3,10 @@
 #include <string>
 
 #include "mesh/obj.h"
-#include "solver/linear/preconditioner.h"
+#include "solver/linear/pcg.h"
 
 namespace drape {
 
-std::unique_ptr<LinearSolver> make_pcg(std::string name, bool prefiltered,
-                                       std::unique_ptr<Preconditioner> preconditioner);
 std::unique_ptr<LinearSolver> make_eigen_ldlt();
 std::unique_ptr<LinearSolver> make_eigen_cg();
 #ifdef DRAPE_HAVE_CHOLMOD

@@ -50,7 +50,7 @@ class LinearSolver {
                              const LinearOptions& options, VecX& dv) = 0;
 };
 
-// "mpcg", and what linear_solver_names() lists. Throws InputError for any other name.
+// "mpcg", and what linear_solvers() lists. Throws InputError for any other name.
 std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name);
 
 struct LinearSolverInfo {

@@ -10,10 +10,8 @@
 #include <limits>
 #include <vector>
 
-#include "constraints/constraints.h"
 #include "mesh/parallel.h"
-#include "solver/block_matrix.h"
-#include "solver/system.h"
+#include "solver/bdf.h"
 
 namespace drape {
 
@@ -29,27 +27,23 @@ inline double potential_of_forces(const System& system, const std::vector<Contac
   return phi;
 }
 
-struct RoundOff {
-  double least = 0;    // J, N above
-  double impulse = 0;  // N s, of the gradient
-  double energy(double phi) const { return least + 2 * std::sqrt(std::abs(phi) * least); }
-};
-
 inline RoundOff round_off(const BlockMatrix& A, const VecX& x, const VecX& v, double c) {
   constexpr double eps = 8 * std::numeric_limits<double>::epsilon();
-  const auto sum = [&](auto&& term) {
-    return sum_chunks(A.rows(), [&](int begin, int end) {
-      double all = 0;
-      for (int i = begin; i < end; ++i) {
-        const int row = A.pattern().row_of()[static_cast<std::size_t>(i)];
-        const double e = eps * (x.segment<3>(3 * i).norm() / c + v.segment<3>(3 * i).norm());
-        all += term(A.at(A.pattern().diagonal(row)).norm(), e);
-      }
-      return all;
-    });
+  struct Sums {
+    double energy = 0, squares = 0;  // of A_ii e_i^2, and of (A_ii e_i)^2
+    void operator+=(const Sums& other) { energy += other.energy, squares += other.squares; }
   };
-  return {sum([](double a, double e) { return a * e * e; }),
-          std::sqrt(sum([](double a, double e) { return a * e * a * e; }))};
+  const Sums all = sum_chunks(A.rows(), [&](int begin, int end) {
+    Sums sums;
+    for (int i = begin; i < end; ++i) {
+      const int row = A.pattern().row_of()[static_cast<std::size_t>(i)];
+      const double a = A.at(A.pattern().diagonal(row)).norm();
+      const double e = eps * (x.segment<3>(3 * i).norm() / c + v.segment<3>(3 * i).norm());
+      sums += {a * e * e, a * e * a * e};
+    }
+    return sums;
+  });
+  return {all.energy, std::sqrt(all.squares)};
 }
 
 }  // namespace drape

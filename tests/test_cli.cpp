@@ -40,7 +40,8 @@ struct Workshop : Folder {
 
 long lines_of(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
-const std::set<std::string> usual_files = {"run.json", "sheet.obj", "sheet.pc2", "steps.csv"};
+const std::set<std::string> without_bodies = {"run.json", "sheet.obj", "sheet.pc2", "steps.csv"};
+const std::set<std::string> usual_files = {"bodies", "run.json", "sheet.obj", "sheet.pc2", "steps.csv"};
 
 }  // namespace
 
@@ -141,9 +142,34 @@ TEST_CASE("frames may be OBJ files or none, and only the last", "[cli]") {
   CHECK(read_obj(shop.path / "o/frames/sheet_0001.obj").positions ==
         read_obj(shop.path / "sheet.obj").positions);
   CHECK(shop.drape("simulate s.toml --out n --frames none --quiet").exit_code == 0);
-  CHECK(shop.files("n") == std::set<std::string>{"run.json", "sheet.obj", "steps.csv"});
+  CHECK(shop.files("n") == std::set<std::string>{"bodies", "run.json", "sheet.obj", "steps.csv"});
   CHECK(shop.drape("simulate s.toml --out l --set simulation.frame_rate=0 --quiet").exit_code == 0);
   CHECK(fs::file_size(shop.path / "l/sheet.pc2") == 32 + 169 * 12);
+}
+
+TEST_CASE("a shorter run takes away the later frames of a longer one, and nothing else", "[cli]") {
+  const Workshop shop;
+  const std::string run = "simulate s.toml --out o --frames obj --quiet";
+  REQUIRE(shop.drape(run).exit_code == 0);
+  const auto frames = shop.files("o/frames");
+  REQUIRE(frames.size() == 8);
+  const std::set<std::string> others = {"sheet_5.obj",     "sheet_00006.obj",  "sheet_0009.obj.bak",
+                                        "sheet_0009.txt",  "sheet_0009a.obj",  "other_0009.obj",
+                                        "sheet_-0009.obj", "my_sheet_0009.obj"};
+  for (const std::string& name : others) shop.write("o/frames/" + name, "mine");
+  shop.write("o/frames/sheet_12345.obj", "of a long run");
+  fs::create_directory(shop.path / "o/frames/sheet_0010.obj");
+  CHECK(shop.drape(run + " --duration 100000 --set simulation.frame_rate=1e-5",
+                   "timeout --preserve-status -s INT 1")
+            .exit_code == 130);
+  CHECK(shop.files("o/frames").size() == frames.size() + others.size() + 2);  // not yet over: all stay
+  CHECK(shop.drape("simulate hung.toml --out o --frames obj --quiet --set cloth.0.stretch=1e300").exit_code ==
+        1);
+  CHECK(shop.files("o/frames").size() == frames.size() + others.size() + 2);
+  REQUIRE(shop.drape(run + " --duration 0.1").exit_code == 0);
+  std::set<std::string> left = others;
+  left.insert({"sheet_0001.obj", "sheet_0002.obj", "sheet_0003.obj", "sheet_0010.obj"});
+  CHECK(shop.files("o/frames") == left);
 }
 
 TEST_CASE("several cloths run together, each with its own files", "[cli]") {
@@ -198,7 +224,7 @@ TEST_CASE("a cloth is dropped onto shapes, meshes and the floor", "[cli]") {
   }
   CHECK_THAT(shop.json("o/run.json")["scene"].get<std::string>(), StartsWith("drape drop sheet.obj --floor"));
   CHECK(shop.drape("drop sheet.obj --duration 0.05").exit_code == 0);
-  CHECK(shop.files("out/sheet") == usual_files);
+  CHECK(shop.files("out/sheet") == without_bodies);
   CHECK(shop.drape("drop sheet.obj --onto sphere:0.3 --friction 0.1 --margin '3 mm' --fabric polyester-plain "
                    "--scale 0.5 "
                    "--duration 0.05 --set obstacle.0.friction=0.2 --set cloth.0.bend='5 uN.m' --out p")
@@ -255,6 +281,10 @@ TEST_CASE("bad input: one line, exit code 2, nothing written", "[cli]") {
   shop.write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
   shop.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
   shop.write("unknown.toml", shop.cloth + "bent = 3\n");
+  shop.write("table.toml", "\n[[cloht]]\nmesh = \"sheet.obj\"\n");
+  shop.write("bodies.toml", shop.cloth + "[[obstacles]]\nshape = \"plane\"\n");
+  fs::create_directories(shop.path / "taken/sheet.obj");
+  fs::create_directories(shop.path / "json/run.json");
   shop.write("unit.toml", shop.cloth + "bend = \"10 N/m\"\n");
   shop.write("pin.toml", shop.cloth + "pins = [{ group = \"collar\" }]\n");
   shop.write("box.toml", shop.cloth + "pins = [{ box = [[5, 5, 5], [6, 6, 6]] }]\n");
@@ -274,6 +304,16 @@ TEST_CASE("bad input: one line, exit code 2, nothing written", "[cli]") {
       {"simulate s.toml --sped 3", "--sped"},
       {"simulate s.toml extra", "expected PATH=VALUE"},
       {"simulate none.toml", "none.toml: no such file"},
+      {"simulate ''", "the word after 'simulate' is empty"},
+      {"''", "the word after 'drape' is empty"},
+      {"simulate s.toml --out ''", "the word after '--out' is empty"},
+      {"simulate s.toml --out=", "there is nothing after '--out='"},
+      {"drop sheet.obj --onto ''", "the word after '--onto' is empty"},
+      {"simulate table.toml", "table.toml:2: unknown table 'cloht' in the scene; did you mean 'cloth'?"},
+      {"simulate bodies.toml",
+       "bodies.toml:4: unknown table 'obstacles' in the scene; did you mean 'obstacle'?"},
+      {"simulate s.toml --out taken", "taken/sheet.obj: cannot write: Is a directory"},
+      {"simulate s.toml --out json", "json/run.json: cannot write: Is a directory"},
       {"simulate locked", "is a directory"},
       {"simulate syntax.toml", "syntax.toml:4: is not TOML"},
       {"simulate binary.toml", "is binary"},
@@ -314,6 +354,8 @@ TEST_CASE("bad input: one line, exit code 2, nothing written", "[cli]") {
       {"drop sheet.obj --fabric wool", "--fabric: fabric = \"wool\": there is no such fabric"},
       {"drop sheet.obj --scale 0", "--scale"},
       {"drop sheet.obj --floor --friction -1", "--friction"},
+      {"drop sheet.obj --friction 0.2", "--friction: there is nothing to touch"},
+      {"drop sheet.obj --margin '1 mm'", "--margin: there is nothing to touch"},
       {"drop sheet.obj --pin collar", "--pin: pins: the mesh has no group 'collar'"},
       {"check none.obj", "none.obj: no such file"},
       {"check flat.obj", "no triangle has an area"},
@@ -350,7 +392,8 @@ TEST_CASE("a disk that fills up during a run leaves nothing half written", "[cli
   CHECK(run.exit_code == 2);
   CHECK(lines_of(run.err) == 1);
   CHECK_THAT(run.err, StartsWith("error: o/") && Contains("cannot write: File too large"));
-  CHECK(shop.files("o").empty());
+  CHECK(shop.files("o") == std::set<std::string>{"bodies"});
+  CHECK(shop.files("o/bodies").empty());
 }
 
 TEST_CASE("a disk that fills up leaves the results of the run before", "[cli]") {
@@ -371,7 +414,7 @@ TEST_CASE("an interrupted run leaves complete files", "[cli]") {
                    std::string("timeout --preserve-status -s ") + signal + " 2");
     CHECK(run.exit_code == 130);
     CHECK_THAT(run.out, Contains("interrupted after"));
-    CHECK(shop.files("o") == usual_files);
+    CHECK(shop.files("o") == without_bodies);
     const Json json = shop.json("o/run.json");
     CHECK(json["interrupted"] == true);
     const long steps = json["steps"].get<long>();
@@ -390,7 +433,7 @@ TEST_CASE("a failed computation says where, ends with 1 and keeps what went befo
     CHECK(lines_of(run.err) == 1);
     CHECK_THAT(run.err, StartsWith("error: step ") && Contains(" of sheet (at ") &&
                             Contains("the term is 'stretch'") && Contains("try a smaller --time-step"));
-    CHECK(shop.files("o") == usual_files);
+    CHECK(shop.files("o") == without_bodies);
     const Json json = shop.json("o/run.json");
     CHECK(json["state"] == "failed");
     for (const char* key : {"step", "time", "what", "term", "cloth", "vertex"})

@@ -198,6 +198,46 @@ TEST_CASE("a particle in a corner is held by both walls", "[contact]") {
   CHECK(p.state.v[2] == Approx(0.1));  // free along the edge
 }
 
+TEST_CASE("friction in a groove is mu of what both walls bear, in the step of the landing and after it",
+          "[contact]") {
+  // Each wall bears m (w + g h) / (2 cos a) when it lands with w [m/s], and m g h / (2 cos a) in other steps.
+  const double mu = 0.2, g = 9.81, h = 0.005, w = 1, u = 5;
+  for (const double between : {60.0, 90.0, 120.0}) {  // degrees from one wall's normal to the other's
+    INFO(between);
+    const double a = between / 2 * M_PI / 180;
+    Particle p;
+    for (const double side : {-1.0, 1.0})
+      p.constraints.add(
+          Obstacle{.shape = Plane{{0, 0, 0}, {side * std::sin(a), std::cos(a), 0}}, .friction = mu});
+    p.state.x = Vec3(0, 0.002 / std::cos(a) + 1e-9, 0);
+    p.state.v = Vec3(0, -w, u);
+    for (int n = 1; n <= 40; ++n) {
+      p.step(h);
+      CHECK(p.state.v[2] == Approx(u - mu * (w + g * h * n) / std::cos(a)).margin(1e-6));
+      CHECK(p.state.v.head<2>().norm() < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("a wall that is let go bears nothing, and friction forgets it", "[contact]") {
+  // The path meets both planes, but what the floor stops moves away from the wall: only the floor bears.
+  const double mu = 0.2, g = 9.81, h = 0.005;
+  Particle p;
+  p.constraints.add(Obstacle{.shape = Plane{}, .friction = mu});
+  p.constraints.add(Obstacle{.shape = Plane{{0, 0, 0}, {std::sqrt(0.75), 0.5, 0}}, .friction = mu});
+  p.state.x = Vec3(0.002 * (1 - 0.5) / std::sqrt(0.75) + 1e-9, 0.002 + 1e-9, 0);
+  p.state.v = Vec3(0.4, -1, 5);
+  const double start = std::hypot(0.4, 5);
+  for (int n = 1; n <= 40; ++n) {
+    const StepReport report = p.step(h);
+    if (n == 1) CHECK(report.linear_solves > 2);  // the wall was held first
+    const Vec3 v = p.state.v;
+    CHECK(std::abs(v[1]) < 1e-6);
+    CHECK(v.norm() == Approx(start - mu * (1 + g * h * n)).margin(0.02 * mu * g * h));
+    CHECK(v[0] / v[2] == Approx(0.4 / 5).epsilon(1e-3));
+  }
+}
+
 TEST_CASE("a cloth laid on a plane comes to rest and stays", "[contact]") {
   Cloth cloth(grid(12, 12, 0.5, 0.5), soft(), {0, 0.02, 0});
   cloth.constraints.add(Obstacle{.shape = Plane{}});

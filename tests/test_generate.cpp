@@ -39,12 +39,24 @@ Vec3 middle(const TriangleMesh& mesh) {
   return sum / mesh.vertex_count();
 }
 
+const std::vector<Eigen::Vector2d> spindle = {{0, -1}, {0.5, 0}, {0, 1}};
+
+void check_closed(const TriangleMesh& mesh) {
+  const MeshReport report = examine(mesh);
+  std::string defects;
+  for (const Defect& defect : report.defects) defects += format(defect) + "\n";
+  INFO(defects);
+  CHECK(report.defects.empty());
+  CHECK(report.closed);
+  CHECK(report.pieces == 1);
+}
+
 }  // namespace
 
 TEST_CASE("generated meshes have no defects", "[generate]") {
   for (const TriangleMesh& mesh :
        {grid(2, 2, 1, 1), grid(9, 4, 1, 0.5), equilateral_sheet(5, 6, 0.1), disc(4, 0.5), sphere(0, 1),
-        sphere(3, 0.2), tube(3, 2, 0.1, 1), tube(12, 5, 0.1, 1)}) {
+        sphere(3, 0.2), tube(3, 2, 0.1, 1), tube(12, 5, 0.1, 1), box({1, 0.2, 3}), turned(spindle, 5)}) {
     const MeshReport report = examine(mesh);
     for (const Defect& defect : report.defects) INFO(format(defect));
     CHECK(report.defects.empty());
@@ -127,6 +139,37 @@ TEST_CASE("a tube is open at its two ends and looks out", "[generate]") {
   }
 }
 
+TEST_CASE("a box has eight corners and fills its edges", "[generate]") {
+  const TriangleMesh mesh = box({1, 0.2, 3});
+  check_closed(mesh);
+  CHECK(mesh.vertex_count() == 8);
+  CHECK(volume(mesh) == Approx(0.6));
+  CHECK(area(mesh) == Approx(2 * (0.2 + 0.6 + 3)));
+  for (const Vec3& x : mesh.positions) CHECK(x.cwiseAbs() == Vec3(0.5, 0.1, 1.5));
+}
+
+TEST_CASE("turned bodies are closed, look out and come closer to the true ones", "[generate]") {
+  double capsule_error = 1, bowl_error = 1;
+  for (const int around : {12, 24, 48, 96}) {
+    const TriangleMesh rod = capsule(around, 0.3, 1.5), shell = bowl(around, 0.5, 0.1);
+    check_closed(rod);
+    check_closed(shell);
+    const double capsule_now = 1 - volume(rod) / (kPi * 0.09 * 1.5 + 4.0 / 3 * kPi * 0.027);
+    // Half of a thick shell, and half a torus of the rim above it.
+    const double whole = 2.0 / 3 * kPi * (0.216 - 0.125) + kPi * kPi * 0.55 * 0.0025;
+    const double bowl_now = std::abs(1 - volume(shell) / whole);
+    CHECK(capsule_now > 0);
+    CHECK(capsule_now < (around > 12 ? 0.27 : 0.1) * capsule_error);  // second order
+    CHECK(bowl_now < (around > 12 ? 0.6 : 0.3) * bowl_error);         // the rim keeps its pieces
+    capsule_error = capsule_now;
+    bowl_error = bowl_now;
+  }
+  CHECK(capsule_error < 0.002);
+  CHECK(bowl_error < 0.005);
+  check_closed(capsule(8, 0.3, 0));  // a ball: the middle ring is there once
+  for (const Vec3& x : capsule(8, 0.3, 0).positions) CHECK(x.norm() == Approx(0.3));
+}
+
 TEST_CASE("sizes that make no mesh are refused", "[generate]") {
   CHECK_THROWS_AS(grid(1, 5, 1, 1), InputError);
   CHECK_THROWS_AS(grid(5, 5, 0, 1), InputError);
@@ -136,4 +179,11 @@ TEST_CASE("sizes that make no mesh are refused", "[generate]") {
   CHECK_THROWS_AS(sphere(-1, 1), InputError);
   CHECK_THROWS_AS(sphere(2, -1), InputError);
   CHECK_THROWS_AS(tube(2, 2, 1, 1), InputError);
+  CHECK_THROWS_AS(box({1, 0, 1}), InputError);
+  CHECK_THROWS_AS(turned({{0.1, -1}, {0.5, 0}, {0, 1}}, 5), InputError);
+  CHECK_THROWS_AS(turned({{0, -1}, {0, 0}, {0, 1}}, 5), InputError);
+  CHECK_THROWS_AS(turned(spindle, 2), InputError);
+  CHECK_THROWS_AS(capsule(6, 1, 1), InputError);
+  CHECK_THROWS_AS(capsule(8, 1, -1), InputError);
+  CHECK_THROWS_AS(bowl(8, 1, 0), InputError);
 }

@@ -23,6 +23,18 @@ struct Drop {
   }
 };
 
+// A mass over a plane that keeps it 1 mm away, and rubs.
+struct OverPlane {
+  System system{{0.1}};
+  Constraints constraints;
+  State state;
+
+  OverPlane(double height, const Vec3& v, double friction) : state{0, VecX(Vec3(0, height, 0)), VecX(v)} {
+    system.add(Gravity{});
+    constraints.add(Obstacle{.shape = Plane{}, .friction = friction, .margin = 0.001});
+  }
+};
+
 // Explicit Euler needs h below what the damping over the stiffness allows.
 double step_for(std::string_view name) { return is_explicit(name) ? 4e-4 : 0.01; }
 
@@ -161,17 +173,15 @@ TEST_CASE("what lands does not bounce, whatever the integrator", "[integrators]"
   for (const Method& method : methods()) {
     const std::string& name = method.name;
     for (const double height : {0.05, 0.051, 0.0525, 0.054}) {  // the plane is met anywhere within a step
-      System system({0.1});
-      system.add(Gravity{});
-      Constraints constraints;
-      constraints.add(Obstacle{.shape = Plane{}, .friction = 0.3, .margin = 0.001});
-      State state{0, VecX(Vec3(0, height, 0)), VecX(Vec3(0.3, 0, 0))};
-      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), method.options());
+      OverPlane m(height, {0.3, 0, 0}, 0.3);
+      const State& state = m.state;
+      auto stepper =
+          make_integrator(name, m.system, m.constraints, make_linear_solver("mpcg"), method.options());
       const double h = is_explicit(name) ? 0.002 : 0.01;
       double top = 0;  // after the first contact
       bool landed = false;
       for (int n = 0; n < 40 || !landed; ++n) {
-        REQUIRE(stepper->advance(state, h).done);
+        REQUIRE(stepper->advance(m.state, h).done);
         landed = landed || state.x[1] < 0.0011;
         if (landed) top = std::max(top, state.x[1]);
         CHECK(state.x[1] > 0);
@@ -213,49 +223,46 @@ TEST_CASE("a particle on an incline sticks below the angle of friction and slide
   }
 }
 
-TEST_CASE("friction takes its share of the impact, too, and once", "[integrators]") {
-  // A particle thrown at the surface it touches: the plane bears m (w + g h) in the step of the impact and
-  // m g h in others, and friction takes mu of that, or all there is.
+TEST_CASE("an impact from a hair's breadth: friction takes mu of it in that very step, and once",
+          "[integrators]") {
+  // The plane bears m (w + g h) in the step of the impact and m g h in others, and friction takes mu of that,
+  // or all there is: step by step, and to the digit in the first.
   const double mu = 0.3, w = 1, g = 9.81, h = 0.005;  // w [m/s]: onto the plane
   for (const Method& method : methods()) {
     const std::string& name = method.name;
     for (const double u : {2.0, 0.2}) {
       INFO(method.label << ", thrown along the plane with " << u << " m/s");
-      System system({0.1});
-      system.add(Gravity{});
-      Constraints constraints;
-      constraints.add(Obstacle{.shape = Plane{}, .friction = mu, .margin = 0.001});
-      State state{0, VecX(Vec3(0, 0.001 - 1e-9, 0)), VecX(Vec3(u, -w, 0))};
-      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), method.options());
+      OverPlane m(0.001 - 1e-9, {u, -w, 0}, mu);
+      auto stepper =
+          make_integrator(name, m.system, m.constraints, make_linear_solver("mpcg"), method.options());
       for (int n = 1; n <= 20; ++n) {
-        REQUIRE(stepper->advance(state, h).done);
-        CHECK(state.v[0] ==
+        REQUIRE(stepper->advance(m.state, h).done);
+        CHECK(m.state.v[0] ==
               Approx(std::max(u - mu * (w + g * h * n), 0.0)).margin(n == 1 ? 1e-6 : mu * g * h));
-        CHECK(std::abs(state.v[1]) < 1e-9);
-        CHECK(state.x[1] == Approx(0.001).margin(1e-8));
+        CHECK(std::abs(m.state.v[1]) < 1e-9);
+        CHECK(m.state.x[1] == Approx(0.001).margin(1e-8));
       }
     }
   }
 }
 
-TEST_CASE("what falls onto a surface loses mu g of its sliding a second, wherever in a step it lands",
-          "[integrators]") {
-  // All that gravity gave it the surface has taken, and friction mu of that.
+TEST_CASE(
+    "a landing in the middle of a step, that is foreseen or caught: friction is neither lost nor doubled",
+    "[integrators]") {
+  // By the end the surface has taken all that gravity gave, and friction mu of that; how the impact is shared
+  // out among the steps around it is the integrator's affair.
   const double mu = 0.3, g = 9.81;
   for (const Method& method : methods()) {
     const std::string& name = method.name;
     const double h = is_explicit(name) ? 0.002 : 0.005;
     for (const double height : {0.05, 0.051, 0.0525, 0.054, 0.0557}) {
       INFO(method.label << " from " << height << " m");
-      System system({0.1});
-      system.add(Gravity{});
-      Constraints constraints;
-      constraints.add(Obstacle{.shape = Plane{}, .friction = mu, .margin = 0.001});
-      State state{0, VecX(Vec3(0, height, 0)), VecX(Vec3(2, 0, 0))};
-      auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), method.options());
-      while (state.time < 0.3 - 1e-9) REQUIRE(stepper->advance(state, h).done);
+      OverPlane m(height, {2, 0, 0}, mu);
+      auto stepper =
+          make_integrator(name, m.system, m.constraints, make_linear_solver("mpcg"), method.options());
+      while (m.state.time < 0.3 - 1e-9) REQUIRE(stepper->advance(m.state, h).done);
       const double impact = std::sqrt(2 * g * height);  // m/s
-      CHECK(state.v[0] == Approx(2 - mu * g * 0.3).margin(0.2 * mu * impact));
+      CHECK(m.state.v[0] == Approx(2 - mu * g * 0.3).margin(0.2 * mu * impact));
     }
   }
 }
@@ -326,6 +333,14 @@ TEST_CASE("what is held during a step neither moves nor accelerates where it is 
   CHECK(std::abs(a[1]) < 1e-14);
   CHECK(a[0] > 1);
   CHECK(a.segment<3>(6).norm() == 0);
+  CHECK(std::abs(motion.power()) < 1e-13);  // what holds them stands still
+
+  VecX driven = v;  // as by bodies that move: they give what the forces take
+  driven.segment<3>(0) = Vec3(0, 3, 0);
+  driven.segment<3>(6) = Vec3(0.5, -2, 1);
+  motion.acceleration(state.x, driven, a);
+  const VecX f = system.force(state.x, driven);
+  CHECK(motion.power() == Approx(-3 * f[1] - Vec3(0.5, -2, 1).dot(f.segment<3>(6))));
 }
 
 TEST_CASE("contact is of first order in the time step, whatever the integrator", "[integrators]") {

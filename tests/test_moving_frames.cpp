@@ -57,7 +57,7 @@ struct Walk : Folder {
     return make_simulation(read_scene(scene(keys), {}));
   }
   Shape body(const std::string& keys) const {
-    return simulation(keys).constraints->obstacles().front().shape;
+    return simulation(keys).constraints->bodies().front().obstacle().shape;
   }
 };
 

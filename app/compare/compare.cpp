@@ -176,6 +176,8 @@ int compare(const std::filesystem::path& path, const CompareWords& words, const 
     for (const SolverRow& row : comparison.rows)
       if (!row.agrees) std::fprintf(stderr, "error: %s: %s\n", row.solver.c_str(), row.verdict.c_str());
   if (!comparison.failure.empty()) std::fprintf(stderr, "error: %s\n", one_line(comparison.failure).c_str());
+  for (const IntegratorRow& run : comparison.runs)
+    if (!run.failure.empty()) std::fprintf(stderr, "error: %s\n", one_line(line_of(run, comparison)).c_str());
   return comparison.agree() ? 0 : 1;
 }
 

@@ -6,8 +6,8 @@
 
 namespace drape {
 
-// The scene may be empty when sizes are given. Exit code: 0 all agree; 1 a solver differs, or the run failed;
-// 130 interrupted, and nothing is written. Throws InputError.
+// The scene may be empty when sizes are given. Exit code: 0 all agree; 1 a solver differs, or the run or one
+// of an integrator failed; 130 interrupted, and nothing is written. Throws InputError.
 int compare(const std::filesystem::path& scene, const CompareWords& words, const CommonOptions& common);
 
 }  // namespace drape

@@ -27,19 +27,24 @@ std::optional<double> exponent(const std::vector<double>& x, const std::vector<d
 
 std::string_view name(DiffersBy cause) {
   switch (cause) {
-    case DiffersBy::nothing:
+    case DiffersBy::reference:
       return "reference";
+    case DiffersBy::nothing:
+      return "no difference";
     case DiffersBy::linear_algebra:
       return "linear algebra only";
     case DiffersBy::time_integration:
       return "time integration";
+    case DiffersBy::not_known:
+      return "not known";
   }
   return "";
 }
 
 bool Comparison::agree() const {
   return failure.empty() &&
-         std::all_of(rows.begin(), rows.end(), [](const SolverRow& r) { return r.agrees; });
+         std::all_of(rows.begin(), rows.end(), [](const SolverRow& r) { return r.agrees; }) &&
+         std::all_of(runs.begin(), runs.end(), [](const IntegratorRow& r) { return r.failure.empty(); });
 }
 
 std::vector<Growth> growth_of(const Comparison& comparison) {

@@ -55,7 +55,9 @@ struct SolverRow {
   std::vector<double> history;  // relative residual of every iteration, from 0
 };
 
-enum class DiffersBy { nothing, linear_algebra, time_integration };
+// reference: it is what the others are compared with. nothing: the same to the last bit. not_known: it
+// failed.
+enum class DiffersBy { reference, nothing, linear_algebra, time_integration, not_known };
 std::string_view name(DiffersBy cause);
 
 // One run of an integrator.
@@ -94,6 +96,7 @@ struct Comparison {
   std::vector<Growth> growth;
   std::string failure;  // of the path, empty: it reached its last step
 
+  // Every solver agrees, and nothing failed: the path and all runs.
   bool agree() const;
 };
 

@@ -141,7 +141,7 @@ std::string integrators_csv(const Comparison& comparison) {
 }
 
 CompareFiles::CompareFiles(std::filesystem::path folder) : folder_(std::move(folder)) {
-  make_output_folder(folder_);
+  make_output_folder(folder_, {"compare.json", "compare.csv", "compare-integrators.csv", "compare.html"});
 }
 
 void CompareFiles::write(const Comparison& comparison) {

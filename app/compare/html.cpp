@@ -84,7 +84,7 @@ Plot work_precision(const Comparison& comparison) {
   Series others{"other linear solvers", {}, {}, false};
   for (const IntegratorRow& row : comparison.runs) {
     if (!row.max_distance || row.reference) continue;
-    if (row.differs_by == DiffersBy::linear_algebra) {
+    if (row.solver != comparison.reference_solver) {
       others.x.push_back(row.wall_ms / 1000);
       others.y.push_back(*row.max_distance);
       continue;

@@ -108,12 +108,19 @@ const Run* reference_of(const std::vector<Run>& runs, const CompareOptions& opti
   return nullptr;
 }
 
+// What a run lies off by; solver: the reference's.
+DiffersBy cause_of(const IntegratorRow& row, const std::string& solver) {
+  if (!row.failure.empty()) return DiffersBy::not_known;
+  if (row.reference) return DiffersBy::reference;
+  const bool same_solver = row.solver == solver;
+  if ((same_solver ? row.max_distance : row.same_run_distance) == 0) return DiffersBy::nothing;
+  return same_solver ? DiffersBy::time_integration : DiffersBy::linear_algebra;
+}
+
 void measure_distances(std::vector<Run>& runs, const CompareOptions& options, const std::string& solver) {
   const Run* const reference = reference_of(runs, options, solver);
   for (Run& run : runs) {
     run.row.reference = &run == reference;
-    if (run.row.reference) run.row.differs_by = DiffersBy::nothing;
-    if (run.row.solver != solver) run.row.differs_by = DiffersBy::linear_algebra;
     if (run.x.size() == 0 || !reference) continue;
     const Distance d = distance(run.x, reference->x);
     run.row.max_distance = d.max;
@@ -124,6 +131,7 @@ void measure_distances(std::vector<Run>& runs, const CompareOptions& options, co
           other.row.integrator == run.row.integrator && other.row.time_step == run.row.time_step)
         run.row.same_run_distance = distance(run.x, other.x).max;
   }
+  for (Run& run : runs) run.row.differs_by = cause_of(run.row, solver);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ struct LinearSystem {
 
 struct Recording {
   bool on = false;                   // off: nothing is copied
+  bool keep_first = false;           // of several solves, the system of the first stays
   std::optional<LinearSystem> last;  // the last system solved while on
 };
 
@@ -32,7 +33,8 @@ class RecordingSolver final : public LinearSolver {
 
   LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
                      VecX& dv) override {
-    if (!recording_.on) return solver_->solve(A, b, filter, options, dv);
+    if (!recording_.on || (recording_.keep_first && recording_.last))
+      return solver_->solve(A, b, filter, options, dv);
     recording_.last = LinearSystem{A, b, filter, options, dv, {}};
     recording_.last->options.history = nullptr;
     LinearReport report = solver_->solve(A, b, filter, options, dv);

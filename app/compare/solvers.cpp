@@ -41,22 +41,30 @@ std::optional<double> influence(LinearSolver& solver, const LinearSystem& system
   return g.norm();
 }
 
-// What a row differs by, in words; `asked`: the relative residual that would have done.
-std::string difference_text(const SolverRow& row, const std::string& where, double asked, bool held) {
-  std::string text = "differ: " + where + "step " + std::to_string(row.step);
+// Each of the three things that a verdict asks for.
+struct Fulfilled {
+  bool residual, constraints, difference;
+  bool all() const { return residual && constraints && difference; }
+};
+
+// What a row differs by, in words, the reasons first; `asked`: the relative residual that would have done.
+std::string difference_text(const SolverRow& row, const std::string& where, double asked,
+                            const Fulfilled& fulfilled) {
+  const std::string start = "differ: " + where + "step " + std::to_string(row.step) + ", ";
   const std::string reason(name(row.report.reason));
-  if (!row.failure.empty()) return text + ", failed: " + row.failure;
-  if (!row.finite) return text + ", not finite numbers (" + reason + ")";
+  if (!row.failure.empty()) return start + "failed: " + row.failure;
+  if (!row.finite) return start + "not finite numbers (" + reason + ")";
+  std::string text;
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
+  if (!fulfilled.residual)
+    add("residual " + rounded(row.residual, 2) + ", asked " + rounded(asked, 2) +
+        (row.report.reason == StopReason::converged ? "" : " (" + reason + ")"));
+  if (!fulfilled.constraints) add("a constraint is missed by " + rounded(row.violation, 2) + " m/s");
   if (row.difference > 0)
-    text += ", vertex " + std::to_string(row.vertex) + " of cloth '" + row.cloth + "', by " +
-            rounded(row.difference, 2) + " m/s (allowed " +
-            (row.allowed ? rounded(*row.allowed, 2) + " m/s" : "not known") + ")";
-  if (!(row.residual <= asked)) {
-    text += "; residual " + rounded(row.residual, 2) + ", asked " + rounded(asked, 2);
-    if (row.report.reason != StopReason::converged) text += " (" + reason + ")";
-  }
-  if (!held) text += "; a constraint is missed by " + rounded(row.violation, 2) + " m/s";
-  return text;
+    add((fulfilled.difference ? "the difference is largest at vertex " : "vertex ") +
+        std::to_string(row.vertex) + " of cloth '" + row.cloth + "', by " + rounded(row.difference, 2) +
+        " m/s (allowed " + (row.allowed ? rounded(*row.allowed, 2) + " m/s" : "not known") + ")");
+  return start + text;
 }
 
 }  // namespace
@@ -198,10 +206,11 @@ void SolverBench::find_difference(SolverRow& row, const VecX& difference, const 
 // largest: of the most accurate dv [m/s].
 void SolverBench::pass_verdict(SolverRow& row, double largest) const {
   const double asked = std::max(tolerance_, finest_tolerance);
-  const bool held = row.violation <= finest_tolerance * (largest + 1);
-  const bool explained = !row.allowed || row.difference <= *row.allowed;
-  row.agrees = row.finite && row.residual <= residual_slack * asked && held && explained;
-  row.verdict = row.agrees ? "agree" : difference_text(row, where_, asked, held);
+  const Fulfilled fulfilled = {row.residual <= residual_slack * asked,
+                               row.violation <= finest_tolerance * (largest + 1),
+                               !row.allowed || row.difference <= *row.allowed};
+  row.agrees = row.finite && fulfilled.all();
+  row.verdict = row.agrees ? "agree" : difference_text(row, where_, asked, fulfilled);
 }
 
 }  // namespace drape

@@ -158,8 +158,7 @@ Names verdicts_of_solvers(const Comparison& comparison) {
 
 Names verdicts_of_runs(const Comparison& comparison) {
   Names lines;
-  for (const IntegratorRow& run : comparison.runs)
-    lines.push_back(name_of(run) + ": " + verdict_of(run, comparison));
+  for (const IntegratorRow& run : comparison.runs) lines.push_back(line_of(run, comparison));
   return lines;
 }
 
@@ -173,18 +172,23 @@ Names verdicts(const Comparison& comparison) {
 
 std::string verdict_of(const IntegratorRow& run, const Comparison& comparison) {
   if (!run.failure.empty()) return "failed after " + rounded(run.end, 4) + " s: " + run.failure;
-  if (run.differs_by == DiffersBy::nothing) return "the reference";
-  if (run.differs_by == DiffersBy::linear_algebra) {
+  if (run.reference) return "the reference";
+  if (run.solver != comparison.reference_solver) {
     const std::string same_run = " the same run with " + comparison.reference_solver;
+    if (run.differs_by == DiffersBy::nothing) return "no difference from" + same_run;
     if (!run.same_run_distance) return "differs by linear algebra only from" + same_run + ", which failed";
-    if (*run.same_run_distance == 0) return "no difference from" + same_run;
     return "differs by linear algebra only: " + rounded(*run.same_run_distance, 2) + " m from" + same_run;
   }
   const auto reference = std::find_if(comparison.runs.begin(), comparison.runs.end(),
                                       [](const IntegratorRow& other) { return other.reference; });
   if (reference == comparison.runs.end() || !run.max_distance) return "there is no reference to differ from";
-  return "differs by time integration: " + rounded(*run.max_distance, 2) + " m from the reference (" +
-         name_of(*reference) + ")";
+  const std::string from = " from the reference (" + name_of(*reference) + ")";
+  if (run.differs_by == DiffersBy::nothing) return "no difference" + from;
+  return "differs by time integration: " + rounded(*run.max_distance, 2) + " m" + from;
+}
+
+std::string line_of(const IntegratorRow& run, const Comparison& comparison) {
+  return name_of(run) + ": " + verdict_of(run, comparison);
 }
 
 std::string text_of(const Comparison& comparison) {

@@ -16,6 +16,7 @@ Names headline(const Comparison& comparison);  // what was compared
 std::vector<ReportTable> tables_of(const Comparison& comparison);
 Names verdicts(const Comparison& comparison);  // "mpcg: agree", or all that it differs by; then the runs
 std::string verdict_of(const IntegratorRow& run, const Comparison& comparison);
+std::string line_of(const IntegratorRow& run, const Comparison& comparison);  // which run, and its verdict
 
 std::string text_of(const Comparison& comparison);
 

@@ -1,5 +1,6 @@
 // The matrix of the next coarser level, A_c = P^T A P, and what it is made of.       [Gustavson 1978]
-//   Of the symmetric A_c only the upper triangle is computed, so that it is symmetric to the last bit.
+//   Of the symmetric A_c only the upper triangle is computed, and of a block on the diagonal its lower half
+//   alone counts: so it is symmetric to the last bit.
 #pragma once
 
 #include "solver/linear/mirror.h"
@@ -36,8 +37,9 @@ void transpose(const BlockRows& P, int columns, BlockRows& R);
 
 class Galerkin {
  public:
-  // R = P^T. A direction that no vertex of an aggregate may take has no stiffness: it gets a little, and
-  // stays at zero.
+  // R = P^T. A direction that no vertex of an aggregate may take has no stiffness, and nothing pushes along
+  // it: so that it can be divided by, every diagonal block gets a little, 2e-7 of its trace in each direction
+  // (1 kg where there is no trace).
   const SymmetricRows& coarse(const Smoother& A, const BlockRows& P, const BlockRows& R);
 
  private:

@@ -3,10 +3,10 @@
 //   level: x = smooth down (r);  x += P V(P^T (r - A x));  x = smooth up (r, x);    next level: A_c = P^T A P
 // Our own, because it beat PETSc's GAMG on these matrices (tests/bench measures both): blocks of whole
 // vertices, kept in float, and threads that do not change a bit. The finest level is made for every system:
-// it knows what is held. The coarser ones are kept from step to step while they still work: while the
-// iterations for a decade of the residual stay within a third more than when they were new. Once they do not,
-// even in the middle of a solve, they are built anew. (Waiting longer, for as many iterations as a set-up
-// takes time, was slower in every gallery scene.)
+// it knows what is held. The coarser ones are kept from step to step while they still work: while a solve
+// takes at most a third, and four, more iterations than the same decades of the residual (at least one) took
+// when they were new. Once it does not, even in the middle of a solve, they are built anew. (Waiting longer,
+// for as many iterations as a set-up takes time, was slower in every gallery scene.)
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>

@@ -8,9 +8,10 @@
 //         2015]
 // In exact arithmetic both take the same steps; so the loop stands here once, and they differ in what they
 // begin from and in what is added at the end.
+#include "solver/linear/pcg.h"
+
 #include <cmath>
 
-#include "solver/linear/preconditioner.h"
 #include "solver/linear/residual.h"
 #include "solver/stopwatch.h"
 

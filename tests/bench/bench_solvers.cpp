@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "app/compare/recording_solver.h"
 #include "mesh/threads.h"
 #include "solver/linear/projected.h"
 #include "tests/bench/bench.h"
@@ -21,45 +22,21 @@ namespace {
 using namespace drape;
 using namespace drape::bench;
 
-struct LinearSystem {
-  BlockMatrix A;
-  VecX b, guess;
-  Filter filter;
-  LinearOptions options;
-};
-
-// Keeps the first system that it solves while there is none.
-class Recorder final : public LinearSolver {
- public:
-  Recorder(std::unique_ptr<LinearSolver> inner, std::unique_ptr<LinearSystem>& first)
-      : inner_(std::move(inner)), first_(first) {}
-  std::string_view name() const override { return "recorder"; }
-  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
-                     VecX& dv) override {
-    if (!first_) first_ = std::make_unique<LinearSystem>(LinearSystem{A, b, dv, filter, options});
-    return inner_->solve(A, b, filter, options, dv);
-  }
-
- private:
-  std::unique_ptr<LinearSolver> inner_;
-  std::unique_ptr<LinearSystem>& first_;
-};
-
-std::unique_ptr<LinearSystem> hung_sheet(int side) {
+LinearSystem hung_sheet(int side) {
   Sheet sheet(side, 2000);
-  std::unique_ptr<LinearSystem> first;
+  Recording recording{.keep_first = true, .last = {}};
   ImplicitEuler stepper(sheet.system, sheet.constraints,
-                        std::make_unique<Recorder>(make_linear_solver("ppcg+multigrid"), first),
+                        std::make_unique<RecordingSolver>(make_linear_solver("ppcg+multigrid"), recording),
                         {.tolerance = 1e-3});
   for (int k = 0; k < 60; ++k) stepper.advance(sheet.state, 0.01);
-  first.reset();
+  recording.on = true;
   stepper.advance(sheet.state, 0.01);
-  return first;
+  return std::move(*recording.last);
 }
 
 struct Timing {
   double fresh = 0, again = 0;
-  LinearReport report;
+  std::optional<LinearReport> report;  // none where only the time was taken
 };
 
 Timing time_solver(std::string_view name, const LinearSystem& system, double tolerance, int repeats) {
@@ -94,9 +71,11 @@ Filter sliding(const BlockPattern& pattern) {
 
 void print(const char* name, const char* what, const LinearSystem& system, double tolerance, const Timing& r,
            double mpcg) {
-  std::printf("%9d %-8s %7d %9.0e %16s %11d %11.2f %11.2f %9.2f %10.1e  %s\n", system.A.rows(), what,
-              threads(), tolerance, name, r.report.iterations, r.fresh, r.again, r.fresh / mpcg,
-              r.report.residual, r.report.note.c_str());
+  char residual[16] = "-";
+  if (r.report) std::snprintf(residual, sizeof residual, "%.1e", r.report->residual);
+  std::printf("%9d %-8s %7d %9.0e %16s %11s %11.2f %11.2f %9.2f %10s  %s\n", system.A.rows(), what, threads(),
+              tolerance, name, r.report ? std::to_string(r.report->iterations).c_str() : "-", r.fresh,
+              r.again, r.fresh / mpcg, residual, r.report ? r.report->note.c_str() : "");
   std::fflush(stdout);
 }
 
@@ -159,20 +138,20 @@ void bench_case(const char* what, const LinearSystem& system, double tolerance) 
 }
 
 void bench_size(int side) {
-  auto system = hung_sheet(side);
+  LinearSystem system = hung_sheet(side);
   const int most = threads();
   for (double tolerance : {1e-3, 1e-6})
     for (int t = 1; t <= std::min(most, 2); ++t) {
       if (tolerance < 1e-3 && side > 320) continue;  // minutes
       set_threads(t);
-      bench_case("hung", *system, tolerance);
+      bench_case("hung", system, tolerance);
     }
   set_threads(1);
   if (side >= 100 && side <= 320) {
-    system->filter = {};
-    bench_case("no pins", *system, 1e-3);
-    system->filter = sliding(system->A.pattern());
-    bench_case("sliding", *system, 1e-3);
+    system.filter = {};
+    bench_case("no pins", system, 1e-3);
+    system.filter = sliding(system.A.pattern());
+    bench_case("sliding", system, 1e-3);
   }
   set_threads(most);
 }

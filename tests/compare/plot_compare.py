@@ -18,7 +18,7 @@ from pathlib import Path
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"]
 MARKERS = "osD^v<>"
 ROW_KEYS = {"vertices", "step", "solver", "total_ms", "iterations", "residual", "history"}
-RUN_KEYS = {"integrator", "solver", "time_step", "wall_ms", "max_distance", "reference", "differs_by"}
+RUN_KEYS = {"integrator", "solver", "time_step", "wall_ms", "max_distance", "reference"}
 
 
 class BadInput(Exception):
@@ -133,7 +133,7 @@ def plot_work_precision(plt, files, names, target):
         for run in data.get("runs", []):
             if run["reference"] or not run["max_distance"] or not run["wall_ms"] > 0:
                 continue
-            linear = run["differs_by"] == "linear algebra only"
+            linear = run["solver"] != data.get("linear_solver")
             label = "other linear solvers" if linear else run["integrator"]
             if len(files) > 1:
                 label = f"{name}: {label}"

@@ -1,0 +1,105 @@
+// What every integrator keeps, and what it loses as its scheme does: spin, momentum, energy, rest.
+#include "tests/integrators.h"
+
+using namespace drape;
+using namespace drape::test;
+
+TEST_CASE("a rotor loses spin as its scheme does, and momentum stays", "[integrators]") {
+  // validation.md 4.13: h = 0.01 s, 5 rad/s, 1 s, the equations solved.
+  for (const std::string& name : integrator_names()) {
+    System system({1.0, 1.0});
+    const double k = is_explicit(name) ? 1e3 : 1e6, h = is_explicit(name) ? 1e-3 : 0.01;
+    system.add(std::make_unique<PairForce<TensionSpring>>(
+        std::vector<PairForce<TensionSpring>::Element>{{0, 1, {1, k}}}));
+    Constraints constraints;
+    StepOptions options = precise();
+    options.newton_iterations = 30;
+    options.newton_tolerance = 0;
+    auto stepper = make_integrator(name, system, constraints, make_linear_solver("eigen-ldlt"), options);
+    State state{0, VecX::Zero(6), VecX::Zero(6)};
+    const double stretch = 0.5 * 25 / k;  // m w^2 r = k (2 r - 1), almost
+    state.x << -0.5 - 0.5 * stretch, 0, 0, 0.5 + 0.5 * stretch, 0, 0;
+    state.v << 0.7, -2.5, 0, 0.7, 2.5, 0;
+    const auto spin = [&] {
+      const Vec3 arm = state.x.segment<3>(3) - state.x.segment<3>(0);
+      const Vec3 velocity = state.v.segment<3>(3) - state.v.segment<3>(0);
+      return arm.cross(velocity).z();
+    };
+    const double before = spin();
+    const int steps = static_cast<int>(std::lround(1 / h));
+    for (int n = 0; n < steps; ++n) REQUIRE(stepper->advance(state, h).done);
+    INFO(name);
+    if (name == "implicit-euler" || name == "newton-kinsol")
+      CHECK(spin() / before == Approx(0.8165).epsilon(2e-3));
+    else if (name == "bdf2")
+      CHECK(spin() / before == Approx(0.99661).epsilon(1e-3));
+    else if (name == "symplectic-euler")
+      CHECK(spin() / before == Approx(1).epsilon(1e-12));
+    else if (name == "explicit-euler")
+      CHECK(spin() / before > 1);
+    else
+      CHECK(spin() / before == Approx(1).epsilon(1e-3));
+    CHECK(0.5 * (state.v[0] + state.v[3]) == Approx(0.7).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("the implicit schemes make no energy", "[integrators]") {
+  for (const char* name : {"implicit-euler", "bdf2"}) {
+    HungSheet sheet(12, 300, 0);
+    auto stepper = make_integrator(name, sheet.system, sheet.constraints, make_linear_solver("mpcg"),
+                                   {.newton_iterations = 20, .newton_tolerance = 1e-9, .tolerance = 1e-9});
+    double most = sheet.energy();
+    const double start = most, fall = 0.2 * 9.81 * 0.5;  // J: what there is to gain
+    for (int n = 0; n < 150; ++n) {
+      REQUIRE(stepper->advance(sheet.state, 0.01).done);
+      most = std::max(most, sheet.energy());
+    }
+    INFO(name << ": " << (most - start) / fall << ", " << (sheet.energy() - start) / fall);
+    CHECK(most - start < 1e-3 * fall);
+    CHECK(sheet.energy() - start < -0.1 * fall);
+  }
+}
+
+TEST_CASE("a sheet without gravity at rest, or drifting, is left alone", "[integrators]") {
+  // Nothing sets the scale here: what is left of forces and energies is round-off, and is not to be fought.
+  for (const std::string& name : integrator_names()) {
+    for (const double speed : {0.0, 1e-3, 0.5}) {
+      for (const double stretch : {10.0, 1e5}) {
+        if (stretch > 10 && (is_explicit(name) || name == "cvode-adams" || name == "arkode-erk")) continue;
+        for (const int newton : {1, 5}) {
+          if (newton > 1 && (order_of(name) == 0 || is_explicit(name))) continue;  // they know no such option
+          const TriangleMesh mesh = grid(9, 9, 0.6, 0.6);
+          System system(lumped_mass(mesh, 0.15));
+          system.add(noh_jung(mesh, {.area_density = 0.15, .stretch = stretch, .bend = 1e-5}));
+          Constraints constraints;
+          State state = at_rest(mesh);
+          for (int i = 0; i < state.particles(); ++i) {
+            state.x.segment<3>(3 * i) = rotation(0.4, {1, 2, 3}) * state.x.segment<3>(3 * i) + Vec3(3, -7, 5);
+            state.v.segment<3>(3 * i) = speed * Vec3(0.6, 0, -0.8);
+          }
+          const State start = state;
+          const StepOptions options{.newton_iterations = newton,
+                                    .relative_tolerance = 1e-8,
+                                    .absolute_tolerance_position = 1e-7,
+                                    .absolute_tolerance_velocity = 1e-5};
+          auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), options);
+          INFO(name << ", " << speed << " m/s, " << stretch << " N/m, " << newton << " iterations");
+          const double h = is_explicit(name) ? 0.002 : 0.01;
+          for (int n = 0; n < 15; ++n) {
+            const StepReport report = stepper->advance(state, h);
+            INFO("step " << n << ": " << report.failure.what);
+            REQUIRE(report.done);
+            CHECK(report.failure.what.empty());
+            CHECK(report.converged);
+            CHECK(report.rescues == 0);
+            CHECK(report.substeps == 1);
+          }
+          // Inner steps let vibrations grow to the tolerance of their positions.
+          const double off = order_of(name) == 0 ? 1e-4 : 1e-9;
+          CHECK((state.x - start.x - 15 * h * start.v).cwiseAbs().maxCoeff() < 1e-3 * speed + off);
+          if (order_of(name) != 0) CHECK((state.v - start.v).cwiseAbs().maxCoeff() < 1e-3 * speed + off);
+        }
+      }
+    }
+  }
+}
