@@ -93,8 +93,11 @@ SurfacePoint closest(const Capsule& capsule, const Vec3& x) {
 
 SurfacePoint closest(const MeshBody& body, const Vec3& x) { return body->closest(x); }
 
+SurfacePoint closest(const LevelSetBody& body, const Vec3& x) { return body->closest(x); }
+
 bool convex(const Shape& shape) {
-  return !std::holds_alternative<Bowl>(shape) && !std::holds_alternative<MeshBody>(shape);
+  return !std::holds_alternative<Bowl>(shape) && !std::holds_alternative<MeshBody>(shape) &&
+         !std::holds_alternative<LevelSetBody>(shape);
 }
 
 // f and f' at a place of the path.
@@ -219,7 +222,7 @@ void check_bowl(const Bowl& bowl) {
 }  // namespace
 
 std::string_view name(const Shape& shape) {
-  constexpr std::string_view names[] = {"plane", "sphere", "bowl", "box", "capsule", "mesh"};
+  constexpr std::string_view names[] = {"plane", "sphere", "bowl", "box", "capsule", "mesh", "level-set"};
   static_assert(std::variant_size_v<Shape> == std::size(names));
   return names[shape.index()];
 }
@@ -249,6 +252,9 @@ void check(const Shape& shape) {
                    [](const Capsule& capsule) { check_capsule(capsule); },
                    [](const MeshBody& body) {
                      if (!body) throw InputError("mesh: there is no surface");
+                   },
+                   [](const LevelSetBody& body) {
+                     if (!body) throw InputError("level-set: there is no grid");
                    }},
              shape);
 }

@@ -13,11 +13,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <tuple>
 
 #include "mesh/obj.h"
+#include "mesh/topology.h"
 
 namespace drape {
 namespace {
@@ -66,19 +66,6 @@ std::pair<Vec3, int> closest_on_triangle(const Vec3& x, const Vec3& a, const Vec
     return {b + along_b / (along_b + along_c) * bc, on_edge + 1};
   const double scale = 1 / n.squaredNorm();
   return {a + beside_ca * scale * ab + beside_ab * scale * ac, on_face};
-}
-
-// For each vertex the first one at the same place.
-std::vector<int> welded(const std::vector<Vec3>& positions) {
-  std::vector<int> order(positions.size()), first(positions.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto key = [&](int i) { return std::tuple(positions[i].x(), positions[i].y(), positions[i].z(), i); };
-  std::sort(order.begin(), order.end(), [&](int i, int j) { return key(i) < key(j); });
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const bool same = k > 0 && positions[order[k]] == positions[order[k - 1]];
-    first[order[k]] = same ? first[order[k - 1]] : order[k];
-  }
-  return first;
 }
 
 // Triangles of three different vertices, each once, in the mesh's order.
