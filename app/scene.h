@@ -41,8 +41,9 @@ struct ClothEntry {
 struct ObstacleEntry {
   std::string name;
   Obstacle obstacle;           // a mesh's shape is null until it is loaded
-  std::filesystem::path mesh;  // OBJ, of the shape "mesh"
+  std::filesystem::path mesh;  // OBJ, of the shapes "mesh" and "level-set"; of the latter also .vdb
   Placement placement;         // of the mesh
+  double voxel = 0;            // m, of the level set; 0: chosen
   std::string where;
 };
 
@@ -78,5 +79,6 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const std::fil
 
 Names shape_names();
 Names model_names();
+bool is_vdb(const std::filesystem::path& path);  // by its extension
 
 }  // namespace drape

@@ -18,7 +18,7 @@ constexpr double least_band = 3;  // voxels
 
 std::string short_number(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.3g", std::abs(value) < 1e-9 ? 0.0 : value);
+  std::snprintf(text, sizeof text, "%.3g", std::abs(value) < 1e-5 ? 0.0 : value);
   return text;
 }
 
@@ -78,10 +78,10 @@ LevelSet LevelSet::read(const std::filesystem::path& path, double scale) {
       .moved(Mat3::Identity(), file.origin);
 }
 
-void LevelSet::write(const std::filesystem::path& path) const {
+std::string LevelSet::vdb() const {
   if (!rotation_.isIdentity(0) || !translate_.isZero(0))
     throw std::logic_error("a level set is written where it was made");
-  write_vdb(path, *grid_);
+  return format_vdb(*grid_);
 }
 
 LevelSet LevelSet::moved(const Mat3& rotation, const Vec3& translate) const {

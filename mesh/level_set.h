@@ -2,10 +2,10 @@
 // smooth.
 //   phi(x)  quadratic B-spline fitted to the distances at the nodes of a regular grid (spacing `voxel`): C1
 //   n(x)    its gradient, normalised; |grad phi| is within a few percent of 1 away from creases
-// Nodes within `band` of the surface hold the exact distance (mesh/surface_distance.h), in float.
-// Beyond the band:
+// Nodes within `band` outside the surface and 10 voxels inside hold the exact distance, in float
+// (mesh/surface_distance.h). Beyond them:
 //   outside  a lower bound of the distance that is at least `band`
-//   inside   a coarser spline, with nodes every 8 voxels: good to a voxel or two, -band at the least deep
+//   inside   a coarser spline, with nodes every 8 voxels: good to some voxels, and a way out
 // Errors, with h the voxel: third order in h where the surface is smooth, about h / 8 at edges; what is
 // thinner than h to 2 h has no inside any more.
 //
@@ -47,7 +47,8 @@ class LevelSet {
   // A file of ours, or any level set of uniform voxels (float; the first such grid). What a file does not
   // hold is made from its zero surface. All lengths are multiplied by `scale`. Throws InputError.
   static LevelSet read(const std::filesystem::path& path, double scale = 1);
-  void write(const std::filesystem::path& path) const;  // not atomic; throws InputError; not of a moved one
+  std::string vdb()
+      const;  // what a .vdb file of it holds; throws InputError without OpenVDB; not of a moved one
 
   // x -> rotation x + translate: the same grid at another place.
   LevelSet moved(const Mat3& rotation, const Vec3& translate) const;

@@ -6,6 +6,7 @@
 #include "mesh/obj.h"
 
 #ifdef DRAPE_HAVE_OPENVDB
+#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tools/VolumeToMesh.h>
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <sstream>
 #endif
 
 namespace drape {
@@ -275,11 +277,12 @@ VdbFile read_vdb(const std::filesystem::path& path, double scale) {
   return result;
 }
 
-void write_vdb(const std::filesystem::path& path, const VoxelGrid& grid) {
-  with_openvdb(path, "cannot be written", [&] {
-    vdb::io::File file(path.string());
-    file.write(vdb::GridCPtrVec{surface_of(grid), far_of(grid), near_of(grid)});
+std::string format_vdb(const VoxelGrid& grid) {
+  std::ostringstream bytes(std::ios::binary);
+  with_openvdb("the level set", "cannot be written", [&] {
+    vdb::io::Stream(bytes).write(vdb::GridCPtrVec{surface_of(grid), far_of(grid), near_of(grid)});
   });
+  return std::move(bytes).str();
 }
 
 #else
@@ -294,7 +297,7 @@ namespace {
 
 bool has_openvdb() { return false; }
 VdbFile read_vdb(const std::filesystem::path& path, double) { missing(path); }
-void write_vdb(const std::filesystem::path& path, const VoxelGrid&) { missing(path); }
+std::string format_vdb(const VoxelGrid&) { missing("the level set"); }
 
 #endif
 

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "mesh/voxel_grid.h"
 
@@ -17,8 +18,8 @@ struct VdbFile {
   Vec3 origin = Vec3::Zero();  // m, where the file has node 0; the grid has it at 0
 };
 
-// Throw InputError: no such file, no OpenVDB file, no level set in it; cannot be written; no OpenVDB here.
+// Throw InputError: no such file, no OpenVDB file, no level set in it; no OpenVDB here.
 VdbFile read_vdb(const std::filesystem::path& path, double scale);
-void write_vdb(const std::filesystem::path& path, const VoxelGrid& grid);
+std::string format_vdb(const VoxelGrid& grid);
 
 }  // namespace drape

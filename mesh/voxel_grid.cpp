@@ -140,7 +140,9 @@ SurfacePoint VoxelGrid::closest(const Vec3& x) const {
   const int at = ((i % brick) * held + j % brick) * held + k % brick;  // of the lowest of the 27
   const float* const corner = &coefficients[static_cast<std::size_t>(number) * held_in_brick + at];
   const Jet jet = spline(corner, Weights(p - i - 0.5), Weights(q - j - 0.5), Weights(r - k - 0.5));
-  return {jet.value, unit(jet.gradient)};
+  // Beyond the band half a voxel is taken off, what the spline may be too high by.
+  const double distance = jet.value > band ? std::max(band, jet.value - 0.5 * voxel) : jet.value;
+  return {distance, unit(jet.gradient)};
 }
 
 // Within the grid, where there is no near brick. The distance changes no faster than 1 from the cell's
@@ -155,7 +157,7 @@ SurfacePoint VoxelGrid::beyond(const Vec3& x) const {
   const double centre = far[cell_slot(c)];
   if (centre < 0) {
     const Jet jet = coarse(*this, in_cells);
-    return {std::min(jet.value, -band), unit(jet.gradient)};
+    return {std::min(jet.value, -depth()), unit(jet.gradient)};
   }
   Vec3 rise;
   for (int k = 0; k < 3; ++k) {

@@ -2,13 +2,13 @@
 // Internal.
 //   node i     at voxel * i; a brick is 4 x 4 x 4 of them
 //   cell       2 x 2 x 2 bricks; `far` is the signed distance at its centre
-//   near brick one of which a point may be within `band` of the surface: has its spline's coefficients, and
-//   one
-//              more on every side, so that the 27 of a point lie in one place
+//   near brick one of which a point may be within `band` of the surface, or less than depth() inside: has its
+//              spline's coefficients, and one more on every side, so that the 27 of a point lie in one place
 //   other bricks are held for their distances, where these make a coefficient of a near one
 // z runs fastest everywhere.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -39,7 +39,8 @@ struct VoxelGrid {
       coefficients;  // m, held_in_brick for each near one, and some more so that four can be read
   std::optional<LevelSetError> error;
 
-  int side(int k) const { return cells[k] * cell / brick; }  // bricks along an axis
+  double depth() const { return std::max(band, 10 * voxel); }  // m
+  int side(int k) const { return cells[k] * cell / brick; }    // bricks along an axis
   std::size_t brick_slot(const Index& b) const {
     return (static_cast<std::size_t>(b[0]) * side(1) + b[1]) * side(2) + b[2];
   }

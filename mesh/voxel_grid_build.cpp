@@ -75,15 +75,16 @@ void find_near_bricks(VoxelGrid& grid, const Distance& distance) {
     grid.far[grid.cell_slot(c)] = static_cast<float>(distance(grid.cell_centre(c)));
   });
   const double half_brick = n * half_diagonal * grid.voxel;
-  const double near = (grid.band + half_brick) * (1 + float_error);
-  const double near_cell =
-      (near + half_brick) * (1 + float_error);  // its bricks' centres are half a brick away
+  const auto within = [&](double d, double further) {
+    return std::abs(d) <= ((d < 0 ? grid.depth() : grid.band) + further) * (1 + float_error);
+  };
   grid.bricks.assign(grid.far.size() * 8, VoxelGrid::none);
   for_triples({grid.side(0), grid.side(1), grid.side(2)}, [&](const Index& b) {
-    if (std::abs(grid.far[grid.cell_slot({b[0] / 2, b[1] / 2, b[2] / 2})]) > near_cell) return;
+    const double at_cell = grid.far[grid.cell_slot({b[0] / 2, b[1] / 2, b[2] / 2})];
+    if (!within(at_cell, 2 * half_brick)) return;  // its bricks' centres are half a brick away
     Vec3 centre;
     for (int k = 0; k < 3; ++k) centre[k] = grid.voxel * (grid.first[k] + b[k] * n + 0.5 * (n - 1));
-    if (std::abs(distance(centre)) <= near) grid.bricks[grid.brick_slot(b)] = 0;
+    if (within(distance(centre), half_brick)) grid.bricks[grid.brick_slot(b)] = 0;
   });
 }
 
