@@ -95,6 +95,28 @@ TEST_CASE("a .vdb file gives the same bits back, and scales", "[level-set]") {
   CHECK(twice.error()->largest == 2 * made.error()->largest);
 }
 
+// Ours under another name is somebody else's: only the nodes near the surface are taken from it.
+TEST_CASE("another program's level set is completed from its surface", "[level-set]") {
+  const Folder folder;
+  std::string bytes = LevelSet::from_mesh(sphere(4, 0.3), {.voxel = 0.02}).vdb();
+  const std::size_t at = bytes.find("drape_format");
+  REQUIRE(at != bytes.npos);
+  bytes[at] = 'D';
+  folder.write("other.vdb", bytes);
+  const LevelSet other = LevelSet::read(folder.path / "other.vdb");
+  CHECK(other.band() == Approx(0.06));
+  CHECK_FALSE(other.error());
+  CHECK((other.upper() - Vec3::Constant(0.3)).norm() < 0.01);
+  Random r;
+  for (int i = 0; i < 3000; ++i) {
+    const Vec3 x = r.point(0.8);
+    const double d = x.norm() - 0.3, said = other.closest(x).distance;
+    if (d < 0.06) CHECK(said == Approx(d).margin(d > -0.19 ? 0.005 : 0.1));
+    if (d >= 0.06) CHECK(said <= d + 0.002);
+    if (d < 0.06 && d > -0.19) CHECK((other.closest(x).normal - x.normalized()).norm() < 0.15);
+  }
+}
+
 TEST_CASE("what is no level set is refused", "[level-set]") {
   const Folder folder;
   folder.write("text.vdb", "not a grid\n");
