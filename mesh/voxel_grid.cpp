@@ -94,17 +94,6 @@ Index VoxelGrid::node(const Index& b, const Index& i) const {
   return at;
 }
 
-float VoxelGrid::distance_at(const Index& b, const Index& i) const {
-  Index owner = b, in = i;
-  for (int k = 0; k < 3; ++k) {
-    const int step = in[k] < 0 ? -1 : in[k] >= brick ? 1 : 0;
-    owner[k] += step;
-    in[k] -= step * brick;
-  }
-  return nodes[static_cast<std::size_t>(brick_at(owner)) * in_brick + (in[0] * brick + in[1]) * brick +
-               in[2]];
-}
-
 // A coefficient and its distances reach two nodes beyond a near brick: only the bricks on a node's own side
 // of the middle come into question.
 bool VoxelGrid::needed(const Index& b, const Index& i) const {
@@ -180,7 +169,7 @@ SurfacePoint VoxelGrid::far_away(const Vec3& x) const {
   const SurfacePoint there = beyond(y);
   const Vec3 away = x - y;
   const double d = std::max(there.distance, 0.0);
-  return {std::hypot(away.norm(), d), unit(away + d * there.normal)};
+  return {std::sqrt(away.squaredNorm() + d * d), unit(away + d * there.normal)};
 }
 
 }  // namespace drape

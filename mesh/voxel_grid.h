@@ -49,9 +49,8 @@ struct VoxelGrid {
   }
   std::int32_t brick_at(const Index& b) const;  // none beyond the grid, too
   Vec3 cell_centre(const Index& c) const;
-  Index node(const Index& b, const Index& i) const;         // i: within the brick, from 0
-  float distance_at(const Index& b, const Index& i) const;  // i in [-4, 8)
-  bool needed(const Index& b, const Index& i) const;        // its distance makes a coefficient
+  Index node(const Index& b, const Index& i) const;   // i: within the brick, from 0
+  bool needed(const Index& b, const Index& i) const;  // its distance makes a coefficient
   // Those that are held, in the order of their numbers.
   std::vector<Index> places() const;
 

@@ -117,16 +117,33 @@ void for_cube(int n, const F& f) {
       for (i[2] = 0; i[2] < n; ++i[2]) f(i, slot++);
 }
 
-float coefficient(const VoxelGrid& grid, const Index& b, const Index& i) {
-  const float d = grid.distance_at(b, i);
-  double excess = -6.0 * d;
-  for (int k = 0; k < 3; ++k)
-    for (const int step : {-1, 1}) {
-      Index beside = i;
-      beside[k] += step;
-      excess += grid.distance_at(b, beside);
+// The distances of a near brick and of two nodes more on every side.
+constexpr int around = VoxelGrid::brick + 4;
+using Around = std::array<float, around * around * around>;
+
+void gather(const VoxelGrid& grid, const Index& b, Around& d) {
+  constexpr int n = VoxelGrid::brick;
+  std::array<const float*, 27> bricks;
+  for_cube(3, [&](const Index& to, std::size_t slot) {
+    const std::int32_t number = grid.brick_at({b[0] + to[0] - 1, b[1] + to[1] - 1, b[2] + to[2] - 1});
+    bricks[slot] = &grid.nodes[static_cast<std::size_t>(number) * VoxelGrid::in_brick];
+  });
+  for_cube(around, [&](const Index& i, std::size_t slot) {
+    int brick = 0, node = 0;
+    for (int k = 0; k < 3; ++k) {
+      brick = brick * 3 + (i[k] + n - 2) / n;
+      node = node * n + (i[k] + n - 2) % n;
     }
-  return static_cast<float>(d - excess / 8);
+    d[slot] = bricks[static_cast<std::size_t>(brick)][node];
+  });
+}
+
+float coefficient(const Around& d, const Index& i) {
+  const std::size_t at = (i[0] * around + i[1]) * around + i[2];
+  double excess = -6.0 * d[at];
+  for (const std::size_t step : {around * around, around, 1})
+    excess += static_cast<double>(d[at - step]) + d[at + step];
+  return static_cast<float>(d[at] - excess / 8);
 }
 
 }  // namespace
@@ -145,9 +162,11 @@ void fill_bricks(VoxelGrid& grid, const NodeDistance& distance) {
   });
   grid.coefficients.assign(static_cast<std::size_t>(grid.near_count) * VoxelGrid::held_in_brick + 3, 0.0F);
   for_bricks(grid.near_count, [&](int b) {
+    Around d;
+    gather(grid, places[b], d);
     for_cube(VoxelGrid::held, [&](const Index& i, std::size_t slot) {
       grid.coefficients[static_cast<std::size_t>(b) * VoxelGrid::held_in_brick + slot] =
-          coefficient(grid, places[b], {i[0] - 1, i[1] - 1, i[2] - 1});
+          coefficient(d, {i[0] + 1, i[1] + 1, i[2] + 1});
     });
   });
 }
