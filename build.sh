@@ -33,7 +33,7 @@ die() {
 # --- packages ---------------------------------------------------------------------------------------------------------------
 
 required=(g++ cmake ninja-build libeigen3-dev libembree-dev libtoml11-dev libcli11-dev nlohmann-json3-dev libudunits2-dev libcsv-dev)
-optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev)
+optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev)
 for_tests=(catch2 libtinyobjloader-dev)
 for_format=(clang-format)
 for_lint=(clang-tidy)
@@ -189,9 +189,11 @@ sanitize() {
 bench() {
   get_for_build
   configure_program
-  compile release drape_bench drape_bench_solvers
+  compile release drape_bench drape_bench_contact drape_bench_solvers
   build/release/drape_bench "$@"
-  [[ $# -gt 0 ]] || build/release/drape_bench_solvers 32 100
+  [[ $# -eq 0 ]] || return 0
+  build/release/drape_bench_contact
+  build/release/drape_bench_solvers 32 100
 }
 
 # A difference between solvers is shown at the end; the other comparisons go on.

@@ -160,6 +160,18 @@ void add_compare(CLI::App& app, int& exit_code) {
       [=, &exit_code] { exit_code = compare(words->scene, words->compare, words->run.common(*command)); });
 }
 
+void add_level_set(CLI::App& app, int& exit_code) {
+  CLI::App* const command =
+      app.add_subcommand("level-set", "makes a grid of the distances to a closed mesh, a .vdb file");
+  auto words = std::make_shared<LevelSetWords>();
+  command->add_option("BODY", words->mesh, "OBJ file of a closed body")->required();
+  command->add_option("-o,--out", words->out, "the .vdb file")->type_name("FILE")->required();
+  command->add_option("--voxel", words->voxel, "spacing of the grid, such as \"5 mm\" (chosen from the mesh)")
+      ->type_name("LENGTH");
+  command->add_option("--scale", words->scale, "of the mesh, such as 0.01 for files in cm")->type_name("X");
+  command->callback([=, &exit_code] { exit_code = make_level_set(*words); });
+}
+
 void add_check_and_list(CLI::App& app, int& exit_code) {
   CLI::App* const check =
       app.add_subcommand("check", "validates a scene or examines a mesh; changes nothing");
@@ -198,6 +210,7 @@ int parse_and_run(int argc, char** argv) {
   add_simulate(app, exit_code);
   add_drop(app, label, exit_code);
   add_compare(app, exit_code);
+  add_level_set(app, exit_code);
   add_check_and_list(app, exit_code);
   if (argc > 1 && argv[1][0] != '-') check_command(app, argv[1]);
   try {

@@ -1,10 +1,14 @@
 #include "app/commands.h"
 
+#include <chrono>
 #include <cstdio>
 
+#include "app/atomic_file.h"
 #include "app/fabrics.h"
+#include "app/level_set_cache.h"
 #include "app/run.h"
 #include "app/simulation.h"
+#include "app/table.h"
 #include "mesh/obj.h"
 
 namespace drape {
@@ -72,7 +76,9 @@ void check_scene(const std::filesystem::path& file) {
     std::printf("obstacle %s: %s, friction %s / %s, margin %s mm\n", scene.obstacles[k].name.c_str(),
                 std::string(name(o.shape)).c_str(), rounded(o.friction.statics, 3).c_str(),
                 rounded(o.friction.kinetic, 3).c_str(), rounded(1000 * o.margin, 3).c_str());
-    if (!scene.obstacles[k].mesh.empty()) print_report("  mesh", simulation.bodies[k].report);
+    if (simulation.bodies[k].report.triangles > 0) print_report("  mesh", simulation.bodies[k].report);
+    if (const std::string& text = simulation.bodies[k].level_set; !text.empty())
+      std::printf("  level set: %s\n", text.c_str());
     if (const auto* body = std::get_if<DeformingBody>(&o.shape))
       std::printf("  %s, %s to %s s\n", counted(body->frames->frame_count(), "frame").c_str(),
                   rounded(body->frames->first_time(), 4).c_str(),
@@ -107,6 +113,35 @@ int drop(const DropOptions& what, const CommonOptions& options, const std::strin
   return run(drop_scene(what, options.settings, label), run_options(options, what.cloth));
 }
 
+int make_level_set(const LevelSetWords& words) {
+  const std::filesystem::path input(words.mesh), output(words.out);
+  if (!is_vdb(output)) throw InputError(words.out + ": expected a name that ends in .vdb");
+  if (!has_openvdb()) LevelSet::read(output);  // says what is missing
+  const auto read = [](const std::string& text, const char* option, const Dimension& dimension,
+                       double otherwise) {
+    return text.empty() ? otherwise : quantity(parse_toml_value(text, option), dimension, Range::positive);
+  };
+  const double voxel = read(words.voxel, "--voxel", dimension::length, 0);
+  const Placement scaled{.scale = read(words.scale, "--scale", dimension::number, 1)};
+  const TriangleMesh mesh = placed(read_obj(input), scaled, words.mesh);
+  const MeshReport report = examine(mesh);
+  Names messages;
+  add_messages(report, words.mesh, messages);
+  const auto start = std::chrono::steady_clock::now();
+  const LevelSet made = LevelSet::from_mesh(mesh, {.voxel = voxel}, words.mesh);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  warn_of_error(made, words.mesh, messages);
+  AtomicFile file(output);
+  file.write(made.vdb());
+  file.keep();
+  print_report(words.mesh, report);
+  for (const std::string& message : messages) std::printf("%s\n", one_line(message).c_str());
+  std::printf("level set: %s\n", described(made).c_str());
+  std::printf("made in %s s, wrote %s (%s MB)\n", rounded(seconds.count(), 2).c_str(), words.out.c_str(),
+              rounded(static_cast<double>(std::filesystem::file_size(output)) / 1e6, 3).c_str());
+  return 0;
+}
+
 int check_file(const std::filesystem::path& file) {
   if (file.extension() == ".toml") {
     check_scene(file);
@@ -125,6 +160,9 @@ int list_parts() {
   print_line("box", "centre, size, rotate");
   print_line("capsule", "a, b, radius");
   print_line("mesh", "an OBJ file: a closed body, or a thick surface");
+  print_line("level-set", has_openvdb()
+                              ? "a closed OBJ file or a .vdb file, as a grid of distances"
+                              : "a closed OBJ file, as a grid of distances (.vdb files: not in this build)");
   std::printf("forces:\n");
   print_line("noh-jung", "edges that pull, diagonals that buckle, damping along both");
   print_line("gravity", "mass times gravity");

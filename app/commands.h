@@ -20,6 +20,11 @@ struct CommonOptions {
 
 int simulate(const std::filesystem::path& scene, const CommonOptions& options);
 int drop(const DropOptions& what, const CommonOptions& options, const std::string& label);
+struct LevelSetWords {
+  std::string mesh, out, voxel, scale;  // as the command line gives them; empty: not given
+};
+int make_level_set(const LevelSetWords& words);
+
 int check_file(const std::filesystem::path& file);
 int list_parts();
 

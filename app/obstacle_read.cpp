@@ -99,6 +99,15 @@ Shape read_capsule(Table& table) {
   return capsule;
 }
 
+void read_level_set(Table& table, const fs::path& folder, ObstacleEntry& entry) {
+  entry.mesh = read_path(table, "mesh", folder);
+  entry.placement = read_placement(table);
+  table.read("voxel", entry.voxel, dimension::length, Range::positive);
+  if (table.has("voxel") && is_vdb(entry.mesh))
+    table.fail("voxel", "a .vdb file has its own; expected none, or an OBJ file as mesh");
+  entry.obstacle.shape = LevelSetBody();
+}
+
 Friction read_friction(Table& table) {
   Friction friction;
   const Node* const node = table.take("friction");
@@ -147,7 +156,8 @@ ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
     entry.frames = read_frames(table, folder);
     entry.obstacle.shape = MeshBody();
   }
-  entry.name = shape == "mesh" ? entry.mesh.filename().string() : shape;
+  if (shape == "level-set") read_level_set(table, folder, entry);
+  entry.name = !entry.mesh.empty() ? entry.mesh.filename().string() : shape;
   table.read("name", entry.name);
   entry.obstacle.friction = read_friction(table);
   table.read("margin", entry.obstacle.margin, dimension::length, Range::not_negative);
@@ -157,13 +167,15 @@ ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
   read_rigid(table, entry, middle(entry));
   table.finish();
   try {
-    if (shape != "mesh") check(entry.obstacle);
+    if (entry.mesh.empty()) check(entry.obstacle);
   } catch (const InputError& error) {
     throw InputError(entry.where + ": " + error.what());
   }
   return entry;
 }
 
-Names shape_names() { return {"plane", "sphere", "bowl", "box", "capsule", "mesh"}; }
+Names shape_names() { return {"plane", "sphere", "bowl", "box", "capsule", "mesh", "level-set"}; }
+
+bool is_vdb(const fs::path& path) { return path.extension() == ".vdb"; }
 
 }  // namespace drape

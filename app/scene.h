@@ -64,9 +64,10 @@ struct FramesEntry {
 struct ObstacleEntry {
   std::string name;
   Obstacle obstacle;            // a mesh's shape is null until it is loaded
-  std::filesystem::path mesh;   // OBJ, of the shape "mesh"
+  std::filesystem::path mesh;   // OBJ, of the shapes "mesh" and "level-set"; of the latter also .vdb
   Placement placement;          // of the mesh and its frames
   FramesEntry frames;           // of a mesh
+  double voxel = 0;             // m, of the level set; 0: chosen
   std::filesystem::path poses;  // the CSV file that its motion was read from, if it was
   std::optional<RigidBodyEntry> rigid;
   std::string where;
@@ -104,5 +105,6 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const std::fil
 
 Names shape_names();
 Names model_names();
+bool is_vdb(const std::filesystem::path& path);  // by its extension
 
 }  // namespace drape

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/body_frames.h"
+#include "app/level_set_cache.h"
 #include "app/warnings.h"
 #include "mesh/obj.h"
 #include "mesh/solid.h"
@@ -12,12 +13,16 @@
 namespace drape {
 namespace {
 
-// One mesh at a time: read, placed, looked over.
-TriangleMesh load(const std::filesystem::path& path, const std::string& where, const Placement& placement,
-                  MeshReport& report, Names& messages) {
+void require_file(const std::filesystem::path& path, const std::string& where) {
   const bool in_a_file = where.find(':') != where.npos;
   if (in_a_file && !std::filesystem::exists(path))
     throw InputError(where + ": mesh: " + path.string() + ": no such file");
+}
+
+// One mesh at a time: read, placed, looked over.
+TriangleMesh load(const std::filesystem::path& path, const std::string& where, const Placement& placement,
+                  MeshReport& report, Names& messages) {
+  require_file(path, where);
   TriangleMesh mesh = placed(read_obj(path), placement, path.string());
   report = examine(mesh);
   add_messages(report, path.string(), messages);
@@ -105,12 +110,38 @@ RigidBody rigid_body(const ObstacleEntry& entry, const Obstacle& obstacle, const
   return body;
 }
 
+// The mesh is scaled before the grid is made, and the grid turned and moved: one is kept for all placements.
+LevelSetBody load_level_set(const ObstacleEntry& entry, Body& body, Names& messages) {
+  const std::string name = entry.mesh.string();
+  const double scale = entry.placement.scale, margin = entry.obstacle.margin;
+  require_file(entry.mesh, entry.where);
+  const auto grid = [&] {
+    if (is_vdb(entry.mesh)) {
+      LevelSet read = LevelSet::read(entry.mesh, scale);
+      if (margin + read.voxel() > read.band())
+        throw InputError(entry.where + ": a margin of " + rounded(1000 * margin, 3) +
+                         " mm is too wide for the " + rounded(1000 * read.band(), 3) +
+                         " mm round the surface that " + name + " holds: name the OBJ file instead");
+      body.report.lower = read.lower(), body.report.upper = read.upper();
+      return read;
+    }
+    const TriangleMesh mesh = load(entry.mesh, entry.where, {.scale = scale}, body.report, messages);
+    return cached_level_set(mesh, {entry.mesh, scale, entry.voxel, margin}, messages);
+  }();
+  body.level_set = described(grid);
+  warn_of_error(grid, name, messages);
+  return std::make_shared<const LevelSet>(grid.moved(entry.placement.rotation, entry.placement.translate));
+}
+
 void add_obstacles(const Scene& scene, Simulation& simulation) {
   for (const ObstacleEntry& entry : scene.obstacles) {
     Obstacle obstacle = entry.obstacle;
     Body body;
     body.name = entry.name;
-    if (!entry.mesh.empty()) obstacle.shape = load_body(entry, body, simulation.messages);
+    if (std::holds_alternative<MeshBody>(obstacle.shape))
+      obstacle.shape = load_body(entry, body, simulation.messages);
+    if (std::holds_alternative<LevelSetBody>(obstacle.shape))
+      obstacle.shape = load_level_set(entry, body, simulation.messages);
     if (entry.rigid) obstacle.rigid = rigid_body(entry, obstacle, scene.simulation.gravity);
     try {
       simulation.constraints->add(std::move(obstacle));

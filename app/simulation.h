@@ -24,7 +24,8 @@ struct Cloth {
 // A mesh or an obstacle as it was loaded, for `drape check`.
 struct Body {
   std::string name;
-  MeshReport report;  // of a mesh
+  MeshReport report;      // of a mesh; of a level set from a .vdb file only the box
+  std::string level_set;  // of a level set: its voxels and its error
 };
 
 struct Simulation {

@@ -62,7 +62,8 @@ double roundness(const Obstacle& obstacle, const Body& body) {
   if (const auto* sphere = std::get_if<Sphere>(&obstacle.shape)) return sphere->radius;
   if (const auto* capsule = std::get_if<Capsule>(&obstacle.shape)) return capsule->radius;
   if (std::holds_alternative<MeshBody>(obstacle.shape) ||
-      std::holds_alternative<DeformingBody>(obstacle.shape))
+      std::holds_alternative<DeformingBody>(obstacle.shape) ||
+      std::holds_alternative<LevelSetBody>(obstacle.shape))
     return 0.5 * (body.report.upper - body.report.lower).minCoeff();
   return 0;
 }

@@ -15,7 +15,7 @@ install(TARGETS drape EXPORT drapeTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LI
 install(EXPORT drapeTargets NAMESPACE drape:: DESTINATION ${package_dir})
 
 # As 0 or 1, so that the file reads if(NOT 0).
-foreach(name BUILD_SHARED_LIBS DRAPE_HAVE_CHOLMOD DRAPE_HAVE_SUNDIALS)
+foreach(name BUILD_SHARED_LIBS DRAPE_HAVE_CHOLMOD DRAPE_HAVE_OPENVDB DRAPE_HAVE_SUNDIALS)
   if(${name})
     set(${name} 1)
   else()
@@ -30,5 +30,8 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/drapeConfig.cmake ${CMAKE_CURRENT_BINA
         DESTINATION ${package_dir})
 if(DRAPE_HAVE_CHOLMOD)
   install(FILES cmake/FindCHOLMOD.cmake DESTINATION ${package_dir})
+endif()
+if(DRAPE_HAVE_OPENVDB)
+  install(FILES cmake/FindOPENVDB.cmake DESTINATION ${package_dir})
 endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

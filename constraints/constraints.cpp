@@ -304,7 +304,7 @@ void Constraints::receive_faces(const VecX& v) {
     const double gap = c.gap + c.normal.dot(place);
     const Vec3 impulse = h_ * (c.stiffness * std::max(-gap, 0.0) * c.normal - c.rubbing() * c.slip_at(v));
     work_ += c.body_velocity.dot(impulse);
-    bodies_[static_cast<std::size_t>(c.body)].push(-impulse, place);
+    bodies_[static_cast<std::size_t>(c.body)].push(-impulse, place, (c.at(v_) - c.body_velocity).norm());
   }
 }
 

@@ -99,9 +99,11 @@ SurfacePoint closest(const Capsule& capsule, const Vec3& x) {
 
 SurfacePoint closest(const MeshBody& body, const Vec3& x) { return body->closest(x); }
 
+SurfacePoint closest(const LevelSetBody& body, const Vec3& x) { return body->closest(x); }
+
 bool convex(const Shape& shape) {
   return !std::holds_alternative<Bowl>(shape) && !std::holds_alternative<MeshBody>(shape) &&
-         !std::holds_alternative<DeformingBody>(shape);
+         !std::holds_alternative<DeformingBody>(shape) && !std::holds_alternative<LevelSetBody>(shape);
 }
 
 // f and f' at a place of the path.
@@ -260,7 +262,8 @@ void check_deforming(const DeformingBody& body) {
 }  // namespace
 
 std::string_view name(const Shape& shape) {
-  constexpr std::string_view names[] = {"plane", "sphere", "bowl", "box", "capsule", "mesh", "mesh"};
+  constexpr std::string_view names[] = {"plane",   "sphere", "bowl", "box",
+                                        "capsule", "mesh",   "mesh", "level-set"};
   static_assert(std::variant_size_v<Shape> == std::size(names));
   return names[shape.index()];
 }
@@ -314,7 +317,10 @@ void check(const Shape& shape) {
                    [](const MeshBody& body) {
                      if (!body) throw InputError("mesh: there is no surface");
                    },
-                   [](const DeformingBody& body) { check_deforming(body); }},
+                   [](const DeformingBody& body) { check_deforming(body); },
+                   [](const LevelSetBody& body) {
+                     if (!body) throw InputError("level-set: there is no grid");
+                   }},
              shape);
 }
 

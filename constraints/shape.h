@@ -5,6 +5,7 @@
 //   box      exact distance to a box, turned by `rotation`
 //   capsule  phi = distance to the segment a b - r
 //   mesh     a triangle surface (mesh/surface_distance.h), which stands in its own frame or deforms
+//   level-set  a grid of distances to a closed one (mesh/level_set.h)
 // The bowl is a hemispherical shell with a rounded rim, opening along +axis; `radius` is the inner one, the
 // shell reaches out from it by `thickness`.
 //
@@ -16,6 +17,7 @@
 #include <string_view>
 #include <variant>
 
+#include "mesh/level_set.h"
 #include "mesh/surface_distance.h"
 
 namespace drape {
@@ -49,6 +51,7 @@ struct Capsule {
 };
 
 using MeshBody = std::shared_ptr<const SurfaceDistance>;
+using LevelSetBody = std::shared_ptr<const LevelSet>;
 
 // A mesh whose vertices go from frame to frame; within a step each goes straight.
 struct DeformingBody {
@@ -56,7 +59,7 @@ struct DeformingBody {
   std::shared_ptr<const MeshFrames> frames;
 };
 
-using Shape = std::variant<Plane, Sphere, Bowl, Box, Capsule, MeshBody, DeformingBody>;
+using Shape = std::variant<Plane, Sphere, Bowl, Box, Capsule, MeshBody, DeformingBody, LevelSetBody>;
 
 std::string_view name(const Shape& shape);  // "plane", "sphere", ...
 

@@ -7,24 +7,12 @@
 
 #include "mesh/closest_on_triangle.h"
 #include "mesh/obj.h"
+#include "mesh/topology.h"
 
 namespace drape {
 namespace {
 
 constexpr double flat = 1e-13;  // height / longest edge of a triangle that has no area
-
-// For each vertex the first one at the same place.
-std::vector<int> welded(const std::vector<Vec3>& positions) {
-  std::vector<int> order(positions.size()), first(positions.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto key = [&](int i) { return std::tuple(positions[i].x(), positions[i].y(), positions[i].z(), i); };
-  std::sort(order.begin(), order.end(), [&](int i, int j) { return key(i) < key(j); });
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const bool same = k > 0 && positions[order[k]] == positions[order[k - 1]];
-    first[order[k]] = same ? first[order[k - 1]] : order[k];
-  }
-  return first;
-}
 
 // Triangles of three different vertices, each once, in the mesh's order.
 std::vector<Face> distinct_faces(const TriangleMesh& mesh, const std::vector<int>& weld) {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -241,6 +242,40 @@ class BoundaryWalk {
 }  // namespace
 
 std::vector<std::vector<int>> boundary_loops(const TriangleMesh& mesh) { return BoundaryWalk(mesh).loops(); }
+
+std::vector<int> welded(const std::vector<Vec3>& positions) {
+  std::vector<int> order(positions.size()), first(positions.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&](int i) { return std::tuple(positions[i].x(), positions[i].y(), positions[i].z(), i); };
+  std::sort(order.begin(), order.end(), [&](int i, int j) { return key(i) < key(j); });
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const bool same = k > 0 && positions[order[k]] == positions[order[k - 1]];
+    first[order[k]] = same ? first[order[k - 1]] : order[k];
+  }
+  return first;
+}
+
+std::vector<Hole> holes(const TriangleMesh& mesh) {
+  TriangleMesh whole = mesh;
+  const std::vector<int> weld = welded(mesh.positions);
+  for (Triangle& t : whole.triangles)
+    for (int& v : t) v = weld[v];
+  std::vector<Hole> all;
+  for (const std::vector<int>& loop : boundary_loops(whole)) {
+    Hole hole{static_cast<int>(loop.size()), 0, 0, Vec3::Zero()};
+    Vec3 lower = mesh.positions[loop.front()], upper = lower;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Vec3& x = mesh.positions[loop[i]];
+      hole.circumference += (mesh.positions[loop[(i + 1) % loop.size()]] - x).norm();
+      hole.centre += x / static_cast<double>(loop.size());
+      lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
+    }
+    hole.width = (upper - lower).norm();
+    all.push_back(hole);
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Hole& a, const Hole& b) { return a.width > b.width; });
+  return all;
+}
 
 double triangle_area(const TriangleMesh& mesh, const Triangle& t) {
   const Vec3& x = mesh.positions[t[0]];

@@ -40,6 +40,17 @@ std::vector<Diagonal> diagonals(const TriangleMesh& mesh);  // sorted by (c, d),
 // loops are sorted.
 std::vector<std::vector<int>> boundary_loops(const TriangleMesh& mesh);
 
+// For each vertex the first one at exactly the same place.
+std::vector<int> welded(const std::vector<Vec3>& positions);
+
+// A boundary loop, measured. Vertices at exactly the same place count as one.
+struct Hole {
+  int edges;
+  double circumference, width;  // m; width: the diagonal of its box
+  Vec3 centre;                  // m, mean of its vertices
+};
+std::vector<Hole> holes(const TriangleMesh& mesh);  // the widest first
+
 double triangle_area(const TriangleMesh& mesh, const Triangle& t);  // m^2
 std::vector<double> vertex_areas(const TriangleMesh& mesh);  // m^2, a third of every triangle around a vertex
 

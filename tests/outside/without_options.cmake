@@ -4,7 +4,7 @@ foreach(step "configure" "build")
   if(step STREQUAL "configure")
     set(command -S ${SOURCE_DIR} -B ${WORK_DIR} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}
         -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DDRAPE_WERROR=ON -DDRAPE_CHOLMOD=OFF -DDRAPE_SUNDIALS=OFF
-        -DDRAPE_NATIVE=OFF -DDRAPE_TESTS=OFF)
+        -DDRAPE_OPENVDB=OFF -DDRAPE_NATIVE=OFF -DDRAPE_TESTS=OFF)
   else()
     set(command --build ${WORK_DIR} --target drape)
   endif()
