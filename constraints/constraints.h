@@ -96,8 +96,7 @@ class Constraints {
   // check_paths. A free motion to x [m], v [m/s] ends at x_new, v_new after the response of the bodies
   // (constraints/response.h); bodies that react get the other side of it.
   void begin_response(const VecX& x, const VecX& v, const std::vector<double>& masses, double t, double h);
-  void respond(ContactMode mode, const VecX& x, const VecX& v, VecX& x_new, VecX& v_new,
-               double noise);
+  void respond(ContactMode mode, const VecX& x, const VecX& v, VecX& x_new, VecX& v_new, double noise);
 
   // Of the step under way, and after it; those released in it have no planes.
   const std::vector<Contact>& touching() const { return trial_; }

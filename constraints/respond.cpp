@@ -101,8 +101,8 @@ bool Constraints::respond(ContactMode mode, int number, std::size_t chunk, StepV
     if (!changed) return false;
     add_plane(contact, plane);
     const Vec3 impulse = masses_[static_cast<std::size_t>(contact.particle)] * (step.end - before);
-    responses_[chunk].push_back({number, impulse, x + h_ * step.mean, plane.body_velocity,
-                                 (plane.body_velocity - before).norm()});
+    responses_[chunk].push_back(
+        {number, impulse, x + h_ * step.mean, plane.body_velocity, (plane.body_velocity - before).norm()});
     return true;
   };
   const SurfacePoint start = body.at_start(x);
