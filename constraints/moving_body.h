@@ -5,7 +5,8 @@
 //   carried   where the body takes the point x until the end of the step: c = pose(t + h) X0, and further
 //             where it deforms
 //   velocity  v_b = (c - x) / h: of the body at x, the mean over the step, so that x + h v_b stays with it
-//   plane     the surface at the end of the step nearest to where the particle will have slid to by x + h v: its
+//   plane     the surface at the end of the step nearest to where the particle will have slid to by x + h v:
+//   its
 //             normal n, and its gap from the carried point. v.n = v_b.n - gap / h arrives exactly on it.
 //                                                    [Baraff & Witkin 1998, 5.2, in the frame of the body]
 // x [m], v [m/s], t, h [s].

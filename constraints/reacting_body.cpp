@@ -82,7 +82,7 @@ void ReactingBody::push(const Vec3& impulse, const Vec3& place, double approach)
 ReactingBody::Vec6 ReactingBody::difference() const {
   Vec6 d;
   d.head<3>() = v_ + h_ * body_.gravity + J_ / body_.mass;
-  d.tail<3>() = radius_ * (world_inertia(moved()).inverse() * (L_ + T_));
+  d.tail<3>() = radius_ * (world_inertia(pose_).inverse() * (L_ + T_));
   return d - q_;
 }
 
@@ -134,7 +134,7 @@ bool ReactingBody::end_step(const Pose& end) {
   const bool converged = this->converged();
   const Vec6 q = converged ? Vec6(q_ + d) : q_;
   v_ = q.head<3>();
-  L_ = converged ? Vec3(L_ + T_) : Vec3(world_inertia(end) * q.tail<3>() / radius_);
+  L_ = converged ? Vec3(L_ + T_) : Vec3(world_inertia(pose_) * q.tail<3>() / radius_);
   pose_ = end;
   return converged;
 }

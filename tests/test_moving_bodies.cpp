@@ -213,9 +213,9 @@ TEST_CASE("a cloth on a turning ball turns with it when it is rough, and not at 
 }
 
 TEST_CASE("a rope drawn over a drum slips at the capstan's ratio of tensions", "[moving-bodies]") {
-  // Particles joined by springs over half a drum, held at one end by a soft spring, drawn at the other by a pin that
-  // goes down slowly: the tensions rise to exp(mu pi) = 2.566 [Euler] (2.568 with 24 links), and stay there
-  // while it slips.
+  // Particles joined by springs over half a drum, held at one end by a soft spring, drawn at the other by a
+  // pin that goes down slowly: the tensions rise to exp(mu pi) = 2.566 [Euler] (2.568 with 24 links), and
+  // stay there while it slips.
   constexpr int on_drum = 24, hanging = 10;
   const double mu = 0.3, radius = 0.1, margin = 0.002, pull = 0.5, soft = 2, stiff = 2000;
   const double arc = M_PI * radius / on_drum;
@@ -233,7 +233,8 @@ TEST_CASE("a rope drawn over a drum slips at the capstan's ratio of tensions", "
   std::vector<PairForce<TensionSpring>::Element> springs;
   std::vector<PairDamping::Element> dampers;
   for (int k = 0; k + 1 < n; ++k) {
-    const double length = (places[static_cast<std::size_t>(k) + 1] - places[static_cast<std::size_t>(k)]).norm();
+    const double length =
+        (places[static_cast<std::size_t>(k) + 1] - places[static_cast<std::size_t>(k)]).norm();
     const bool end = k == 0 || k + 2 == n;
     springs.push_back({k, k + 1, {end ? rest : length / (1 + pull / stiff), end ? soft : stiff}});
     if (!end) dampers.push_back({k, k + 1});
@@ -244,7 +245,8 @@ TEST_CASE("a rope drawn over a drum slips at the capstan's ratio of tensions", "
   Constraints constraints;
   constraints.pin(0);
   constraints.pin_along({n - 1}, Motion::constant({0, -0.1, 0}, Vec3::Zero(), Vec3::Zero()), state.x);
-  constraints.add(Obstacle{.shape = Capsule{{0, 0, -1}, {0, 0, 1}, radius - margin}, .friction = mu, .margin = margin});
+  constraints.add(
+      Obstacle{.shape = Capsule{{0, 0, -1}, {0, 0, 1}, radius - margin}, .friction = mu, .margin = margin});
   auto stepper = make_integrator("implicit-euler", system, constraints, make_linear_solver("eigen-ldlt"));
   const auto tension = [&](int i, int j) {
     return soft * ((state.x.segment<3>(3 * i) - state.x.segment<3>(3 * j)).norm() - rest);
