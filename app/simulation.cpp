@@ -65,7 +65,7 @@ void add_pins(const Scene& scene, Simulation& simulation) {
 MeshBody load_body(const ObstacleEntry& entry, Body& body, Names& messages) {
   const std::string name = entry.mesh.string();
   const TriangleMesh mesh = load(entry.mesh, entry.where, entry.placement, body.report, messages);
-  const auto surface = std::make_shared<const SurfaceDistance>(mesh);
+  auto surface = std::make_shared<const SurfaceDistance>(mesh);
   if (!surface->closed())
     messages.push_back(
         "warning: " + name +
