@@ -134,18 +134,24 @@ SurfacePoint VoxelGrid::closest(const Vec3& x) const {
   return {distance, unit(jet.gradient)};
 }
 
-// Within the grid, where there is no near brick. The distance changes no faster than 1 from the cell's
-// centre.
-SurfacePoint VoxelGrid::beyond(const Vec3& x) const {
-  Vec3 in_cells;
+Index VoxelGrid::cell_of(const Vec3& x) const {
   Index c;
-  for (int k = 0; k < 3; ++k) {
-    in_cells[k] = (x[k] / voxel - first[k] + 0.5) / cell;
-    c[k] = std::clamp(static_cast<int>(in_cells[k]), 0, cells[k] - 1);
-  }
-  const double centre = far[cell_slot(c)];
-  if (centre < 0) {
-    const Jet jet = coarse(*this, in_cells);
+  for (int k = 0; k < 3; ++k)
+    c[k] = std::clamp(static_cast<int>((x[k] / voxel - first[k] + 0.5) / cell), 0, cells[k] - 1);
+  return c;
+}
+
+// Outside: the distance changes no faster than 1 from the cell's centre. (A little less, for the rounding.)
+double VoxelGrid::bound(const Index& c, const Vec3& x) const {
+  return std::max(far[cell_slot(c)] * (1 - 1e-6) - (x - cell_centre(c)).norm(), band);
+}
+
+// Within the grid, where there is no near brick.
+SurfacePoint VoxelGrid::beyond(const Vec3& x) const {
+  const Index c = cell_of(x);
+  if (far[cell_slot(c)] < 0) {
+    const Jet jet =
+        coarse(*this, (x / voxel - Vec3(first[0], first[1], first[2]) + Vec3::Constant(0.5)) / cell);
     return {std::min(jet.value, -depth()), unit(jet.gradient)};
   }
   Vec3 rise;
@@ -154,22 +160,18 @@ SurfacePoint VoxelGrid::beyond(const Vec3& x) const {
     before[k] = std::max(c[k] - 1, 0), after[k] = std::min(c[k] + 1, cells[k] - 1);
     rise[k] = static_cast<double>(far[cell_slot(after)]) - far[cell_slot(before)];
   }
-  return {std::max(centre * (1 - 1e-6) - (x - cell_centre(c)).norm(), band), unit(rise)};
+  return {bound(c, x), unit(rise)};
 }
 
 // Outside the grid's box, y the nearest point of it: the surface lies within, so that the angle at y is
-// obtuse and phi(x)^2 >= |x - y|^2 + phi(y)^2.
+// obtuse and phi(x)^2 >= |x - y|^2 + phi(y)^2. The normal points away from the surface's box.
 SurfacePoint VoxelGrid::far_away(const Vec3& x) const {
   if (!x.allFinite()) return {std::numeric_limits<double>::quiet_NaN(), Vec3::UnitY()};
   Vec3 y;
-  for (int k = 0; k < 3; ++k) {
-    const double low = voxel * (first[k] - 0.5), high = voxel * (first[k] + cells[k] * cell - 0.5);
-    y[k] = std::clamp(x[k], low, high);
-  }
-  const SurfacePoint there = beyond(y);
-  const Vec3 away = x - y;
-  const double d = std::max(there.distance, 0.0);
-  return {std::sqrt(away.squaredNorm() + d * d), unit(away + d * there.normal)};
+  for (int k = 0; k < 3; ++k)
+    y[k] = std::clamp(x[k], voxel * (first[k] - 0.5), voxel * (first[k] + cells[k] * cell - 0.5));
+  const double d = bound(cell_of(y), y);
+  return {std::sqrt((x - y).squaredNorm() + d * d), unit(x - x.cwiseMax(lower).cwiseMin(upper))};
 }
 
 }  // namespace drape

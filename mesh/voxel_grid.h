@@ -54,6 +54,8 @@ struct VoxelGrid {
   // Those that are held, in the order of their numbers.
   std::vector<Index> places() const;
 
+  Index cell_of(const Vec3& x) const;
+  double bound(const Index& cell_there, const Vec3& x) const;
   SurfacePoint closest(const Vec3& x) const;
   SurfacePoint beyond(const Vec3& x) const;
   SurfacePoint far_away(const Vec3& x) const;

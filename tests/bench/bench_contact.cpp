@@ -36,6 +36,7 @@ template <class Off>
 std::vector<Vec3> near(const TriangleMesh& mesh, const Off& off) {
   test::Random random;
   std::vector<Vec3> all;
+  all.reserve(points);
   for (int i = 0; i < points; ++i)
     all.push_back(mesh.positions[static_cast<std::size_t>(random.below(mesh.vertex_count()))] + off(random));
   return all;
@@ -58,6 +59,7 @@ std::vector<double> cost(const Body& body, const std::vector<Vec3>& at,
       if (repeat > 0) ns[t].push_back(1e6 * (now_ms() - start) / points);
     }
   std::vector<double> medians;
+  medians.reserve(ns.size());
   for (const std::vector<double>& values : ns) medians.push_back(median(values));
   return medians;
 }
