@@ -29,6 +29,8 @@ std::string file_name(std::string name) {
 
 bool moves_or_reacts(const MovingBody& body) { return body.obstacle().motion.moves() || body.reacting(); }
 
+bool deforms(const MovingBody& body) { return std::holds_alternative<DeformingBody>(body.obstacle().shape); }
+
 bool has_shape(const MovingBody& body) { return drawn(body.obstacle().shape).vertex_count() > 0; }
 
 Names file_names(const Simulation& simulation) {
@@ -75,6 +77,7 @@ std::vector<BodyRecord> body_records(const Simulation& simulation) {
                       has_shape(body) ? "bodies/" + names[k] + ".obj" : "",
                       std::string(name(body.obstacle().shape)),
                       body.obstacle().motion.moves(),
+                      deforms(body),
                       {}};
     if (const ReactingBody* const r = body.reacting())
       record.reacting = {body.obstacle().rigid->mass, r->centre(), r->velocity(), r->momentum()};
@@ -87,7 +90,7 @@ BodyFiles::BodyFiles(fs::path folder, const Simulation& simulation, Frames frame
     : folder_(std::move(folder)), simulation_(simulation), frames_(frames) {
   const Names names = file_names(simulation);
   for (std::size_t k = 0; k < names.size(); ++k) {
-    entries_.push_back({names[k], moves_or_reacts(body(k)), has_shape(body(k))});
+    entries_.push_back({names[k], moves_or_reacts(body(k)), deforms(body(k)), has_shape(body(k))});
     any_moves_ = any_moves_ || entries_.back().moves;
   }
 }
@@ -118,19 +121,16 @@ void BodyFiles::add_pose(int number, double time, std::size_t k) {
 }
 
 void BodyFiles::frame(int number, double time) {
-  if (!poses_) return;
   for (std::size_t k = 0; k < entries_.size(); ++k) {
-    const Entry& entry = entries_[k];
-    if (!entry.moves) continue;
-    add_pose(number, time, k);
-    if (frames_ == Frames::obj && entry.has_shape)
-      written(frame_path(folder_, entry.name, number), present_mesh(body(k))).keep();
+    if (poses_ && entries_[k].moves) add_pose(number, time, k);
+    if (frames_ == Frames::obj && has_frames(entries_[k]))
+      written(frame_path(folder_, entries_[k].name, number), present_mesh(body(k), time)).keep();
   }
 }
 
-void BodyFiles::finish(std::vector<AtomicFile>& files) {
+void BodyFiles::finish(double time, std::vector<AtomicFile>& files) {
   for (std::size_t k = 0; k < entries_.size(); ++k)
-    if (entries_[k].has_shape) files.push_back(written(shape_path(entries_[k]), present_mesh(body(k))));
+    if (entries_[k].has_shape) files.push_back(written(shape_path(entries_[k]), present_mesh(body(k), time)));
   if (!poses_) return;
   poses_->close();
   files.push_back(std::move(*poses_));
@@ -147,7 +147,7 @@ std::vector<fs::path> BodyFiles::results() const {
 Names BodyFiles::frame_names() const {
   Names names;
   for (const Entry& entry : entries_)
-    if (entry.moves && entry.has_shape) names.push_back(entry.name);
+    if (has_frames(entry)) names.push_back(entry.name);
   return names;
 }
 

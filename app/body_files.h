@@ -4,7 +4,7 @@
 //   frame
 //                          and body that is moved or reacts: x = R X + t, X a point of the body as it was
 //                          drawn
-//   frames/NAME_0001.obj   where frames are OBJ files, of those bodies
+//   frames/NAME_0001.obj   where frames are OBJ files, of those bodies and of those that deform
 #pragma once
 
 #include <Eigen/Geometry>
@@ -37,7 +37,7 @@ class BodyFiles {
   void open();  // the folder exists: begins bodies.csv
   void frame(int number, double time);
   // Writes and closes what is left to be written; bodies.csv is complete, too. To be kept with the others.
-  void finish(std::vector<AtomicFile>& files);
+  void finish(double time, std::vector<AtomicFile>& files);
 
   // Everything that is written, but for the frames.
   std::vector<std::filesystem::path> results() const;
@@ -47,12 +47,13 @@ class BodyFiles {
 
  private:
   struct Entry {
-    std::string name;       // of its files
-    bool moves, has_shape;  // also by what acts on it; not a plane
+    std::string name;                // of its files
+    bool moves, deforms, has_shape;  // moves: also by what acts on it; has_shape: is no plane
     Eigen::Quaterniond turn_before =
         Eigen::Quaterniond::Identity();  // q and -q are one turn: rows do not jump
   };
   const MovingBody& body(std::size_t k) const { return simulation_.constraints->bodies()[k]; }
+  static bool has_frames(const Entry& entry) { return entry.has_shape && (entry.moves || entry.deforms); }
   std::filesystem::path shape_path(const Entry& entry) const;
   void add_pose(int number, double time, std::size_t k);
 

@@ -1,6 +1,7 @@
 #include "app/body_mesh.h"
 
 #include <Eigen/Geometry>
+#include <utility>
 
 #include "mesh/generate.h"
 
@@ -38,16 +39,15 @@ TriangleMesh drawn(const Shape& shape) {
     return placed(bowl(around, shell->radius, shell->thickness), {from_y_to(shell->axis), shell->centre});
   if (const auto* rod = std::get_if<Capsule>(&shape)) return drawn(*rod);
   if (const auto* mesh = std::get_if<MeshBody>(&shape)) return (*mesh)->mesh();
-  if (const auto* body = std::get_if<DeformingBody>(&shape)) {
-    TriangleMesh mesh = body->surface->mesh();
-    mesh.positions = body->surface->vertices(1);
-    return mesh;
-  }
+  if (const auto* body = std::get_if<DeformingBody>(&shape)) return body->surface->mesh();
   return {};
 }
 
-TriangleMesh present_mesh(const MovingBody& body) {
-  return placed(drawn(body.obstacle().shape), body.pose());
+TriangleMesh present_mesh(const MovingBody& body, double time) {
+  TriangleMesh mesh = drawn(body.obstacle().shape);
+  if (const auto* deforming = std::get_if<DeformingBody>(&body.obstacle().shape))
+    deforming->frames->positions_at(time, mesh.positions);
+  return placed(std::move(mesh), body.pose());
 }
 
 }  // namespace drape

@@ -6,10 +6,10 @@
 
 namespace drape {
 
-// As it was drawn, or deformed to the end of the last step; without vertices for a plane, which has no end.
+// As it was drawn; without vertices for a plane, which has no end.
 TriangleMesh drawn(const Shape& shape);
 
-// The same at the end of the last completed step.
-TriangleMesh present_mesh(const MovingBody& body);
+// The same at the end of the last completed step, at this time [s].
+TriangleMesh present_mesh(const MovingBody& body, double time);
 
 }  // namespace drape

@@ -129,7 +129,7 @@ void Output::finish(const State& state, const RunRecord& record) {
     texts.emplace_back(cloth_path(cloth, ".obj")).write(format_obj(cloth.mesh, positions_of(cloth, state)));
     texts.back().close();
   }
-  bodies_.finish(texts);
+  bodies_.finish(state.time, texts);
   texts.emplace_back(folder_ / "run.json").write(run_json(record));
   texts.back().close();
 

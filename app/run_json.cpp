@@ -22,11 +22,9 @@ Json vector_json(const Vec3& v) { return Json::List{v[0], v[1], v[2]}; }
 Json bodies_json(const std::vector<BodyRecord>& bodies) {
   Json::List list;
   for (const BodyRecord& b : bodies) {
-    Json::Members json = {{"name", b.name},
-                          {"file", b.file.empty() ? Json() : Json(b.file)},
-                          {"shape", b.shape},
-                          {"moves", b.moves},
-                          {"reacts", b.reacting.has_value()}};
+    Json::Members json = {{"name", b.name},       {"file", b.file.empty() ? Json() : Json(b.file)},
+                          {"shape", b.shape},     {"moves", b.moves},
+                          {"deforms", b.deforms}, {"reacts", b.reacting.has_value()}};
     if (b.reacting) {
       json.emplace_back("mass", b.reacting->mass);
       json.emplace_back("position", vector_json(b.reacting->position));

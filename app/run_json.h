@@ -18,6 +18,7 @@ struct ClothCounts {
 struct BodyRecord {
   std::string name, file, shape;  // file: below the output folder, empty for a plane
   bool moves = false;             // is moved, as a motion says
+  bool deforms = false;           // goes from frame to frame
 
   struct Reacting {
     double mass;                        // kg

@@ -175,6 +175,26 @@ TEST_CASE("frames as OBJ files hold the bodies that move", "[output]") {
   CHECK(content(stage.path / "n/bodies/cube.obj") == content(stage.path / "o/bodies/cube.obj"));
 }
 
+TEST_CASE("a body that deforms is written as it is then", "[output]") {
+  const Stage stage;
+  TriangleMesh cube = read_obj(stage.path / "cube.obj");
+  std::vector<Vec3> end = cube.positions;
+  for (std::size_t i = 0; i < end.size(); ++i) end[i][1] += 0.5 * static_cast<double>(i % 3);
+  write_obj(stage.path / "walk_0001.obj", cube, cube.positions);
+  write_obj(stage.path / "walk_0002.obj", cube, end);
+  stage.write("d.toml",
+              stage.simulation + stage.cloth +
+                  "[[obstacle]]\nshape = \"mesh\"\nmesh = \"cube.obj\"\nframes = \"walk_%04d.obj\"\n"
+                  "frame_rate = \"5 Hz\"\n");
+  REQUIRE(stage.drape("simulate d.toml --out o --quiet --frames obj --duration 0.3").exit_code == 0);
+  CHECK(farthest(read_obj(stage.path / "o/bodies/cube.obj").positions, end) < 1e-6);  // frames are float
+  std::vector<Vec3> half = cube.positions;
+  for (std::size_t i = 0; i < half.size(); ++i) half[i] = (half[i] + end[i]) / 2;
+  CHECK(farthest(read_obj(stage.path / "o/frames/cube_0002.obj").positions, half) < 1e-6);
+  CHECK(stage.files("o") == Files{"bodies", "frames", "run.json", "sheet.obj", "steps.csv"});
+  CHECK(JsonValue::parse(content(stage.path / "o/run.json"))["bodies"][0]["deforms"] == true);
+}
+
 TEST_CASE("run.json says how bodies ended", "[output]") {
   const Stage stage;
   REQUIRE(stage.drape("simulate s.toml --out o --quiet").exit_code == 0);
@@ -184,6 +204,7 @@ TEST_CASE("run.json says how bodies ended", "[output]") {
                                {"file", "bodies/cube.obj"},
                                {"shape", "mesh"},
                                {"moves", true},
+                               {"deforms", false},
                                {"reacts", false}});
   CHECK(bodies[3]["file"].is_null());
   CHECK(bodies[4]["name"] == "a table/top");
