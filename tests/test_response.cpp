@@ -390,7 +390,7 @@ TEST_CASE("a scene chooses the contact mode and a body its restitution", "[respo
     for (const std::string& word : words) settings.push_back(parse_setting(word));
     return read_scene(path, settings);
   };
-  CHECK_FALSE(read({}).simulation.step.contact);
+  CHECK_FALSE(read_scene(DRAPE_SOURCE_DIR "/data/scenes/tee.toml", {}).simulation.step.contact);
   CHECK(read({"simulation.contact=restitution"}).simulation.step.contact == ContactMode::restitution);
   CHECK(read({"obstacle.ball.restitution=0.4"}).obstacles[0].obstacle.restitution == 0.4);
   CHECK_THROWS_WITH(read({"obstacle.ball.restitution=1.4"}), Contains("from 0 to 1"));
