@@ -13,6 +13,8 @@ constexpr int most_changes = 3;
 // A particle whose sliding the friction could stop a million times over within the step is taken to have
 // stopped.
 constexpr double stop_fraction = 1e-6;
+// Friction that came out more than this many times mu N is made anew.
+constexpr double overrubbed = 1.05;
 
 // How far off the margin what touched still does [m]: round-off and a small lift are not a release.
 double keeps(double margin) { return std::max(0.5 * margin, 1e-6); }
@@ -170,7 +172,7 @@ void Constraints::look_for_contact(int particle, std::vector<Contact>& found, do
     clearance(o, particle) = start.distance;
     deepest = std::max(deepest, -start.distance);
     if (start.distance > margin + std::max(travel, keeps(margin))) continue;
-    const ContactPlane plane = body.plane(x, start);
+    const ContactPlane plane = body.plane(x, start, x + h_ * v);
     const bool touched = plane_with(before, o) != nullptr;
     if (touched ? plane.gap < keeps(margin)
                 : plane.gap < 0 && plane.gap + body.approach(x, x_new, plane) < 0) {
@@ -355,6 +357,7 @@ bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double n
   const Friction& mu = friction_of(c);
   double normal = 0;
   for (int k = 0; k < c.planes; ++k) normal += std::max(lambda[static_cast<std::size_t>(k)], 0.0);
+  const double rubbed = mu.kinetic * c.normal_impulse;
   c.normal_impulse = normal;
   if (c.changes >= most_changes) return false;
 
@@ -374,6 +377,11 @@ bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double n
     case Grip::slide:
       if (masses_[static_cast<std::size_t>(c.particle)] * slip.norm() < stop_fraction * mu.kinetic * normal)
         next = Grip::stick;
+      else if (slip.norm() * rubbed > overrubbed * mu.kinetic * normal * c.slip.norm()) {
+        c.slip = slip;  // faster than was expected: the damper rubbed with more than mu N
+        ++c.changes;
+        return true;
+      }
       break;
   }
   if (next == c.grip) return false;

@@ -15,6 +15,7 @@ void MovingBody::begin_step(double t, double h) {
   move(obstacle_.shape, t, t + h);
   start_ = reacting_ ? reacting_->pose() : obstacle_.motion.at(t);
   end_ = reacting_ ? reacting_->begin_step(h) : obstacle_.motion.at(t + h);
+  stands_ = !reacting_ && !deforms() && start_.rotation == end_.rotation && start_.translation == end_.translation;
 }
 
 bool MovingBody::end_step() {
@@ -71,10 +72,15 @@ ContactPlane MovingBody::plane_at(const Vec3& x, const Vec3& normal, double gap)
   return {number_, end_.direction_to_world(normal), gap, velocity(x)};
 }
 
-ContactPlane MovingBody::plane(const Vec3& x, const SurfacePoint& at_start) const {
-  const SurfacePoint s =
-      deforms() ? closest(obstacle_.shape, drape::carried(obstacle_.shape, start_.to_body(x)), 1) : at_start;
-  return plane_at(x, s.normal, s.distance - obstacle_.margin);
+ContactPlane MovingBody::plane(const Vec3& x, const SurfacePoint& at_start, const Vec3& x_new) const {
+  if (stands_) return plane_at(x, at_start.normal, at_start.distance - obstacle_.margin);
+  // Where it will be in the body's frame: what slides on a turning body is not turned with it, and would be driven
+  // round by the tilt of the normal.
+  const Vec3 X = drape::carried(obstacle_.shape, start_.to_body(x)), way = end_.to_body(x_new) - X;
+  const Vec3 n = deforms() ? closest(obstacle_.shape, X, 1).normal : at_start.normal;
+  const Vec3 slid = way - n.dot(way) * n;
+  const SurfacePoint s = closest(obstacle_.shape, X + slid, 1);
+  return plane_at(x, s.normal, s.distance - s.normal.dot(slid) - obstacle_.margin);
 }
 
 std::optional<ContactPlane> MovingBody::meeting(const Vec3& x0, const Vec3& x1) const {

@@ -5,8 +5,8 @@
 //   carried   where the body takes the point x until the end of the step: c = pose(t + h) X0, and further
 //             where it deforms
 //   velocity  v_b = (c - x) / h: of the body at x, the mean over the step, so that x + h v_b stays with it
-//   plane     the surface nearest to the carried point, at the end of the step: its normal n and
-//             gap = phi - margin there. v.n = v_b.n - gap / h arrives exactly on it.
+//   plane     the surface at the end of the step nearest to where the particle will have slid to by x + h v: its
+//             normal n, and its gap from the carried point. v.n = v_b.n - gap / h arrives exactly on it.
 //                                                    [Baraff & Witkin 1998, 5.2, in the frame of the body]
 // x [m], v [m/s], t, h [s].
 #pragma once
@@ -59,7 +59,7 @@ class MovingBody {
   Vec3 velocity(const Vec3& x) const { return (carried(x) - x) / h_; }
   // By how much the distance of a particle from the body can change on its way.
   double travel(const Vec3& x0, const Vec3& x1) const;
-  ContactPlane plane(const Vec3& x, const SurfacePoint& at_start) const;
+  ContactPlane plane(const Vec3& x, const SurfacePoint& at_start, const Vec3& x_new) const;
   // How far the way leads away from the plane that moves with the body: negative, it comes nearer [m].
   double approach(const Vec3& x0, const Vec3& x1, const ContactPlane& plane) const {
     return (x1 - carried(x0)).dot(plane.normal);
@@ -78,6 +78,7 @@ class MovingBody {
   Obstacle obstacle_;
   int number_;
   double h_ = 0;
+  bool stands_ = true;  // in this step
   Pose now_, start_, end_;
   std::optional<ReactingBody> reacting_;
 };

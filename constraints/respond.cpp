@@ -109,7 +109,7 @@ bool Constraints::respond(ContactMode mode, int number, std::size_t chunk, StepV
   clearance(number, contact.particle) = start.distance;
   deepest_[chunk] = std::max(deepest_[chunk], -start.distance);
   if (start.distance > obstacle.margin + std::max(reach, touch)) return false;
-  const ContactPlane nearest = body.plane(x, start);
+  const ContactPlane nearest = body.plane(x, start, x_mean);
   if (nearest.gap < touch && changed_by(nearest)) return true;
   if (!(nearest.gap < reach)) return false;
   const auto met = body.meeting(x, x_mean);
