@@ -14,6 +14,7 @@ namespace drape {
 namespace {
 
 constexpr double close_enough = 1e-3;  // of the change of velocity in the step
+constexpr double round_off = 1e-12;    // of the velocity: what floats freely without gravity has no more
 constexpr double too_far = 0.02;       // of the same: not converged
 
 Mat3 turned_by(const Vec3& angle) {
@@ -98,8 +99,8 @@ void ReactingBody::stay_in_reach() {
 bool ReactingBody::correct(Pose& end, double noise) {
   const Vec6 d = difference();
   if (corrections_ == 0) meeting_ = approach_;
-  if (corrections_ == most_corrections || d.norm() <= close_enough * change() + noise / body_.mass)
-    return false;
+  const double near = close_enough * change() + noise / body_.mass + round_off * q_.norm();
+  if (corrections_ == most_corrections || d.norm() <= near) return false;
   if (relaxation_ == 0) {
     const double Z = J_.norm() / std::max(approach_, h_ * body_.gravity.norm() + 1e-12);
     relaxation_ = 1 / (1 + Z / body_.mass);
@@ -127,7 +128,9 @@ bool ReactingBody::correct(Pose& end, double noise) {
   return true;
 }
 
-bool ReactingBody::converged() const { return difference().norm() <= too_far * change(); }
+bool ReactingBody::converged() const {
+  return difference().norm() <= too_far * change() + round_off * q_.norm();
+}
 
 bool ReactingBody::end_step(const Pose& end) {
   const Vec6 d = difference();

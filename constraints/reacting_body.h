@@ -58,7 +58,7 @@ class ReactingBody {
   void forget() { changes_ = 0, known_ = false; }
   // True when the motion that was prescribed is not the one that the impulse makes: then `end` is the new
   // one. noise [N s]: of the impulses.
-  bool correct(Pose& end, double noise);
+  bool correct(Pose& end, double noise = 0);
   bool converged() const;
   bool end_step(const Pose& end);  // false: not converged
 

@@ -4,6 +4,7 @@
 #include "app/simulation.h"
 #include "constraints/response.h"
 #include "mesh/obj.h"
+#include "tests/allocations.h"
 #include "tests/integrators.h"
 
 using namespace drape;
@@ -346,6 +347,7 @@ TEST_CASE("both forms give the same bits with 1, 2 and 7 threads", "[response]")
       ball.rigid = RigidBody{.mass = 0.1, .inertia = 4e-4 * Mat3::Identity(), .gravity = Vec3::Zero()};
       constraints.add(ball);
       State state = at_rest(mesh);
+      for (int i = 1; i < state.particles(); ++i) state.v[3 * i + 1] = -0.5;
       auto stepper = make_integrator("symplectic-euler", system, constraints, make_linear_solver("mpcg"),
                                      StepOptions{.contact = mode});
       int contacts = 0;
@@ -379,4 +381,52 @@ TEST_CASE("each integrator has its contact mode, and says which it cannot take",
   }
   Constraints constraints;
   CHECK_THROWS_WITH(constraints.add({.shape = Plane{}, .restitution = 1.2}), Contains("restitution"));
+}
+
+TEST_CASE("a scene chooses the contact mode and a body its restitution", "[response]") {
+  const std::string path = DRAPE_SOURCE_DIR "/data/scenes/ls-ball-09.toml";
+  const auto read = [&](const std::vector<std::string>& words) {
+    std::vector<Setting> settings;
+    for (const std::string& word : words) settings.push_back(parse_setting(word));
+    return read_scene(path, settings);
+  };
+  CHECK_FALSE(read_scene(DRAPE_SOURCE_DIR "/data/scenes/tee.toml", {}).simulation.step.contact);
+  CHECK(read({"simulation.contact=restitution"}).simulation.step.contact == ContactMode::restitution);
+  CHECK(read({"obstacle.ball.restitution=0.4"}).obstacles[0].obstacle.restitution == 0.4);
+  CHECK_THROWS_WITH(read({"obstacle.ball.restitution=1.4"}), Contains("from 0 to 1"));
+  CHECK_THROWS_WITH(read({"simulation.contact=velocty"}), Contains("velocity"));
+  CHECK_THROWS_WITH(read({"simulation.contact=velocity", "simulation.integrator=bdf2"}),
+                    Contains("simulation.contact") && Contains("bdf2") && Contains("symplectic-euler"));
+
+  const auto warned = [&](const std::vector<std::string>& words) {
+    for (const std::string& message : make_simulation(read(words)).messages)
+      if (message.find("restitution has no effect") != message.npos) return true;
+    return false;
+  };
+  CHECK(warned({"obstacle.ball.restitution=0.4"}));
+  CHECK_FALSE(warned({"obstacle.ball.restitution=0.4", "simulation.contact=restitution"}));
+  CHECK_FALSE(warned({}));
+}
+
+TEST_CASE("a step with a response allocates nothing", "[response]") {
+  if (!counts_allocations()) return;
+  for (const ContactMode mode : {ContactMode::velocity, ContactMode::restitution}) {
+    const TriangleMesh mesh = grid(11, 11, 0.3, 0.3);
+    System system(lumped_mass(mesh, 0.3));
+    system.add(noh_jung(mesh, {.area_density = 0.3, .stretch = 10, .bend = 1e-6, .damping = 0.03}));
+    system.add(Gravity{});
+    Constraints constraints;
+    constraints.add(Obstacle{.shape = Sphere{{0, -0.105, 0}, 0.1}, .restitution = 0.3});
+    constraints.add(Obstacle{.shape = Plane{{0, -0.01, 0}, {0, 1, 0}}, .restitution = 0.3});
+    State state = at_rest(mesh);
+    auto stepper = make_integrator("symplectic-euler", system, constraints, make_linear_solver("mpcg"),
+                                   StepOptions{.contact = mode});
+    for (int n = 0; n < 200; ++n) REQUIRE(stepper->advance(state, 4e-4).done);
+    const long before = allocations();
+    int contacts = 0;
+    for (int n = 0; n < 50; ++n) contacts += stepper->advance(state, 4e-4).contacts;
+    const long made = allocations() - before;
+    CHECK(contacts > 50);
+    CHECK(made == 0);
+  }
 }
