@@ -15,8 +15,7 @@ void MovingBody::begin_step(double t, double h) {
   move(obstacle_.shape, t, t + h);
   start_ = reacting_ ? reacting_->pose() : obstacle_.motion.at(t);
   end_ = reacting_ ? reacting_->begin_step(h) : obstacle_.motion.at(t + h);
-  stands_ =
-      !reacting_ && !deforms() && start_.rotation == end_.rotation && start_.translation == end_.translation;
+  turns_ = start_.rotation != end_.rotation;
 }
 
 bool MovingBody::end_step() {
@@ -74,7 +73,7 @@ ContactPlane MovingBody::plane_at(const Vec3& x, const Vec3& normal, double gap)
 }
 
 ContactPlane MovingBody::plane(const Vec3& x, const SurfacePoint& at_start, const Vec3& x_new) const {
-  if (stands_) return plane_at(x, at_start.normal, at_start.distance - obstacle_.margin);
+  if (!turns_ && !deforms()) return plane_at(x, at_start.normal, at_start.distance - obstacle_.margin);
   // Where it will be in the body's frame: what slides on a turning body is not turned with it, and would be
   // driven round by the tilt of the normal.
   const Vec3 X = drape::carried(obstacle_.shape, start_.to_body(x)), way = end_.to_body(x_new) - X;

@@ -79,7 +79,7 @@ class MovingBody {
   Obstacle obstacle_;
   int number_;
   double h_ = 0;
-  bool stands_ = true;  // in this step
+  bool turns_ = false;  // in this step
   Pose now_, start_, end_;
   std::optional<ReactingBody> reacting_;
 };
