@@ -8,28 +8,12 @@
 namespace drape {
 namespace {
 
-// A contact changes its mind this often within a step, then keeps its grip until the next one.
-constexpr int most_changes = 3;
-// A particle whose sliding the friction could stop a million times over within the step is taken to have
-// stopped.
-constexpr double stop_fraction = 1e-6;
-// Friction that came out more than this many times mu N is made anew.
-constexpr double overrubbed = 1.05;
-
-// How far off the margin what touched still does [m]: round-off and a small lift are not a release.
-double keeps(double margin) { return std::max(0.5 * margin, 1e-6); }
-
 const ContactPlane* plane_with(const Contact* contact, int obstacle) {
   if (!contact) return nullptr;
   for (int k = 0; k < contact->planes; ++k)
     if (const ContactPlane& p = contact->plane[static_cast<std::size_t>(k)]; p.obstacle == obstacle)
       return &p;
   return nullptr;
-}
-
-Vec3 tangential(const Contact& contact, const Vec3& v) {
-  const Mat3 Q = contact.locked_directions();
-  return v - Q * (Q.transpose() * v);
 }
 
 }  // namespace
@@ -167,14 +151,14 @@ void Constraints::look_for_contact(int particle, std::vector<Contact>& found, do
     const double margin = body.obstacle().margin;
     const Vec3 x_new = foresight_ ? Vec3(x + h_ * v) : body.carried(x);
     const double travel = body.travel(x, x_new);
-    if (clearance(o, particle) > margin + std::max(travel, keeps(margin))) continue;
+    if (clearance(o, particle) > margin + std::max(travel, touching_range(margin))) continue;
     const SurfacePoint start = body.at_start(x);
     clearance(o, particle) = start.distance;
     deepest = std::max(deepest, -start.distance);
-    if (start.distance > margin + std::max(travel, keeps(margin))) continue;
+    if (start.distance > margin + std::max(travel, touching_range(margin))) continue;
     const ContactPlane plane = body.plane(x, start, x + h_ * v);
     const bool touched = plane_with(before, o) != nullptr;
-    if (touched ? plane.gap < keeps(margin)
+    if (touched ? plane.gap < touching_range(margin)
                 : plane.gap < 0 && plane.gap + body.approach(x, x_new, plane) < 0) {
       add_plane(contact, plane);
     } else if (plane.gap < travel) {
@@ -184,210 +168,6 @@ void Constraints::look_for_contact(int particle, std::vector<Contact>& found, do
   if (!contact.active()) return;
   start_grip(contact, before);
   found.push_back(contact);
-}
-
-void Constraints::start_grip(Contact& contact, const Contact* before) const {
-  const Friction& mu = friction_of(contact);
-  contact.last_slip = tangential(contact, v_.segment<3>(3 * contact.particle) - contact.body_velocity());
-  contact.slip = contact.last_slip;
-  contact.grip = before ? before->grip : mu.statics == 0 ? Grip::slide : Grip::stick;
-  contact.arrival_impulse = arrival_impulse(contact);
-  if (!before) return;
-  const double steady = std::max(0.0, before->normal_impulse - before->arrival_impulse) * h_ / last_h_;
-  contact.normal_impulse = steady + contact.arrival_impulse;
-  if (before->grip != Grip::slide) return;
-  const double arrived = (before->arrival_impulse - contact.arrival_impulse) * mu.kinetic /
-                         masses_[static_cast<std::size_t>(contact.particle)];
-  const Vec3 expected =
-      2 * contact.slip - before->last_slip + arrived / std::max(contact.slip.norm(), 1e-12) * contact.slip;
-  if (expected.dot(contact.slip) > stop_fraction * contact.slip.squaredNorm()) contact.slip = expected;
-}
-
-std::array<double, 3> Constraints::normal_speeds(const Contact& contact) const {
-  std::array<double, 3> speeds = {};
-  for (int k = 0; k < contact.planes; ++k) {
-    const ContactPlane& p = contact.plane[static_cast<std::size_t>(k)];
-    speeds[static_cast<std::size_t>(k)] = p.body_velocity.dot(p.normal) - std::max(p.gap, 0.0) / h_;
-  }
-  return speeds;
-}
-
-// What stops the approach at the planes, whatever else pushes.
-double Constraints::arrival_impulse(const Contact& contact) const {
-  std::array<double, 3> change = normal_speeds(contact);
-  for (int k = 0; k < contact.planes; ++k)
-    change[static_cast<std::size_t>(k)] -=
-        v_.segment<3>(3 * contact.particle).dot(contact.plane[static_cast<std::size_t>(k)].normal);
-  const double mass = masses_[static_cast<std::size_t>(contact.particle)];
-  const std::array<double, 3> pushes = multipliers(contact, mass * along_planes(contact, change));
-  double sum = 0;
-  for (int k = 0; k < contact.planes; ++k) sum += std::max(pushes[static_cast<std::size_t>(k)], 0.0);
-  return sum;
-}
-
-void Constraints::filter(const VecX& v, Filter& filter) const {
-  filter.clear();
-  for (int i = 0; i < static_cast<int>(held_.size()); ++i)
-    if (held(i))
-      filter.constrain(i, Mat3::Zero(),
-                       moving_pins_.empty() ? Vec3(-v.segment<3>(3 * i))
-                                            : Vec3(pin_velocity_.segment<3>(3 * i) - v.segment<3>(3 * i)));
-  for (const Contact& c : trial_) {
-    if (!c.active()) continue;
-    const Vec3 normal_part = along_planes(c, normal_speeds(c));
-    const Mat3 Q = c.locked_directions();
-    const Mat3 S = Mat3::Identity() - Q * Q.transpose();
-    const Vec3 now = v.segment<3>(3 * c.particle);
-    if (c.grip == Grip::stick)
-      filter.constrain(c.particle, Mat3::Zero(), normal_part + S * c.body_velocity() - now);
-    else
-      filter.constrain(c.particle, S, normal_part - (now - S * now));
-  }
-}
-
-const std::vector<ContactFriction>& Constraints::friction() {
-  friction_.clear();
-  for (const Contact& c : trial_) {
-    if (!c.active() || c.grip == Grip::stick) continue;
-    const double mu = friction_of(c).kinetic;
-    if (mu == 0) continue;
-    ContactFriction f{c.particle, c.plane[0].obstacle, Mat3::Zero(), c.body_velocity(), Vec3::Zero()};
-    if (c.grip == Grip::breaking_loose) {
-      f.impulse = c.friction_impulse;
-    } else {
-      const Mat3 Q = c.locked_directions();
-      const double coefficient = mu * c.normal_impulse / (h_ * std::max(c.slip.norm(), 1e-12));
-      f.damping = coefficient * (Mat3::Identity() - Q * Q.transpose());
-    }
-    friction_.push_back(f);
-  }
-  return friction_;
-}
-
-void Constraints::receive(const VecX& v, const VecX& r) {
-  work_ = 0;
-  for (MovingBody& body : bodies_) body.clear_impulse();
-  const auto push = [&](int body, int particle, const Vec3& velocity, const Vec3& impulse) {
-    work_ += velocity.dot(impulse);
-    bodies_[static_cast<std::size_t>(body)].push(
-        -impulse, x_.segment<3>(3 * particle) + h_ * v.segment<3>(3 * particle),
-        (velocity - v_.segment<3>(3 * particle)).norm());
-  };
-  for (const Contact& c : trial_) {
-    if (!c.active()) continue;
-    Vec3 rest = r.segment<3>(3 * c.particle);
-    const std::array<double, 3> lambda = multipliers(c, rest);
-    for (int k = 1; k < c.planes; ++k) {  // of several bodies each has its plane's part
-      const ContactPlane& p = c.plane[static_cast<std::size_t>(k)];
-      const Vec3 part = lambda[static_cast<std::size_t>(k)] * p.normal;
-      push(p.obstacle, c.particle, p.body_velocity, part);
-      rest -= part;
-    }
-    push(c.plane[0].obstacle, c.particle, c.body_velocity(), rest);
-  }
-  for (const ContactFriction& f : friction_) {
-    const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
-    push(f.body, f.particle, f.body_velocity, f.impulse - h_ * (f.damping * slip));
-  }
-  receive_faces(v);
-  for (const MovingPin& pin : moving_pins_) {
-    const Vec3 impulse = r.segment<3>(3 * pin.particle),
-               velocity = pin_velocity_.segment<3>(3 * pin.particle);
-    if (pin.body >= 0)
-      push(pin.body, pin.particle, velocity, impulse);
-    else
-      work_ += velocity.dot(impulse);
-  }
-}
-
-void Constraints::receive_faces(const VecX& v) {
-  for (const FaceContact& c : faces_.touching()) {
-    Vec3 place = c.at(x_) + h_ * c.at(v) + c.at(correction_);
-    const double gap = c.gap + c.normal.dot(place);
-    const Vec3 impulse = h_ * (c.stiffness * std::max(-gap, 0.0) * c.normal - c.rubbing() * c.slip_at(v));
-    work_ += c.body_velocity.dot(impulse);
-    bodies_[static_cast<std::size_t>(c.body)].push(-impulse, place, (c.at(v_) - c.body_velocity).norm());
-  }
-}
-
-// Bodies that moved otherwise than they were taken to: their planes and pins move with them.
-bool Constraints::move_bodies(double noise) {
-  bool moved = false;
-  for (MovingBody& body : bodies_)
-    if (body.correct(noise)) moved = true;
-  if (!moved) return false;
-  for (Contact& c : trial_)
-    for (int k = 0; k < c.planes; ++k) {
-      ContactPlane& p = c.plane[static_cast<std::size_t>(k)];
-      p.body_velocity = bodies_[static_cast<std::size_t>(p.obstacle)].velocity(x_.segment<3>(3 * c.particle));
-    }
-  faces_.follow(bodies_);
-  move_pins();
-  return true;
-}
-
-bool Constraints::bodies_converged() const {
-  return std::all_of(bodies_.begin(), bodies_.end(),
-                     [](const MovingBody& body) { return !body.reacting() || body.reacting()->converged(); });
-}
-
-bool Constraints::react(const VecX& v, const VecX& r, double noise) {
-  bool changed = false;
-  for (Contact& c : trial_) {
-    if (!c.active()) continue;
-    if (update_grip(c, v, r.segment<3>(3 * c.particle), noise)) changed = true;
-  }
-  if (!two_way_) return changed;
-  if (changed)
-    for (MovingBody& body : bodies_) body.forget();
-  return changed || move_bodies(noise);  // bodies wait for the contacts to come to a decision
-}
-
-bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double noise) const {
-  const std::array<double, 3> lambda = multipliers(c, r);
-  const auto weakest =
-      static_cast<std::size_t>(std::min_element(lambda.begin(), lambda.begin() + c.planes) - lambda.begin());
-  if (lambda[weakest] < -noise) {  // it would pull the particle towards the body: let go
-    for (auto k = static_cast<int>(weakest); k + 1 < c.planes; ++k)
-      c.plane[static_cast<std::size_t>(k)] = c.plane[static_cast<std::size_t>(k) + 1];
-    --c.planes;
-    c.arrival_impulse = arrival_impulse(c);
-    return true;
-  }
-  const Friction& mu = friction_of(c);
-  double normal = 0;
-  for (int k = 0; k < c.planes; ++k) normal += std::max(lambda[static_cast<std::size_t>(k)], 0.0);
-  const double rubbed = mu.kinetic * c.normal_impulse;
-  c.normal_impulse = normal;
-  if (c.changes >= most_changes) return false;
-
-  const Vec3 rub = tangential(c, r);
-  const Vec3 slip = tangential(c, v.segment<3>(3 * c.particle) - c.body_velocity());
-  Grip next = c.grip;
-  switch (c.grip) {
-    case Grip::stick:
-      if (rub.norm() > mu.statics * normal + noise) {
-        next = Grip::breaking_loose;
-        c.friction_impulse = mu.kinetic * normal * rub.normalized();
-      }
-      break;
-    case Grip::breaking_loose:
-      if (slip.dot(c.friction_impulse) > 0) next = Grip::stick;  // friction would drive the motion
-      break;
-    case Grip::slide:
-      if (masses_[static_cast<std::size_t>(c.particle)] * slip.norm() < stop_fraction * mu.kinetic * normal)
-        next = Grip::stick;
-      else if (slip.norm() * rubbed > overrubbed * mu.kinetic * normal * c.slip.norm()) {
-        c.slip = slip;  // faster than was expected: the damper rubbed with more than mu N
-        ++c.changes;
-        return true;
-      }
-      break;
-  }
-  if (next == c.grip) return false;
-  c.grip = next;
-  ++c.changes;
-  return true;
 }
 
 bool Constraints::check_paths(const VecX& x_new) {

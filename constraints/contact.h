@@ -16,6 +16,7 @@
 //                                           [Baraff & Witkin 1998 (BW), section 5.2; Noh & Jung, 4]
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "constraints/obstacle.h"
@@ -48,6 +49,9 @@ struct Contact {
   Mat3 locked_directions() const;
   Vec3 body_velocity() const { return plane[0].body_velocity; }
 };
+
+// How far off the margin what touched still does [m]: round-off and a small lift are not a release.
+inline double touching_range(double margin) { return std::max(0.5 * margin, 1e-6); }
 
 // Adds a plane unless it says nothing new; keeps the deepest first.
 void add_plane(Contact& contact, const ContactPlane& plane);

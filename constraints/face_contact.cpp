@@ -88,9 +88,8 @@ void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const VecX&
   if (room_.size() != bodies.size() * faces_.size()) {
     room_.assign(bodies.size() * faces_.size(), 0.0);
     found_.resize(static_cast<std::size_t>(chunk_count(n)));
-    touching_.clear();
+    last_.clear();
   }
-  std::swap(touching_, last_);
   touching_.clear();
   for (const MovingBody& body : bodies) {
     measure_travel(body, x, x_new);
@@ -170,6 +169,7 @@ bool FaceContacts::react(const VecX& x_new, const VecX& v_new) {
 
 void FaceContacts::end_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new) {
   if (faces_.empty()) return;
+  last_ = touching_;
   for (const MovingBody& body : bodies) {
     measure_travel(body, x, x_new);
     double* const room = &room_[static_cast<std::size_t>(body.number()) * faces_.size()];

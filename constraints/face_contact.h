@@ -2,9 +2,9 @@
 // middle of a triangle or its rim across an edge, is kept off by a stiff spring on the triangle's three
 // corners.
 //   p = sum w_k x_k    the point of the triangle that is nearest to the body, or deepest in it
-//   g = g_0 + n . (sum w_k (x_k - x_k0) - h v_b)     its gap, linearised as a contact's is; the offset is
-//   half
-//                                                    the margin: where vertices rest, faces touch nothing
+//   g = g_0 + n . (sum w_k (x_k - x_k0) - h v_b)     its gap, linearised as a contact's is; the offset
+//                                                    is half the margin: where vertices rest it touches
+//                                                    nothing
 //   E = k/2 g^2 for g < 0,   f_k = -k g w_k n,   K_kl = k w_k w_l n n^T
 //   friction: the damper mu N / |u| on the part u of sum w_k v_k - v_b along the surface, N = -k g and |u|
 //   those of the solve before; below slow [m/s] it creeps instead of sticking.
@@ -83,7 +83,7 @@ class FaceContacts {
   std::vector<ClothFace> faces_;
   std::vector<double> room_;    // body, face: within this distance the body was not when last looked [m]
   std::vector<double> travel_;  // of a particle, as the body at hand sees it [m]
-  std::vector<FaceContact> touching_, last_;     // by body, then by face
+  std::vector<FaceContact> touching_, last_;     // of this step, of the last completed one; by body, by face
   std::vector<std::vector<FaceContact>> found_;  // by chunk of faces
 };
 

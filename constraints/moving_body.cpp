@@ -23,10 +23,6 @@ bool MovingBody::end_step() {
   return !reacting_ || reacting_->end_step(end_);
 }
 
-void MovingBody::forget() {
-  if (reacting_) reacting_->forget();
-}
-
 void MovingBody::clear_impulse() {
   if (reacting_) reacting_->clear_impulse();
 }

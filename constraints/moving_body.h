@@ -6,8 +6,7 @@
 //             where it deforms
 //   velocity  v_b = (c - x) / h: of the body at x, the mean over the step, so that x + h v_b stays with it
 //   plane     the surface at the end of the step nearest to where the particle will have slid to by x + h v:
-//   its
-//             normal n, and its gap from the carried point. v.n = v_b.n - gap / h arrives exactly on it.
+//             its normal n, and its gap from the carried point. v.n = v_b.n - gap / h arrives exactly on it.
 //                                                    [Baraff & Witkin 1998, 5.2, in the frame of the body]
 // x [m], v [m/s], t, h [s].
 #pragma once
@@ -45,7 +44,6 @@ class MovingBody {
   // to `correct` is true, and the planes it made are to be moved (velocity has changed).
   void clear_impulse();
   void push(const Vec3& impulse, const Vec3& place, double approach = 0);
-  void forget();  // the contacts have changed
   bool correct(double noise) { return reacting_ && reacting_->correct(end_, noise); }
 
   // Signed distance at the last completed step's end.

@@ -62,9 +62,9 @@ Pose ReactingBody::begin_step(double h) {
   q_.tail<3>() = radius_ * (world_inertia(pose_).inverse() * (L_ + share * T_));
   q_free_.head<3>() = v_ + h * body_.gravity;
   q_free_.tail<3>() = radius_ * (world_inertia(pose_).inverse() * L_);
-  corrections_ = 0;
+  corrections_ = changes_ = 0;
+  known_ = false;
   if (J_.isZero(0)) relaxation_ = 0;
-  forget();
   return moved();
 }
 

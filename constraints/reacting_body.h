@@ -14,8 +14,8 @@
 // inertia; later in the same contact it is what the last step found. At the start q is what the last step's
 // impulses would give: at rest that is right at once. The body gets the impulses of the last solve, so
 // momentum is kept; only where d is not small to the end it gets the motion that was prescribed, and the step
-// is not `converged`. Contact between such bodies, and of them with obstacles, is not looked for. m [kg], I
-// [kg m^2] about c in the body's frame, c [m], v, u [m/s], w [rad/s], J [N s], T [N m s], h [s].
+// is not `converged`. Contact between such bodies, and of them with obstacles, is not looked for.
+// m [kg], I [kg m^2] about c in the body's frame, c [m], v, u [m/s], w [rad/s], J [N s], T [N m s], h [s].
 #pragma once
 
 #include <optional>
@@ -54,8 +54,6 @@ class ReactingBody {
   // What a solve pushes it with, from zero. approach: the speed that the impulse takes away from a particle.
   void clear_impulse();
   void push(const Vec3& impulse, const Vec3& place, double approach = 0);
-  // The contacts have changed, and what was learnt of them in this step with them.
-  void forget() { changes_ = 0, known_ = false; }
   // True when the motion that was prescribed is not the one that the impulse makes: then `end` is the new
   // one. noise [N s]: of the impulses.
   bool correct(Pose& end, double noise = 0);

@@ -10,9 +10,6 @@ namespace {
 // Between bodies that a particle touches at once the response goes round so often at most.
 constexpr int most_rounds = 8;
 
-// How far off the margin the nearest surface is what it touches, whichever way it moves [m].
-double near_by(double margin) { return std::max(0.5 * margin, 1e-6); }
-
 }  // namespace
 
 void Constraints::begin_response(const VecX& x, const VecX& v, const std::vector<double>& masses, double t,
@@ -40,10 +37,7 @@ void Constraints::respond(ContactMode mode, const VecX& x, const VecX& v, VecX& 
       for (int i = k * chunk_size; i < std::min(n, (k + 1) * chunk_size); ++i)
         if (!held(i)) respond(mode, i, chunk, x_new, v_new);
     });
-    const std::size_t touched = trial_.size();
     take_responses(v_new);
-    if (trial_.size() != touched)
-      for (MovingBody& body : bodies_) body.forget();
     again = two_way_ && move_bodies(noise);
   }
   if (!moved) return;
@@ -90,7 +84,7 @@ bool Constraints::respond(ContactMode mode, int number, std::size_t chunk, StepV
   const Obstacle& obstacle = body.obstacle();
   const Vec3 x = x_.segment<3>(3 * contact.particle), x_mean = x + h_ * step.mean;
   const double reach = std::max(body.travel(x, x_mean), body.travel(x, x + h_ * step.end));
-  const double touch = near_by(obstacle.margin);
+  const double touch = touching_range(obstacle.margin);
   if (clearance(number, contact.particle) > obstacle.margin + std::max(reach, touch)) return false;
   const Vec3 before = step.end;
   const auto changed_by = [&](const ContactPlane& plane) {

@@ -1,7 +1,6 @@
 // Cutting polygons into triangles.
 //   quad     along the shorter diagonal that lies inside; where both are as long (to 1e-3), along the one
-//            whose ends carry more diagonals: a grid of rectangles becomes a union jack, with no preferred
-//            direction
+//            whose ends carry more diagonals: a grid of rectangles becomes a union jack, alike both ways
 //   larger   ear clipping in the plane of the Newell normal  N = 1/2 sum_i x_i x x_(i+1)   [m^2],
 //            best-shaped ear first (area over the sum of squared edges)
 // n corners give n - 2 triangles, wound like the polygon; concave, non-planar and self-touching polygons are

@@ -1,9 +1,8 @@
 #include "solver/bdf.h"
 
-#include <cmath>
-
 #include "mesh/obj.h"
 #include "mesh/parallel.h"
+#include "solver/pieces.h"
 #include "solver/potential.h"
 #include "solver/stopwatch.h"
 
@@ -24,26 +23,8 @@ StepReport Bdf::advance(State& state, double h) {
   StepReport report;
   {
     const Stopwatch watch(report.step_ms);
-    const double start = state.time;
-    shortest_ = std::ldexp(1.5 * h, -options_.max_halvings);
-    int halvings = 0, pieces_left = 1;
-    report.substeps = 0;
-    while (pieces_left > 0) {
-      if (attempt(state, std::ldexp(h, -halvings), halvings == 0, report)) {
-        --pieces_left;
-        ++report.substeps;
-      } else if (halvings == options_.max_halvings) {
-        report.done = false;
-        break;
-      } else {
-        ++halvings;
-        pieces_left *= 2;
-      }
-    }
-    if (report.done) {
-      state.time = start + h;
-      report.failure = {};
-    }
+    take_in_pieces(state, h, options_.max_halvings, before_, report,
+                   [&](const Piece& piece) { return attempt(state, piece, report); });
   }
   return report;
 }
@@ -63,8 +44,9 @@ void Bdf::resize() {
   friction_.reserve(static_cast<std::size_t>(system_.particles()));
 }
 
-bool Bdf::attempt(State& state, double h, bool whole, StepReport& report) {
+bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
   resize();
+  const double h = piece.h;
   const double fall = h * system_.gravity_acceleration().norm();
   weight_impulse_ = fall_energy_ = 0;
   for (double m : system_.masses()) {
@@ -73,7 +55,7 @@ bool Bdf::attempt(State& state, double h, bool whole, StepReport& report) {
   }
   weight_impulse_ = fall * std::sqrt(weight_impulse_);
 
-  choose_coefficients(state, h, whole);
+  choose_coefficients(state, h, piece.whole);
   {
     const Stopwatch watch(report.collide_ms);
     constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h);
@@ -107,10 +89,10 @@ bool Bdf::attempt(State& state, double h, bool whole, StepReport& report) {
   }
   if (back_ > 0 && makes_energy(state)) {
     ++report.rescues;
-    return attempt(state, h, false, report);
+    return attempt(state, {h, false, piece.shortest}, report);
   }
   // In a shorter step the cloth weighs less on them; where none is short enough the report says so.
-  if (!constraints_.bodies_converged() && h > shortest_)
+  if (!constraints_.bodies_converged() && !piece.shortest)
     return fail(report, "the motion of a body that reacts and that of the cloth do not agree", linear);
   x_new_ = x_;
   v_new_ = v_;
@@ -205,7 +187,8 @@ void Bdf::mark_touching() {
   for (const MovingPin& p : constraints_.moving_pins())
     past_.touched[static_cast<std::size_t>(p.particle)] = 1;
   for (const FaceContact& c : constraints_.faces().touching())
-    for (int i : c.particles) past_.touched[static_cast<std::size_t>(i)] = 1;
+    if (c.active)
+      for (int i : c.particles) past_.touched[static_cast<std::size_t>(i)] = 1;
 }
 
 void Bdf::assemble(Stiffness stiffness) {
@@ -244,7 +227,7 @@ LinearReport Bdf::solve_within_contacts(const State& state, Stiffness stiffness,
     x_new_ = x_bar_ + c_ * v_new_;
     const bool caught = constraints_.check_paths(x_new_), faces = constraints_.react_faces(x_new_, v_new_);
     changed = changed || caught || faces;
-    if (caught && back_ > 0) mark_touching();  // what is caught now starts anew
+    if ((caught || faces) && back_ > 0) mark_touching();  // what is caught now starts anew
     if ((caught && back_ > 0) || faces) linearise(state, stiffness, report);
     if (!changed && (tolerance == options_.tolerance || linear.residual <= options_.tolerance)) return linear;
     if (!changed) tolerance = options_.tolerance;

@@ -34,6 +34,8 @@ struct RoundOff {
   double energy(double phi) const { return least + 2 * std::sqrt(std::abs(phi) * least); }  // J, of Phi = phi
 };
 
+struct Piece;  // solver/pieces.h
+
 class Bdf final : public Integrator {
  public:
   // Keeps references to the system and the constraints. order: 1 or 2.
@@ -58,7 +60,7 @@ class Bdf final : public Integrator {
     std::vector<char> touched;  // particle -> it met a body
   };
 
-  bool attempt(State& state, double h, bool whole, StepReport& report);
+  bool attempt(State& state, const Piece& piece, StepReport& report);
   void resize();
   void choose_coefficients(const State& state, double h, bool whole);
   void look_back(const State& state);
@@ -99,7 +101,7 @@ class Bdf final : public Integrator {
   double h_ = 0, c_ = 0;  // s, c = gamma h
   double back_ = 0;       // x_bar = x_n + back (x_n - x_{n-1}); 0: order 1
   double ahead_ = 0;      // w above
-  double shortest_ = 0;   // s, pieces of a step that are longer may be halved
+  State before_;
   Past past_;
 
   std::unique_ptr<BlockMatrix> A_;

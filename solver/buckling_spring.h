@@ -3,8 +3,8 @@
 //   sinc(u) = l/L,  u in [0, pi],  kappa = 2 u / L
 //   E(l) = k_b L kappa^2 / 2 = 2 k_b u^2 / L
 //   t(l) = dE/dl = (k_b / L^2) 4 u^2 / (cos u - sinc u)       negative: it pushes apart
-//   t*   = max(t, c_b (l - L))                                the clamp: linear from l = L to where it meets
-//   t
+//   t*   = max(t, c_b (l - L))                                the clamp: linear from l = L to its crossing
+//   with t
 // k_b [N m^2], L [m], c_b [N/m].  l >= L: no force.
 // The clamp takes the bending rigidity away below a curvature (solver/fabric.h says which, and chooses c_b).
 // When c_b L^3 / k_b <= 4 pi^2 the line never leaves the clamp for good: the connection is then linear

@@ -10,8 +10,8 @@
 // start, and all that gravity, held particles that move, contact, and changes from outside have added since,
 // with nothing taken off. A sound motion has no more than that, and the thousand leaves room for what a
 // scheme errs by: the energy of symplectic Euler swings by (1 + hw/2) / (1 - hw/2), a hundred at 0.98 of its
-// limit. It is not tried again in halves, because an unstable method would come back with one step later. x
-// [m], v [m/s], M [kg], f [N], h [s].
+// limit. It is not tried again in halves, because an unstable method would come back with one step later.
+// x [m], v [m/s], M [kg], f [N], h [s].
 #pragma once
 
 #include <array>

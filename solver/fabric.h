@@ -2,16 +2,15 @@
 // made from them.
 //
 //   every edge      TensionSpring   k_s = Y (A_1 + A_2) / l^2                      [Van Gelder 1998, eq. 4]
-//   every diagonal  BucklingSpring  k_b = B l L^3 / (6 h_1 h_2 (h_1 + h_2))        [Choi & Ko 2002 with a
-//   second-order beam]
+//   every diagonal  BucklingSpring  k_b = B l L^3 / (6 h_1 h_2 (h_1 + h_2))        [Choi & Ko 2002; beam of
+//   order 2]
 //     Y [N/m]: membrane stiffness per width; B [N m]: bending rigidity per width; l: the edge; A, h: area and
 //     height over it of the triangles beside it; L: rest length of the connection. So the same fabric on a
 //     finer mesh is the same fabric.
-//   or k_s [N/m] and k_b [N m^2] given, the same for every connection, as in Noh & Jung's and Choi & Ko's
-//   papers.
+//   or k_s [N/m] and k_b [N m^2] given, the same for every connection, as in the papers of Noh & Jung and of
+//   Choi & Ko.
 //
-// The clamp c_b [N/m] of the diagonals makes their response continuous but removes bending rigidity below the
-// curvature
+// The clamp c_b [N/m] of the diagonals makes their response continuous but removes bending rigidity below
 //   kappa = sqrt(96 k_b / (c_b L h_1 h_2 (h_1 + h_2)^2))
 // By default c_b is chosen so that this is at most a tenth of the curvature that the fabric takes under its
 // own weight,

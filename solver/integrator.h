@@ -38,7 +38,7 @@ struct StepFailure {
 };
 
 struct StepReport {
-  bool done = true;           // false: the state is as it was before
+  bool done = true;           // false: the state is as it was before, though not bodies that react
   StepFailure failure;        // when not done
   int substeps = 1;           // pieces the step was cut into, because it failed whole
   int inner_steps = 0;        // of the integrators that choose them

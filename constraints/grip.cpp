@@ -1,0 +1,163 @@
+// Constraints: how contacts hold. What sticks, slides or is let go, and what that is to a solve.
+#include <algorithm>
+
+#include "constraints/constraints.h"
+
+namespace drape {
+namespace {
+
+// A contact changes its mind this often within a step, then keeps its grip until the next one.
+constexpr int most_changes = 3;
+// A particle whose sliding the friction could stop a million times over within the step is taken to have
+// stopped.
+constexpr double stop_fraction = 1e-6;
+// Friction that came out more than this many times mu N is made anew.
+constexpr double overrubbed = 1.05;
+
+Vec3 tangential(const Contact& contact, const Vec3& v) {
+  const Mat3 Q = contact.locked_directions();
+  return v - Q * (Q.transpose() * v);
+}
+
+}  // namespace
+
+void Constraints::start_grip(Contact& contact, const Contact* before) const {
+  const Friction& mu = friction_of(contact);
+  contact.last_slip = tangential(contact, v_.segment<3>(3 * contact.particle) - contact.body_velocity());
+  contact.slip = contact.last_slip;
+  contact.grip = before ? before->grip : mu.statics == 0 ? Grip::slide : Grip::stick;
+  contact.arrival_impulse = arrival_impulse(contact);
+  if (!before) return;
+  const double steady = std::max(0.0, before->normal_impulse - before->arrival_impulse) * h_ / last_h_;
+  contact.normal_impulse = steady + contact.arrival_impulse;
+  if (before->grip != Grip::slide) return;
+  const double arrived = (before->arrival_impulse - contact.arrival_impulse) * mu.kinetic /
+                         masses_[static_cast<std::size_t>(contact.particle)];
+  const Vec3 expected =
+      2 * contact.slip - before->last_slip + arrived / std::max(contact.slip.norm(), 1e-12) * contact.slip;
+  if (expected.dot(contact.slip) > stop_fraction * contact.slip.squaredNorm()) contact.slip = expected;
+}
+
+std::array<double, 3> Constraints::normal_speeds(const Contact& contact) const {
+  std::array<double, 3> speeds = {};
+  for (int k = 0; k < contact.planes; ++k) {
+    const ContactPlane& p = contact.plane[static_cast<std::size_t>(k)];
+    speeds[static_cast<std::size_t>(k)] = p.body_velocity.dot(p.normal) - std::max(p.gap, 0.0) / h_;
+  }
+  return speeds;
+}
+
+// What stops the approach at the planes, whatever else pushes.
+double Constraints::arrival_impulse(const Contact& contact) const {
+  std::array<double, 3> change = normal_speeds(contact);
+  for (int k = 0; k < contact.planes; ++k)
+    change[static_cast<std::size_t>(k)] -=
+        v_.segment<3>(3 * contact.particle).dot(contact.plane[static_cast<std::size_t>(k)].normal);
+  const double mass = masses_[static_cast<std::size_t>(contact.particle)];
+  const std::array<double, 3> pushes = multipliers(contact, mass * along_planes(contact, change));
+  double sum = 0;
+  for (int k = 0; k < contact.planes; ++k) sum += std::max(pushes[static_cast<std::size_t>(k)], 0.0);
+  return sum;
+}
+
+void Constraints::filter(const VecX& v, Filter& filter) const {
+  filter.clear();
+  for (int i = 0; i < static_cast<int>(held_.size()); ++i)
+    if (held(i))
+      filter.constrain(i, Mat3::Zero(),
+                       moving_pins_.empty() ? Vec3(-v.segment<3>(3 * i))
+                                            : Vec3(pin_velocity_.segment<3>(3 * i) - v.segment<3>(3 * i)));
+  for (const Contact& c : trial_) {
+    if (!c.active()) continue;
+    const Vec3 normal_part = along_planes(c, normal_speeds(c));
+    const Mat3 Q = c.locked_directions();
+    const Mat3 S = Mat3::Identity() - Q * Q.transpose();
+    const Vec3 now = v.segment<3>(3 * c.particle);
+    if (c.grip == Grip::stick)
+      filter.constrain(c.particle, Mat3::Zero(), normal_part + S * c.body_velocity() - now);
+    else
+      filter.constrain(c.particle, S, normal_part - (now - S * now));
+  }
+}
+
+const std::vector<ContactFriction>& Constraints::friction() {
+  friction_.clear();
+  for (const Contact& c : trial_) {
+    if (!c.active() || c.grip == Grip::stick) continue;
+    const double mu = friction_of(c).kinetic;
+    if (mu == 0) continue;
+    ContactFriction f{c.particle, c.plane[0].obstacle, Mat3::Zero(), c.body_velocity(), Vec3::Zero()};
+    if (c.grip == Grip::breaking_loose) {
+      f.impulse = c.friction_impulse;
+    } else {
+      const Mat3 Q = c.locked_directions();
+      const double coefficient = mu * c.normal_impulse / (h_ * std::max(c.slip.norm(), 1e-12));
+      f.damping = coefficient * (Mat3::Identity() - Q * Q.transpose());
+    }
+    friction_.push_back(f);
+  }
+  return friction_;
+}
+
+bool Constraints::react(const VecX& v, const VecX& r, double noise) {
+  bool changed = false;
+  for (Contact& c : trial_) {
+    if (!c.active()) continue;
+    if (update_grip(c, v, r.segment<3>(3 * c.particle), noise)) changed = true;
+  }
+  if (!two_way_) return changed;
+  return changed || move_bodies(noise);  // bodies wait for the contacts to come to a decision
+}
+
+bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double noise) const {
+  const std::array<double, 3> lambda = multipliers(c, r);
+  const auto weakest =
+      static_cast<std::size_t>(std::min_element(lambda.begin(), lambda.begin() + c.planes) - lambda.begin());
+  if (lambda[weakest] < -noise) {  // it would pull the particle towards the body: let go
+    for (auto k = static_cast<int>(weakest); k + 1 < c.planes; ++k)
+      c.plane[static_cast<std::size_t>(k)] = c.plane[static_cast<std::size_t>(k) + 1];
+    --c.planes;
+    c.arrival_impulse = arrival_impulse(c);
+    if (!c.active()) return true;
+    // It slides along what still holds, more ways than before.
+    c.last_slip = tangential(c, v_.segment<3>(3 * c.particle) - c.body_velocity());
+    c.slip = c.last_slip;
+    return true;
+  }
+  const Friction& mu = friction_of(c);
+  double normal = 0;
+  for (int k = 0; k < c.planes; ++k) normal += std::max(lambda[static_cast<std::size_t>(k)], 0.0);
+  const double rubbed = mu.kinetic * c.normal_impulse;
+  c.normal_impulse = normal;
+  if (c.changes >= most_changes) return false;
+
+  const Vec3 rub = tangential(c, r);
+  const Vec3 slip = tangential(c, v.segment<3>(3 * c.particle) - c.body_velocity());
+  Grip next = c.grip;
+  switch (c.grip) {
+    case Grip::stick:
+      if (rub.norm() > mu.statics * normal + noise) {
+        next = Grip::breaking_loose;
+        c.friction_impulse = mu.kinetic * normal * rub.normalized();
+      }
+      break;
+    case Grip::breaking_loose:
+      if (slip.dot(c.friction_impulse) > 0) next = Grip::stick;  // friction would drive the motion
+      break;
+    case Grip::slide:
+      if (masses_[static_cast<std::size_t>(c.particle)] * slip.norm() < stop_fraction * mu.kinetic * normal)
+        next = Grip::stick;
+      else if (slip.norm() * rubbed > overrubbed * mu.kinetic * normal * c.slip.norm()) {
+        c.slip = slip;  // faster than was expected: the damper rubbed with more than mu N
+        ++c.changes;
+        return true;
+      }
+      break;
+  }
+  if (next == c.grip) return false;
+  c.grip = next;
+  ++c.changes;
+  return true;
+}
+
+}  // namespace drape
