@@ -8,6 +8,8 @@
 //   react        the same: releases, sticks, slides; true when the step must be solved again
 //   check_paths  takes the motion found: catches what would pass through a body; true when it must be solved
 //                again
+//   move_bodies  when all these have come to a decision: true when a body that reacts moves otherwise than it
+//                was taken to, and the step must be solved again
 //   end_step     guards the final motion (nothing crosses a surface), commits the contacts
 // A step that failed is abandoned by not calling end_step: the contacts of the last good step still stand.
 #pragma once
@@ -90,6 +92,7 @@ class Constraints {
   bool check_paths(const VecX& x_new);
   // The same motion, for the contacts of faces: true when other ones act, and their force has changed.
   bool react_faces(const VecX& x_new, const VecX& v_new) { return faces_.react(x_new, v_new); }
+  bool move_bodies(double noise);  // N s, as for react
   ContactReport end_step(VecX& x_new, VecX& v_new);
 
   // Without a filter for contacts, only for pins: in the place of begin_step, and of all from friction on to
@@ -136,7 +139,6 @@ class Constraints {
   }
   const Friction& friction_of(const Contact& contact) const { return body_of(contact).obstacle().friction; }
   void move_pins();
-  bool move_bodies(double noise);
 
   ContactOptions options_;
   std::vector<MovingBody> bodies_;

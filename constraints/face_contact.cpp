@@ -131,8 +131,7 @@ void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX
   contact.active = contact.gap_at(x_new) < 0;
   if (const FaceContact* const old = before(contact.body, f)) {
     contact.active = contact.active || old->active;
-    contact.push = old->push;
-    contact.slip = old->slip;
+    contact.damper = old->rubbing();
   }
   found.push_back(contact);
 }
@@ -159,6 +158,10 @@ bool FaceContacts::react(const VecX& x_new, const VecX& v_new) {
     const double gap = c.gap_at(x_new);
     c.push = std::max(-c.stiffness * gap, 0.0);
     c.slip = c.slip_at(v_new).norm();
+    if (c.damper == 0 && c.rubbing() > 0) {
+      c.damper = c.rubbing();
+      changed = true;
+    }
     if (c.active == (gap < 0) || c.changes == most_changes) continue;
     c.active = gap < 0;
     ++c.changes;

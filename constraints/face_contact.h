@@ -7,7 +7,8 @@
 //                                                    nothing
 //   E = k/2 g^2 for g < 0,   f_k = -k g w_k n,   K_kl = k w_k w_l n n^T
 //   friction: the damper mu N / |u| on the part u of sum w_k v_k - v_b along the surface, N = -k g and |u|
-//   those of the solve before; below slow [m/s] it creeps instead of sticking.
+//   those of the step before (where it touches anew: of the solve before); below slow [m/s] it creeps instead
+//   of sticking.
 // A constraint would lock two or three particles to each other, which a filter of 3x3 blocks cannot say; the
 // spring's blocks stand where the edges of the triangle have theirs. k is the cloth's own membrane stiffness:
 // so it changes neither the condition of the matrix nor the step that explicit methods bear, and a load that
@@ -40,8 +41,9 @@ struct FaceContact {
   double friction;     // mu
   bool active = false;
   int changes = 0;  // of that, within this step
-  double push = 0;  // N, of the last solve
-  double slip = 0;  // m/s, |u| of the last solve
+  double push = 0;    // N, of the last solve
+  double slip = 0;    // m/s, |u| of the last solve
+  double damper = 0;  // N s/m, of the friction in this step
 
   template <class Vector>
   Vec3 at(const Vector& x) const {
@@ -55,7 +57,7 @@ struct FaceContact {
     const Vec3 u = at(v) - body_velocity;
     return u - normal.dot(u) * normal;
   }
-  double rubbing() const;  // N s/m, the damper
+  double rubbing() const;  // N s/m, the damper that push and slip make
 };
 
 class FaceContacts {

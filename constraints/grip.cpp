@@ -105,8 +105,7 @@ bool Constraints::react(const VecX& v, const VecX& r, double noise) {
     if (!c.active()) continue;
     if (update_grip(c, v, r.segment<3>(3 * c.particle), noise)) changed = true;
   }
-  if (!two_way_) return changed;
-  return changed || move_bodies(noise);  // bodies wait for the contacts to come to a decision
+  return changed;
 }
 
 bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double noise) const {

@@ -45,7 +45,7 @@ void Constraints::receive_faces(const VecX& v) {
   for (const FaceContact& c : faces_.touching()) {
     Vec3 place = c.at(x_) + h_ * c.at(v) + c.at(correction_);
     const double gap = c.gap + c.normal.dot(place);
-    const Vec3 impulse = h_ * (c.stiffness * std::max(-gap, 0.0) * c.normal - c.rubbing() * c.slip_at(v));
+    const Vec3 impulse = h_ * (c.stiffness * std::max(-gap, 0.0) * c.normal - c.damper * c.slip_at(v));
     work_ += c.body_velocity.dot(impulse);
     bodies_[static_cast<std::size_t>(c.body)].push(-impulse, place, (c.at(v_) - c.body_velocity).norm());
   }
@@ -53,6 +53,7 @@ void Constraints::receive_faces(const VecX& v) {
 
 // Bodies that moved otherwise than they were taken to: their planes and pins move with them.
 bool Constraints::move_bodies(double noise) {
+  if (!two_way_) return false;
   bool moved = false;
   for (MovingBody& body : bodies_)
     if (body.correct(noise)) moved = true;

@@ -38,7 +38,7 @@ void Constraints::respond(ContactMode mode, const VecX& x, const VecX& v, VecX& 
         if (!held(i)) respond(mode, i, chunk, x_new, v_new);
     });
     take_responses(v_new);
-    again = two_way_ && move_bodies(noise);
+    again = move_bodies(noise);
   }
   if (!moved) return;
   for (const MovingPin& pin : moving_pins_) {  // with the body as it moves now

@@ -226,7 +226,7 @@ LinearReport Bdf::solve_within_contacts(const State& state, Stiffness stiffness,
     bool changed = constraints_.react(v_new_, r_, 2 * linear.residual_impulse);
     x_new_ = x_bar_ + c_ * v_new_;
     const bool caught = constraints_.check_paths(x_new_), faces = constraints_.react_faces(x_new_, v_new_);
-    changed = changed || caught || faces;
+    changed = changed || caught || faces || constraints_.move_bodies(2 * linear.residual_impulse);
     if ((caught || faces) && back_ > 0) mark_touching();  // what is caught now starts anew
     if ((caught && back_ > 0) || faces) linearise(state, stiffness, report);
     if (!changed && (tolerance == options_.tolerance || linear.residual <= options_.tolerance)) return linear;

@@ -29,19 +29,19 @@ class FaceContactForce final : public Force {
 
   double dissipation(const VecX&, const VecX& v) const override {
     double sum = 0;
-    for (const FaceContact& c : touching()) sum += 0.5 * c.rubbing() * c.slip_at(v).squaredNorm();
+    for (const FaceContact& c : touching()) sum += 0.5 * c.damper * c.slip_at(v).squaredNorm();
     return sum;
   }
 
   void add_force(const VecX& x, const VecX& v, VecX& f) const override {
     for (const FaceContact& c : touching())
-      spread(c, -c.stiffness * std::min(c.gap_at(x), 0.0) * c.normal - c.rubbing() * c.slip_at(v), f);
+      spread(c, -c.stiffness * std::min(c.gap_at(x), 0.0) * c.normal - c.damper * c.slip_at(v), f);
   }
 
   void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,
                       BlockMatrix& A, VecX& b) const override {
     for (const FaceContact& contact : touching()) {
-      const double g = contact.gap_at(x), d = contact.rubbing();
+      const double g = contact.gap_at(x), d = contact.damper;
       const bool acts = contact.active || g < 0;
       const double push = acts ? contact.stiffness * (g + contact.normal.dot(contact.at(y))) : 0;
       spread(contact, c * (-push * contact.normal - d * contact.slip_at(v)), b);

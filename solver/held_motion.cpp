@@ -115,7 +115,7 @@ void HeldMotion::solve_contacts(const State& state, const VecX& x, const VecX& v
     if (round == options.max_contact_solves + constraints_.most_corrections()) return;
     bool changed = constraints_.react(v_new_, r_, noise);
     if (constraints_.check_paths(x_new_)) changed = true;
-    if (!changed) return;
+    if (!changed && !constraints_.move_bodies(noise)) return;
   }
 }
 

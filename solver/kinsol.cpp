@@ -146,8 +146,8 @@ bool NewtonKinsol::attempt(State& state, const Piece& piece) {
     bool changed = constraints_.react(v_, r_, 2 * report_.residual * scale_);
     x_ = x_bar_ + h * v_;
     if (constraints_.check_paths(x_)) changed = true;
-    constraints_.react_faces(x_, v_);  // its force is followed by the search itself
-    if (!changed) break;
+    if (constraints_.react_faces(x_, v_)) changed = true;
+    if (!changed && !constraints_.move_bodies(2 * report_.residual * scale_)) break;
   }
   report_.converged = report_.converged && solved_;
   if (!constraints_.bodies_converged() && !piece.shortest)  // the report says so then
