@@ -71,8 +71,6 @@ class Constraints {
 
   const std::vector<MovingBody>& bodies() const { return bodies_; }
   bool bodies_converged() const;  // those that react
-  // How often a step may be solved again for their sake.
-  int most_corrections() const { return two_way_ ? ReactingBody::most_corrections : 0; }
   const std::vector<int>& pinned() const { return pinned_; }  // ascending
   const std::vector<MovingPin>& moving_pins() const { return moving_pins_; }
 

@@ -105,9 +105,14 @@ bool ReactingBody::correct(Pose& end, double noise) {
     const double Z = J_.norm() / std::max(approach_, h_ * body_.gravity.norm() + 1e-12);
     relaxation_ = 1 / (1 + Z / body_.mass);
   }
-  if (known_ && changes_ < most_changes) {
-    dq_.col(changes_) = q_ - last_q_;
-    dd_.col(changes_++) = d - last_d_;
+  if (known_) {  // the newest first, the oldest falls out
+    changes_ = std::min(changes_ + 1, most_changes);
+    for (int k = changes_ - 1; k > 0; --k) {
+      dq_.col(k) = dq_.col(k - 1);
+      dd_.col(k) = dd_.col(k - 1);
+    }
+    dq_.col(0) = q_ - last_q_;
+    dd_.col(0) = d - last_d_;
   }
   last_q_ = q_;
   last_d_ = d;

@@ -38,8 +38,6 @@ void check(const RigidBody& body);
 
 class ReactingBody {
  public:
-  static constexpr int most_corrections = 12;  // in a step
-
   ReactingBody(const RigidBody& body, const Pose& pose);
 
   // Of the last completed step.
@@ -62,7 +60,8 @@ class ReactingBody {
 
  private:
   using Vec6 = Eigen::Matrix<double, 6, 1>;
-  static constexpr int most_changes = 6;
+  static constexpr int most_corrections = 12;  // in a step
+  static constexpr int most_changes = 6;       // that are remembered
 
   Pose moved() const;
   Vec6 difference() const;

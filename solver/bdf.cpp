@@ -204,13 +204,11 @@ void Bdf::assemble(Stiffness stiffness) {
 
 LinearReport Bdf::solve_within_contacts(const State& state, Stiffness stiffness, StepReport& report) {
   // Which contacts hold is found with loose solves; the last one is to the tolerance asked for, from where
-  // they came.
+  // they came. Bodies that react wait for that one, and then the contacts may change their mind again.
   const bool contact = !constraints_.bodies().empty();
   double tolerance =
       contact ? std::max(options_.tolerance, std::sqrt(options_.tolerance)) : options_.tolerance;
-  const int rounds = options_.max_contact_solves + constraints_.most_corrections();
   for (int round = 0;; ++round) {
-    if (round == rounds) tolerance = options_.tolerance;
     LinearReport linear;
     {
       const Stopwatch watch(report.solve_ms);
@@ -219,18 +217,29 @@ LinearReport Bdf::solve_within_contacts(const State& state, Stiffness stiffness,
     ++report.linear_solves;
     report.linear_iterations += linear.iterations;
     if (linear.reason == StopReason::indefinite || linear.reason == StopReason::not_finite) return linear;
-    if (!contact || round == rounds) return linear;
+    if (!contact) return linear;
 
     const Stopwatch watch(report.collide_ms);
-    // Twice the residual: what the solve left over is not a reaction.
-    bool changed = constraints_.react(v_new_, r_, 2 * linear.residual_impulse);
-    x_new_ = x_bar_ + c_ * v_new_;
-    const bool caught = constraints_.check_paths(x_new_), faces = constraints_.react_faces(x_new_, v_new_);
-    changed = changed || caught || faces || constraints_.move_bodies(2 * linear.residual_impulse);
-    if ((caught || faces) && back_ > 0) mark_touching();  // what is caught now starts anew
-    if ((caught && back_ > 0) || faces) linearise(state, stiffness, report);
-    if (!changed && (tolerance == options_.tolerance || linear.residual <= options_.tolerance)) return linear;
-    if (!changed) tolerance = options_.tolerance;
+    const double noise = 2 * linear.residual_impulse;  // what the solve left over is not a reaction
+    bool changed = false, anew = false;                // anew: the forces are others, too
+    if (round < options_.max_contact_solves) {
+      changed = constraints_.react(v_new_, r_, noise);
+      x_new_ = x_bar_ + c_ * v_new_;
+      const bool caught = constraints_.check_paths(x_new_), faces = constraints_.react_faces(x_new_, v_new_);
+      if ((caught || faces) && back_ > 0) mark_touching();  // what is caught now starts anew
+      changed = changed || caught || faces;
+      anew = (caught && back_ > 0) || faces;
+    }
+    if (!changed) {
+      if (linear.residual > options_.tolerance && tolerance > options_.tolerance) {
+        tolerance = options_.tolerance;
+      } else {
+        if (!constraints_.move_bodies(noise)) return linear;
+        round = 0;
+        anew = !constraints_.faces().touching().empty();
+      }
+    }
+    if (anew) linearise(state, stiffness, report);
     guess_ = dv_;
   }
 }

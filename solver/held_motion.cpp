@@ -112,10 +112,14 @@ void HeldMotion::solve_contacts(const State& state, const VecX& x, const VecX& v
     move_within_constraints(state, x, h);
     constraints_.receive(v_new_, r_);
     let_go(x, v);
-    if (round == options.max_contact_solves + constraints_.most_corrections()) return;
-    bool changed = constraints_.react(v_new_, r_, noise);
-    if (constraints_.check_paths(x_new_)) changed = true;
-    if (!changed && !constraints_.move_bodies(noise)) return;
+    bool changed = false;
+    if (round < options.max_contact_solves) {
+      changed = constraints_.react(v_new_, r_, noise);
+      if (constraints_.check_paths(x_new_)) changed = true;
+    }
+    if (changed) continue;
+    if (!constraints_.move_bodies(noise)) return;
+    round = 0;
   }
 }
 

@@ -19,7 +19,8 @@ struct StepOptions {
   int max_linear_iterations =
       0;  // 0: chosen by size, and reaching it is a failure; given: the solve stops there and says so
   std::optional<ContactMode> contact = {};  // none: what the integrator does best
-  int max_contact_solves = 8;               // how often a step may be solved again because a contact changed
+  int max_contact_solves = 8;  // how often a step may be solved again because a contact changed, for every
+                               // motion that is tried for a body that reacts
   int max_rescues = 20;  // further Newton iterations when a full one would raise the incremental potential
   int max_halvings = 6;  // how often a failed step may be halved before it is given up
   // Of the integrators with inner steps (cvode-, arkode-): the error of one, relative to |x| and |v|, and

@@ -142,12 +142,17 @@ bool NewtonKinsol::attempt(State& state, const Piece& piece) {
     equation(v_);
     r_ = F_;
     constraints_.receive(v_, r_);
-    if (round == options_.max_contact_solves + constraints_.most_corrections()) break;
-    bool changed = constraints_.react(v_, r_, 2 * report_.residual * scale_);
-    x_ = x_bar_ + h * v_;
-    if (constraints_.check_paths(x_)) changed = true;
-    if (constraints_.react_faces(x_, v_)) changed = true;
-    if (!changed && !constraints_.move_bodies(2 * report_.residual * scale_)) break;
+    const double noise = 2 * report_.residual * scale_;
+    bool changed = false;
+    if (round < options_.max_contact_solves) {
+      changed = constraints_.react(v_, r_, noise);
+      x_ = x_bar_ + h * v_;
+      if (constraints_.check_paths(x_)) changed = true;
+      if (constraints_.react_faces(x_, v_)) changed = true;
+    }
+    if (changed) continue;
+    if (!constraints_.move_bodies(noise)) break;
+    round = 0;
   }
   report_.converged = report_.converged && solved_;
   if (!constraints_.bodies_converged() && !piece.shortest)  // the report says so then
