@@ -126,6 +126,19 @@ TEST_CASE("an output folder without permission is refused", "[cli]") {
   CHECK_THAT(run.err, Contains("locked") && Contains("cannot"));
 }
 
+TEST_CASE("a frame does not replace the mesh beside which the program stands", "[cli]") {
+  const Workshop shop;
+  fs::create_directory(shop.path / "frames");
+  fs::rename(shop.path / "sheet.obj", shop.path / "frames/sheet_0001.obj");
+  shop.write("frames/s.toml",
+             "[[cloth]]\nname = \"sheet\"\nmesh = \"sheet_0001.obj\"\nfabric = \"cotton-poplin\"\n");
+  const std::string before = content(shop.path / "frames/sheet_0001.obj");
+  const Outcome run = shop.shell("cd frames && '" DRAPE_PROGRAM "' simulate s.toml --frames obj --out ..");
+  CHECK(run.exit_code == 2);
+  CHECK_THAT(run.err, Contains("would be overwritten"));
+  CHECK(content(shop.path / "frames/sheet_0001.obj") == before);
+}
+
 TEST_CASE("a disk that fills up during a run leaves nothing half written", "[cli]") {
   const Workshop shop;
   const Outcome run =
@@ -185,4 +198,12 @@ TEST_CASE("a failed computation says where, ends with 1 and keeps what went befo
       shop.drape("simulate s.toml --out o --quiet --duration 2 --set simulation.gravity=[0,-1e308,0]");
   CHECK(far.exit_code == 1);
   CHECK_THAT(far.err, StartsWith("error: step "));
+  // A step that is spoilt only after it was cut into pieces: what is written is the step before.
+  shop.write("beyond.toml", shop.cloth +
+                                "[[obstacle]]\nshape = \"mesh\"\nmesh = \"ball.obj\"\n"
+                                "translate = [0, -3, 0]\nmass = 1e-300\n");
+  const Outcome beyond = shop.drape("simulate beyond.toml --out b --quiet");
+  CHECK(beyond.exit_code == 1);
+  CHECK(lines_of(beyond.err) == 1);
+  CHECK(shop.json("b/run.json")["state"] == "failed");
 }
