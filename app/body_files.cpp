@@ -31,7 +31,11 @@ bool moves_or_reacts(const MovingBody& body) { return body.obstacle().motion.mov
 
 bool deforms(const MovingBody& body) { return std::holds_alternative<DeformingBody>(body.obstacle().shape); }
 
-bool has_shape(const MovingBody& body) { return drawn(body.obstacle().shape).vertex_count() > 0; }
+// None where a run has failed and left it at no place.
+bool has_shape(const MovingBody& body) {
+  const bool somewhere = body.pose().rotation.allFinite() && body.pose().translation.allFinite();
+  return somewhere && drawn(body.obstacle().shape).vertex_count() > 0;
+}
 
 Names file_names(const Simulation& simulation) {
   Names bodies, cloths;
@@ -130,7 +134,8 @@ void BodyFiles::frame(int number, double time) {
 
 void BodyFiles::finish(double time, std::vector<AtomicFile>& files) {
   for (std::size_t k = 0; k < entries_.size(); ++k)
-    if (entries_[k].has_shape) files.push_back(written(shape_path(entries_[k]), present_mesh(body(k), time)));
+    if (entries_[k].has_shape && has_shape(body(k)))
+      files.push_back(written(shape_path(entries_[k]), present_mesh(body(k), time)));
   if (!poses_) return;
   poses_->close();
   files.push_back(std::move(*poses_));

@@ -1,7 +1,8 @@
 // The bodies of a run in its output folder, so that a result can be looked at with what it lies on.
-//   bodies/NAME.obj        the last shape and place of each body but planes
-//   bodies.csv             frame, time [s], body, x y z [m] and the unit quaternion qw qx qy qz, a row
-//                          a frame and body that is moved or reacts: x = R X + t, X as it was drawn
+//   bodies/NAME.obj        the last shape and place of each body but planes and level sets
+//   bodies.csv             frame, time [s], body, x y z [m] and the unit quaternion qw qx qy qz, a row for
+//                          each frame and body that is moved or reacts: x = R X + t, X a point of the body
+//                          as it was drawn
 //   frames/NAME_0001.obj   where frames are OBJ files, of those bodies and of those that deform
 #pragma once
 

@@ -75,7 +75,7 @@ LevelSet cached_level_set(const TriangleMesh& mesh, const LevelSetRequest& reque
     }
   }
   LevelSet made = LevelSet::from_mesh(mesh, options, name);
-  keep(made, path, messages);
+  if (request.keep) keep(made, path, messages);
   return made;
 }
 

@@ -15,6 +15,7 @@ struct LevelSetRequest {
   double scale = 1;            // of the file; what is read from it has it already
   double voxel = 0;            // m, 0: chosen
   double margin = 0;           // m, outside the surface that must lie within the band
+  bool keep = true;            // one that had to be made
 };
 
 // `mesh` is what the file holds, scaled. Reads the kept level set, or makes one and keeps it. A note is added

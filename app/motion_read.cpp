@@ -21,8 +21,7 @@ std::vector<Keyframe> read_keyframes(Table& motion) {
   std::vector<Keyframe> all;
   for (Table& table : motion.tables("keyframes")) {
     Keyframe keyframe = all.empty() ? Keyframe{} : all.back();  // what is not given stays
-    table.require("time");
-    table.read("time", keyframe.time, dimension::time);
+    table.read_required("time", keyframe.time, dimension::time);
     table.read("translate", keyframe.translate, dimension::length);
     const Turns turns = read_turns(table);
     if (table.has("rotate")) keyframe.rotation = rotation_of(turns, keyframe.rotation);
@@ -73,8 +72,7 @@ Vec3 read_spin(Table& table) {
   Table spin = table.tables("spin").front();
   double rate = 0;
   const Vec3 axis = read_axis(spin);
-  spin.require("rate");
-  spin.read("rate", rate, dimension::angular_rate);
+  spin.read_required("rate", rate, dimension::angular_rate);
   spin.finish();
   return rate * axis;
 }

@@ -11,8 +11,7 @@ namespace fs = std::filesystem;
 
 Vec3 read_axis(Table& table) {
   Vec3 axis = Vec3::UnitY();
-  table.require("axis");
-  table.read("axis", axis, dimension::number);
+  table.read_required("axis", axis, dimension::number);
   if (!(axis.norm() > 0)) table.fail("axis", "expected an axis that has a length");
   return axis.normalized();
 }
@@ -22,8 +21,7 @@ Turns read_turns(Table& table) {
   for (Table& turn : table.tables("rotate")) {
     double angle = 0;
     const Vec3 axis = read_axis(turn);
-    turn.require("angle");
-    turn.read("angle", angle, dimension::angle);
+    turn.read_required("angle", angle, dimension::angle);
     turn.finish();
     turns.emplace_back(angle, axis);
   }
@@ -48,8 +46,7 @@ Placement read_placement(Table& table) {
 
 fs::path read_path(Table& table, const std::string& key, const fs::path& folder) {
   std::string text;
-  table.require(key);
-  table.read(key, text);
+  table.read_required(key, text);
   if (text.empty()) table.fail(key, "expected the name of an OBJ file");
   return (folder / text).lexically_normal();
 }
@@ -66,16 +63,14 @@ Shape read_plane(Table& table) {
 Shape read_sphere(Table& table) {
   Sphere sphere;
   table.read("centre", sphere.centre, dimension::length);
-  table.require("radius");
-  table.read("radius", sphere.radius, dimension::length, Range::positive);
+  table.read_required("radius", sphere.radius, dimension::length, Range::positive);
   return sphere;
 }
 
 Shape read_bowl(Table& table) {
   Bowl bowl;
   table.read("centre", bowl.centre, dimension::length);
-  table.require("radius");
-  table.read("radius", bowl.radius, dimension::length, Range::positive);
+  table.read_required("radius", bowl.radius, dimension::length, Range::positive);
   table.read("thickness", bowl.thickness, dimension::length, Range::positive);
   table.read("axis", bowl.axis, dimension::number);
   return bowl;
@@ -84,18 +79,16 @@ Shape read_bowl(Table& table) {
 Shape read_box(Table& table) {
   Box box;
   table.read("centre", box.centre, dimension::length);
-  table.require("size");
-  table.read("size", box.size, dimension::length);
+  table.read_required("size", box.size, dimension::length);
   box.rotation = read_rotation(table);
   return box;
 }
 
 Shape read_capsule(Table& table) {
   Capsule capsule;
-  for (const char* key : {"a", "b", "radius"}) table.require(key);
-  table.read("a", capsule.a, dimension::length);
-  table.read("b", capsule.b, dimension::length);
-  table.read("radius", capsule.radius, dimension::length, Range::positive);
+  table.read_required("a", capsule.a, dimension::length);
+  table.read_required("b", capsule.b, dimension::length);
+  table.read_required("radius", capsule.radius, dimension::length, Range::positive);
   return capsule;
 }
 
@@ -118,10 +111,8 @@ Friction read_friction(Table& table) {
     return friction = mu;
   }
   Table both = table.tables("friction").front();
-  both.require("static");
-  both.require("kinetic");
-  both.read("static", friction.statics, dimension::number, Range::not_negative);
-  both.read("kinetic", friction.kinetic, dimension::number, Range::not_negative);
+  both.read_required("static", friction.statics, dimension::number, Range::not_negative);
+  both.read_required("kinetic", friction.kinetic, dimension::number, Range::not_negative);
   both.finish();
   return friction;
 }
@@ -143,8 +134,7 @@ ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
   ObstacleEntry entry;
   entry.where = table.where();
   std::string shape;
-  table.require("shape");
-  table.read("shape", shape, shape_names());
+  table.read_required("shape", shape, shape_names());
   if (shape == "plane") entry.obstacle.shape = read_plane(table);
   if (shape == "sphere") entry.obstacle.shape = read_sphere(table);
   if (shape == "bowl") entry.obstacle.shape = read_bowl(table);

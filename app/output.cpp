@@ -42,7 +42,8 @@ bool same(const fs::path& a, const fs::path& b) {
 // frames/NAME_0001.obj and so on: how many there will be is not known yet.
 bool is_frame_of(const std::string& name, const fs::path& frames, const fs::path& input) {
   const std::string file = input.filename().string();
-  return file.starts_with(name + "_") && file.ends_with(".obj") && same(frames, input.parent_path());
+  const fs::path folder = input.has_parent_path() ? input.parent_path() : ".";
+  return file.starts_with(name + "_") && file.ends_with(".obj") && same(frames, folder);
 }
 
 }  // namespace

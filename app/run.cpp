@@ -41,6 +41,21 @@ std::string strongest_term(const System& system, const State& state, int particl
   return strongest;
 }
 
+// s, until when bodies or pins are moved: cloth that rests before may still be set going.
+double last_motion(const Scene& scene, const Constraints& constraints) {
+  double last = 0;
+  for (const ClothEntry& cloth : scene.cloths)
+    for (const PinEntry& pin : cloth.pins)
+      if (pin.motion) last = std::max(last, pin.motion->last_time());
+  for (const MovingBody& body : constraints.bodies()) {
+    last = std::max(last, body.obstacle().motion.last_time());
+    const auto* const deforming = std::get_if<DeformingBody>(&body.obstacle().shape);
+    if (deforming && deforming->frames->frame_count() > 1)
+      last = std::max(last, deforming->frames->last_time());
+  }
+  return last;
+}
+
 class Run {
  public:
   Run(const Scene& scene, Simulation& simulation, Output& output, const RunOptions& options);
@@ -48,6 +63,7 @@ class Run {
 
  private:
   bool step();
+  bool at_rest(const StepRow& row) const;
   void record_step(const StepRow& row);
   void write_due_frames();
   void write_frame();
@@ -69,6 +85,7 @@ class Run {
   Clock::time_point start_ = Clock::now();
   long step_count_, next_step_ = 1;
   long next_frame_ = 0;
+  double last_motion_;         // s
   double last_step_;           // s, of the last step
   double settled_since_ = -1;  // s, -1: it moves
   bool told_cut_ = false, told_not_converged_ = false;
@@ -79,7 +96,8 @@ Run::Run(const Scene& scene, Simulation& simulation, Output& output, const RunOp
       simulation_(simulation),
       output_(output),
       quiet_(options.quiet),
-      progress_(wanted_.duration, quiet_) {
+      progress_(wanted_.duration, quiet_),
+      last_motion_(last_motion(scene, *simulation.constraints)) {
   const double h = wanted_.time_step, exact = wanted_.duration / h;
   step_count_ = std::max(1L, std::lround(exact));
   last_step_ = h;
@@ -119,9 +137,9 @@ bool Run::step() {
   StepRow row;
   row.step = next_step_;
   row.report = simulation_.integrator->advance(state, at_last_step() ? last_step_ : wanted_.time_step);
-  if (row.report.done && !(state.x.allFinite() && state.v.allFinite())) {  // out of the range of numbers
+  if (const int bad = first_not_finite(state); bad >= 0) {  // out of the range of numbers
+    if (row.report.done) row.report.failure = {"a position or velocity is not a finite number", bad, {}};
     row.report.done = false;
-    row.report.failure = {"a position or velocity is not a finite number", first_not_finite(state), {}};
     state = before_;
   }
   if (!row.report.done) {
@@ -141,11 +159,19 @@ bool Run::step() {
   write_due_frames();
   progress_.show(row);
 
-  if (!(row.max_speed < wanted_.settle_speed))
+  if (!at_rest(row))
     settled_since_ = -1;
   else if (settled_since_ < 0)
     settled_since_ = row.time;
   return !(wanted_.stop_when_settled && settled_since_ >= 0 && row.time - settled_since_ >= settle_time);
+}
+
+// Nothing moves, nor is it going to.
+bool Run::at_rest(const StepRow& row) const {
+  if (!(row.max_speed < wanted_.settle_speed) || row.time < last_motion_) return false;
+  for (const MovingBody& body : simulation_.constraints->bodies())
+    if (body.reacting() && !(body.reacting()->velocity().norm() < wanted_.settle_speed)) return false;
+  return true;
 }
 
 void Run::tell_once(bool& told, const std::string& line) {

@@ -53,8 +53,8 @@ struct RigidBodyEntry {
 
 // Where a deforming body is in time: app/body_frames.h reads it.
 struct FramesEntry {
-  std::vector<std::filesystem::path>
-      files;             // OBJ files in order, one PC2 file, or one pattern; none: it stands
+  // OBJ files in order, one PC2 file, or one pattern; none: it stands.
+  std::vector<std::filesystem::path> files;
   bool pattern = false;  // "walk/body_%04d.obj"
   double rate = 25;      // 1/s
   double start = 0;      // s, time of the first frame

@@ -111,7 +111,7 @@ RigidBody rigid_body(const ObstacleEntry& entry, const Obstacle& obstacle, const
 }
 
 // The mesh is scaled before the grid is made, and the grid turned and moved: one is kept for all placements.
-LevelSetBody load_level_set(const ObstacleEntry& entry, Body& body, Names& messages) {
+LevelSetBody load_level_set(const ObstacleEntry& entry, bool keep, Body& body, Names& messages) {
   const std::string name = entry.mesh.string();
   const double scale = entry.placement.scale, margin = entry.obstacle.margin;
   require_file(entry.mesh, entry.where);
@@ -126,14 +126,14 @@ LevelSetBody load_level_set(const ObstacleEntry& entry, Body& body, Names& messa
       return read;
     }
     const TriangleMesh mesh = load(entry.mesh, entry.where, {.scale = scale}, body.report, messages);
-    return cached_level_set(mesh, {entry.mesh, scale, entry.voxel, margin}, messages);
+    return cached_level_set(mesh, {entry.mesh, scale, entry.voxel, margin, keep}, messages);
   }();
   body.level_set = described(grid);
   warn_of_error(grid, name, messages);
   return std::make_shared<const LevelSet>(grid.moved(entry.placement.rotation, entry.placement.translate));
 }
 
-void add_obstacles(const Scene& scene, Simulation& simulation) {
+void add_obstacles(const Scene& scene, bool keep_level_sets, Simulation& simulation) {
   for (const ObstacleEntry& entry : scene.obstacles) {
     Obstacle obstacle = entry.obstacle;
     Body body;
@@ -141,7 +141,7 @@ void add_obstacles(const Scene& scene, Simulation& simulation) {
     if (std::holds_alternative<MeshBody>(obstacle.shape))
       obstacle.shape = load_body(entry, body, simulation.messages);
     if (std::holds_alternative<LevelSetBody>(obstacle.shape))
-      obstacle.shape = load_level_set(entry, body, simulation.messages);
+      obstacle.shape = load_level_set(entry, keep_level_sets, body, simulation.messages);
     if (entry.rigid) obstacle.rigid = rigid_body(entry, obstacle, scene.simulation.gravity);
     try {
       simulation.constraints->add(std::move(obstacle));
@@ -195,11 +195,11 @@ void add_messages(const MeshReport& report, const std::string& name, Names& mess
   }
 }
 
-Simulation make_simulation(const Scene& scene) {
+Simulation make_simulation(const Scene& scene, bool keep_level_sets) {
   Simulation simulation;
   simulation.constraints = std::make_unique<Constraints>(scene.simulation.contact);
   add_cloths(scene, simulation);
-  add_obstacles(scene, simulation);
+  add_obstacles(scene, keep_level_sets, simulation);
   add_faces(scene, simulation);
   add_pins(scene, simulation);  // some of them to bodies
   add_warnings(scene, simulation);

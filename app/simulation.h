@@ -40,8 +40,9 @@ struct Simulation {
   const Cloth& cloth_of(int particle) const;
 };
 
-// Throws InputError when a mesh cannot be read or simulated, or a pin selects nothing.
-Simulation make_simulation(const Scene& scene);
+// Throws InputError when a mesh cannot be read or simulated, or a pin selects nothing. Level sets that are
+// made are kept beside their meshes (app/level_set_cache.h), or not.
+Simulation make_simulation(const Scene& scene, bool keep_level_sets = true);
 
 TriangleMesh placed(TriangleMesh mesh, const Placement& placement, const std::string& name);
 

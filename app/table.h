@@ -39,7 +39,12 @@ class Table {
   const Node* take(const std::string& key);  // any kind, null when absent
 
   void require(const std::string& key);  // throws when it is absent
-  void finish() const;                   // throws on a key that was not asked for
+  template <class Value, class... How>
+  void read_required(const std::string& key, Value& value, const How&... how) {
+    require(key);
+    read(key, value, how...);
+  }
+  void finish() const;  // throws on a key that was not asked for
 
   const std::string& where() const { return node_->where; }
   [[noreturn]] void fail(const std::string& key, const std::string& what) const;

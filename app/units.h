@@ -1,8 +1,7 @@
 // Quantities: "12 uN.m" -> 1.2e-5 in SI units, with a check that it is the kind of quantity that is wanted.
 //   text   a number, then a unit as udunits writes it (N.m, N m, N*m, g/m^2, g/m2, gf.cm^2/cm, um, deg);
-//   without a
-//          unit it is in SI units. Besides udunits' own: deg, gsm (g/m^2), oz (of mass), fps (frames per
-//          second).
+//          without a unit it is in SI units. Besides udunits' own: deg, gsm (g/m^2), oz (of mass), fps
+//          (frames per second).
 #pragma once
 
 #include <string>

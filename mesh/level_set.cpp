@@ -63,13 +63,17 @@ LevelSet LevelSet::from_mesh(const TriangleMesh& mesh, const LevelSetOptions& op
       lower = lower.cwiseMin(mesh.positions[v]);
       upper = upper.cwiseMax(mesh.positions[v]);
     }
-  auto grid = std::make_shared<VoxelGrid>(
-      empty_grid(voxel, std::max(options.band, least_band * voxel), lower, upper));
-  find_near_bricks(*grid, [&](const Vec3& x) { return surface.closest(x).distance; });
-  fill_bricks(*grid,
-              [&](const Index& i) { return surface.closest(voxel * Vec3(i[0], i[1], i[2])).distance; });
-  grid->error = measure_error(*grid, surface);
-  return LevelSet(std::move(grid));
+  const double band = std::max(options.band, least_band * voxel);
+  try {
+    auto grid = std::make_shared<VoxelGrid>(empty_grid(voxel, band, lower, upper));
+    find_near_bricks(*grid, [&](const Vec3& x) { return surface.closest(x).distance; });
+    fill_bricks(*grid,
+                [&](const Index& i) { return surface.closest(voxel * Vec3(i[0], i[1], i[2])).distance; });
+    grid->error = measure_error(*grid, surface);
+    return LevelSet(std::move(grid));
+  } catch (const InputError& error) {
+    throw InputError(name + ": " + error.what());
+  }
 }
 
 LevelSet LevelSet::read(const std::filesystem::path& path, double scale) {

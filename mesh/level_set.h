@@ -47,8 +47,8 @@ class LevelSet {
   // A file of ours, or any level set of uniform voxels (float; the first such grid). What a file does not
   // hold is made from its zero surface. All lengths are multiplied by `scale`. Throws InputError.
   static LevelSet read(const std::filesystem::path& path, double scale = 1);
-  std::string vdb()
-      const;  // what a .vdb file of it holds; throws InputError without OpenVDB; not of a moved one
+  // What a .vdb file of it holds; not of a moved one. Throws InputError without OpenVDB.
+  std::string vdb() const;
 
   // x -> rotation x + translate: the same grid at another place.
   LevelSet moved(const Mat3& rotation, const Vec3& translate) const;

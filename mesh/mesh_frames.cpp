@@ -2,15 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "mesh/obj.h"
 
 namespace drape {
+namespace {
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+}  // namespace
 
 void MeshFrames::add(double time, const std::vector<Vec3>& positions) {
   if (!std::isfinite(time) || (!times_.empty() && !(time > times_.back())))
-    throw InputError("a frame must be later than the one before, it is at " + std::to_string(time) + " s");
+    throw InputError("a frame must be later than the one before, it is at " + short_number(time) + " s");
   if (!times_.empty() && static_cast<int>(positions.size()) != vertices_)
     throw InputError("a frame has " + std::to_string(positions.size()) + " vertices, the first one has " +
                      std::to_string(vertices_));

@@ -110,8 +110,8 @@ void MovingBoxes::along(const Vec3& x0, const Vec3& x1, double from, const Ask& 
     const Node& node = nodes_[at.first];
     for (int child = 0; child < 4; ++child) {
       double enter = from, leave = node.count[child] == 0 ? -1 : until;
-      const auto keep = [&](double at_0,
-                            double at_1) {  // the s where what goes from the one to the other >= 0
+      // Keeps the s where what goes from the one to the other >= 0.
+      const auto keep = [&](double at_0, double at_1) {
         if (at_0 < 0 && at_1 < 0) leave = -1;
         if (at_0 < 0 && at_1 >= 0) enter = std::max(enter, at_0 / (at_0 - at_1));
         if (at_0 >= 0 && at_1 < 0) leave = std::min(leave, at_0 / (at_0 - at_1));

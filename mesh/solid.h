@@ -2,8 +2,9 @@
 //   V = sum det/6,   c = sum det/24 (a + b + c) / V,   det = a . (b x c), a b c the corners of a triangle
 //   I = integral of |x - c|^2 1 - (x - c)(x - c)^T; of a tetrahedron 0 a b c: integral of x x^T =
 //       det/120 (a a^T + b b^T + c c^T + s s^T), s = a + b + c
-// Wound inwards as a whole it is taken for the same solid; a surface whose triangles are wound both ways
-// gives nonsense.
+// Wound inwards as a whole it is taken for the same solid, and the inner wall of a hollow body takes away.
+// One whose triangles are wound both ways is wound anew, each piece outwards (mesh/surface_faces.h). Equal
+// triangles count once.
 #pragma once
 
 #include "mesh/triangle_mesh.h"

@@ -31,8 +31,8 @@ struct Diagonal {
 std::vector<int> counted_triangles(const TriangleMesh& mesh);
 
 std::vector<Edge> edges(const TriangleMesh& mesh);  // sorted by (a, b), each once
-std::vector<Hinge> hinges(
-    const TriangleMesh& mesh);  // sorted by (c, d, a, b); every pair of triangles of an edge
+// Sorted by (c, d, a, b); every pair of triangles of an edge.
+std::vector<Hinge> hinges(const TriangleMesh& mesh);
 std::vector<Diagonal> diagonals(const TriangleMesh& mesh);  // sorted by (c, d), each pair once, c != d
 
 // Closed walks along edges that have one triangle; a walk that meets itself is split there, so that no loop

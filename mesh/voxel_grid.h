@@ -35,8 +35,8 @@ struct VoxelGrid {
   std::vector<std::int32_t> bricks;  // number of a brick, or none; the near ones come first
   int near_count = 0, brick_count = 0;
   std::vector<float> nodes;  // m, distances, in_brick for each brick; 0 where they are not needed
-  std::vector<float>
-      coefficients;  // m, held_in_brick for each near one, and some more so that four can be read
+  // m, held_in_brick for each near one, and some more so that four can be read.
+  std::vector<float> coefficients;
   std::optional<LevelSetError> error;
 
   double depth() const { return std::max(band, 10 * voxel); }  // m

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <ostream>
 #include <random>
 #include <vector>
 
@@ -184,6 +186,31 @@ inline std::vector<Case> cases() {
           mesh_case(spun),
           {body(open_sheet()), [](Random& r) { return Vec3(r(-1, 1), 0, r(-1, 1)); },
            [](const Vec3&) { return false; }}};
+}
+
+// What first_hit says of many paths: it must lie on the margin, and nothing be nearer before it, or ever
+// where it says nothing.
+struct HitLaw {
+  int hits = 0, early = 0, missed = 0;
+  double off = 0;  // m
+
+  void path(const Shape& shape, const Vec3& x0, const Vec3& x1, double margin) {
+    if (closest(shape, x0).distance < margin + 1e-6) return;
+    const auto hit = first_hit(shape, x0, x1, margin);
+    const double until = hit ? hit->fraction : 1;
+    hits += hit.has_value();
+    if (hit) off = std::max(off, std::abs(hit->surface.distance - margin));
+    for (int k = 0; k < 300; ++k) {
+      const double s = until * k / 300, d = closest(shape, x0 + s * (x1 - x0), s).distance;
+      (hit ? early : missed) += d < margin - 1e-7;
+    }
+  }
+  bool holds(int least_hits) const { return hits > least_hits && off < 1e-7 && early == 0 && missed == 0; }
+};
+
+inline std::ostream& operator<<(std::ostream& out, const HitLaw& law) {
+  return out << law.hits << " hits, up to " << law.off << " m off the margin; nearer before a hit "
+             << law.early << " times, without one " << law.missed << " times";
 }
 
 inline constexpr double step = 1e-6;

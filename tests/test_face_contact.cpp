@@ -5,7 +5,7 @@
 
 #include "mesh/generate.h"
 #include "solver/face_contact_force.h"
-#include "tests/tables.h"
+#include "tests/same_bits.h"
 
 using namespace drape;
 using namespace drape::test;
@@ -181,17 +181,13 @@ TEST_CASE("what lies flat is held by its vertices, and its faces touch nothing",
 }
 
 TEST_CASE("faces give the same bits with 1, 2 and 7 threads", "[faces]") {
-  const ThreadsRestored restored;
-  VecX first;
-  for (int count : {1, 2, 7}) {
-    set_threads(count);
+  check_same_bits([] {
     Cloth cloth(grid(61, 61, 1, 1), {0.03, 0.11, 0.02});
     cloth.constraints.add(
         Obstacle{.shape = Box{{0, 0, 0}, {0.57, 0.2, 0.63}, rotation(0.3, {1, 1, 0})}, .margin = margin});
     ImplicitEuler stepper(cloth.system, cloth.constraints, make_linear_solver("mpcg"), {.tolerance = 1e-3});
     for (int n = 0; n < 25; ++n) REQUIRE(stepper.advance(cloth.state, 0.01).done);
     REQUIRE_FALSE(cloth.constraints.faces().touching().empty());
-    if (first.size() == 0) first = cloth.state.x;
-    CHECK(same_bits(first, cloth.state.x));
-  }
+    return cloth.state;
+  });
 }

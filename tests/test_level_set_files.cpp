@@ -173,6 +173,14 @@ TEST_CASE("the level set is kept beside the mesh and used the next time", "[leve
   }
 }
 
+TEST_CASE("check keeps no level set", "[level-set][cli]") {
+  const Room room;
+  const Outcome check = room.drape("check s.toml");
+  CHECK(check.exit_code == 0);
+  CHECK_THAT(check.out, Contains("off by at most"));
+  CHECK(room.kept().empty());
+}
+
 TEST_CASE("drape level-set makes a file that a scene can name", "[level-set][cli]") {
   const Room room;
   const Outcome made = room.drape("level-set ball.obj -o ball-grid.vdb --voxel '2 cm'");
@@ -199,6 +207,8 @@ TEST_CASE("drape level-set makes a file that a scene can name", "[level-set][cli
   refused("level-set ball.obj -o a.vdb --voxel '3 kg'", "expected a length");
   refused("level-set none.obj -o a.vdb", "none.obj");
   refused("level-set ball.obj -o no/folder/a.vdb", "cannot write");
+  refused("level-set sheet.obj -o no/folder/a.vdb", "cannot write");  // before anything is computed
+  refused("level-set ball.obj -o a.vdb --voxel 1e-7", "ball.obj: a voxel of 1e-07 m makes too large a grid");
   CHECK_FALSE(fs::exists(room.path / "a.vdb"));
   room.write("w.toml", Room::scene("mesh = \"ball-grid.vdb\"\nvoxel = 0.01"));
   refused("check w.toml", "w.toml:8: voxel");

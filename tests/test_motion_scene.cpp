@@ -4,15 +4,13 @@
 #include <numbers>
 #include <string>
 
-#include "app/pose_csv.h"
 #include "app/scene.h"
 #include "app/toml_file.h"
-#include "folder.h"
-#include "mesh/obj.h"
+#include "tests/folder.h"
+#include "tests/mistakes.h"
 
 using namespace drape;
-using Catch::Contains;
-using Catch::StartsWith;
+using namespace drape::test;
 
 namespace {
 
@@ -32,19 +30,9 @@ double off(const Motion& motion, double time, const Vec3& X, const Vec3& x) {
   return (motion.at(time).to_world(X) - x).norm();
 }
 
-struct Mistake {
-  std::string text, place, message;
-};
-
-void check_mistake(const Mistake& mistake, const std::filesystem::path& folder = "folder") {
-  INFO(mistake.text);
-  CHECK_THROWS_AS(read(mistake.text, folder), InputError);
-  CHECK_THROWS_WITH(read(mistake.text, folder),
-                    StartsWith(mistake.place) && Contains(mistake.message) && !Contains("\n"));
-}
-
-std::vector<Keyframe> poses(const std::string& text) {
-  return poses_of(parse_csv(text, "poses.csv"), "poses.csv");
+template <class Mistakes>
+void check_scenes(const Mistakes& mistakes, const std::filesystem::path& folder = "folder") {
+  check_mistakes(mistakes, [&](const std::string& text) { return read(text, folder); });
 }
 
 // Moments of what a shape encloses about its own axes through its centre, for a mass of 1, by cubes of side
@@ -131,7 +119,7 @@ TEST_CASE("keyframes are read, and what one does not say stays", "[motion]") {
 }
 
 TEST_CASE("poses are read from a CSV file beside the scene", "[motion]") {
-  const test::Folder folder;
+  const Folder folder;
   folder.write("poses.csv",
                "\xEF\xBB\xBF# from the tracker\r\n\"time [ms]\", x [mm],y [mm],z [mm],qw,qx,qy,qz\r\n"
                "0,0,0,0,1,0,0,0\r\n\r\n1000,100,0,0,0.7071,0,0.7071,0\r\n2000,+1e2,0,0,-1,0,0,0\r\n");
@@ -143,86 +131,39 @@ TEST_CASE("poses are read from a CSV file beside the scene", "[motion]") {
   CHECK(off(motion, 0.5, Vec3(0, 0, 1), Vec3(std::sqrt(0.5) + 0.05, 0, std::sqrt(0.5))) < 0.1);
 }
 
-TEST_CASE("the columns of poses have units and any order", "[motion]") {
-  const std::vector<Keyframe> turns = poses("rz,z,y,x,time,rx [deg],ry [deg]\n1,2,3,4,5,90,720\n");
-  REQUIRE(turns.size() == 1);
-  CHECK(turns[0].time == 5);
-  CHECK(turns[0].translate == Vec3(4, 3, 2));
-  CHECK((turns[0].rotation - Vec3(pi / 2, 4 * pi, 1)).norm() < 1e-14);
-  const std::vector<Keyframe> places = poses("time [min],x,y,z\n1,0,0,0\n2,0,0,1\n");
-  CHECK(places[1].time == 120);
-  CHECK(places[1].rotation.isZero(0));
-}
-
-TEST_CASE("a mistake in a file of poses is told with its line", "[motion]") {
-  const std::string head = "time,x,y,z\n0,0,0,0\n", turning = "time,x,y,z,qw,qx,qy,qz\n";
-  const Mistake table[] = {
-      {"", "poses.csv:", "at least one pose"},
-      {"time,x,y,z\n", "poses.csv:1:", "at least one pose"},
-      {"# a\n\ntime,x,y\n0,0,0\n", "poses.csv:3:", "of the columns x, y, z some are missing"},
-      {"x,y,z\n0,0,0\n", "poses.csv:1:", "expected a header with the columns time, x, y, z"},
-      {"0,0,0,0\n1,0,0,0\n", "poses.csv:1:", "unknown column '0'"},
-      {"tme,x,y,z\n0,0,0,0\n", "poses.csv:1:", "did you mean 'time'?"},
-      {"time;x;y;z\n0;0;0;0\n", "poses.csv:1:", "separated by commas"},
-      {"time,x,x,y,z\n0,0,0,0,0\n", "poses.csv:1:", "two columns 'x'"},
-      {"time [mm],x,y,z\n0,0,0,0\n", "poses.csv:1:", "column 'time [mm]': expected a time"},
-      {"time [ms,x,y,z\n0,0,0,0\n", "poses.csv:1:", "a unit stands in [ ]"},
-      {"time [blurb],x,y,z\n0,0,0,0\n", "poses.csv:1:", "'blurb' is not a unit"},
-      {"time,x,y,z,qw,qx,qy\n0,0,0,0,1,0,0\n",
-       "poses.csv:1:", "of the columns qw, qx, qy, qz some are missing"},
-      {"time,x,y,z,qw,qx,qy,qz,rx,ry,rz\n0,0,0,0,1,0,0,0,0,0,0\n", "poses.csv:1:", "given twice"},
-      {head + "1,0,0\n", "poses.csv:3:", "has 3 cells, the header has 4"},
-      {head + "1,0,0,0,\n", "poses.csv:3:", "has 5 cells"},
-      {head + "\n\n1,0,abc,0\n", "poses.csv:5:", "y = \"abc\": expected a finite number"},
-      {head + "1,0,,0\n", "poses.csv:3:", "y = \"\": expected a finite number"},
-      {head + "1,0,nan,0\n", "poses.csv:3:", "finite number"},
-      {head + "1,0,1e999,0\n", "poses.csv:3:", "finite number"},
-      {head + "1,0,3 mm,0\n", "poses.csv:3:", "y = \"3 mm\""},
-      {head + "1,0,\"0,0\n", "poses.csv:3:", "quotation mark"},
-      {head + "1,0,0\"0,0\n", "poses.csv:3:", "quotation mark"},
-      {head + "2,0,0,0\n1,0,0,0\n", "poses.csv:4:", "keyframes out of order: 1 s comes after 2 s"},
-      {head + "0,0,0,0\n", "poses.csv:3:", "keyframes out of order: 0 s comes after 0 s"},
-      {turning + "0,0,0,0,0.5,0,0,0\n", "poses.csv:2:", "the length of a unit quaternion is 1, not 0.5"},
-      {turning + "0,0,0,0,0,0,0,0\n", "poses.csv:2:", "quaternion"},
-  };
-  for (const Mistake& mistake : table) {
-    INFO(mistake.text);
-    CHECK_THROWS_AS(poses(mistake.text), InputError);
-    CHECK_THROWS_WITH(poses(mistake.text),
-                      StartsWith(mistake.place) && Contains(mistake.message) && !Contains("\n"));
-  }
-}
-
 TEST_CASE("a mistake in a motion is told with its line", "[motion]") {
+  const std::pair<const char*, const char*> motions[] = {
+      {R"(3)", "expected a table with one of velocity and spin"},
+      {R"({})", "expected one of velocity and spin"},
+      {R"({ velocty = [1, 0, 0] })", "did you mean 'velocity'?"},
+      {R"({ velocity = [1, 0, 0], poses = "a.csv" })", "expected one of"},
+      {R"({ keyframes = [], poses = "a.csv" })", "expected one of"},
+      {R"({ keyframes = [], start = 1 })", "expected one of"},
+      {R"({ start = 1 })", "neither velocity nor spin"},
+      {R"({ velocity = ["1 m", 0, 0] })", "expected a speed"},
+      {R"({ velocity = [1, 0, 0], end = 0 })", "must come after the start, 0 s"},
+      {R"({ velocity = [1, 0, 0], start = "2 s", end = "1 s" })", "the start, 2 s"},
+      {R"({ velocity = [1, 0, 0], centre = [0, 0, "1 s"] })", "expected a length"},
+      {R"({ spin = 3 })", "expected { axis"},
+      {R"({ spin = { axis = [0, 1, 0] } })", "'rate' is missing"},
+      {R"({ spin = { rate = 3 } })", "'axis' is missing"},
+      {R"({ spin = { axis = [0, 0, 0], rate = 3 } })", "an axis that has a length"},
+      {R"({ spin = { axis = [0, 1, 0], rate = "3 deg" } })", "a rate of turning"},
+      {R"({ spin = { axis = [0, 1, 0], rate = "3 Hz" } })", "names no angle"},
+      {R"({ poses = "" })", "the name of a CSV file"},
+      {R"({ poses = "none.csv" })", "folder/none.csv: no such file"},
+      {R"({ keyframes = [] })", "at least one"},
+      {R"({ keyframes = [1] })", "expected tables"},
+  };
+  std::vector<Mistake> table;
+  for (const auto& [motion, message] : motions)
+    table.push_back({ball + "motion = " + motion + "\n", "scene.toml:7:", message});
+  check_scenes(table);
+}
+
+TEST_CASE("a mistake in a keyframe is told with its line", "[motion]") {
   const std::string keys = ball + "motion = { keyframes = [\n";  // line 7; the first keyframe is line 8
   const Mistake table[] = {
-      {ball + "motion = 3\n", "scene.toml:7:", "expected a table with one of velocity and spin"},
-      {ball + "motion = {}\n", "scene.toml:7:", "expected one of velocity and spin"},
-      {ball + "motion = { velocty = [1, 0, 0] }\n", "scene.toml:7:", "did you mean 'velocity'?"},
-      {ball + "motion = { velocity = [1, 0, 0], poses = \"a.csv\" }\n", "scene.toml:7:", "expected one of"},
-      {ball + "motion = { keyframes = [], poses = \"a.csv\" }\n", "scene.toml:7:", "expected one of"},
-      {ball + "motion = { keyframes = [], start = 1 }\n", "scene.toml:7:", "expected one of"},
-      {ball + "motion = { start = 1 }\n", "scene.toml:7:", "neither velocity nor spin"},
-      {ball + "motion = { velocity = [\"1 m\", 0, 0] }\n", "scene.toml:7:", "expected a speed"},
-      {ball + "motion = { velocity = [1, 0, 0], end = 0 }\n",
-       "scene.toml:7:", "must come after the start, 0 s"},
-      {ball + "motion = { velocity = [1, 0, 0], start = \"2 s\", end = \"1 s\" }\n",
-       "scene.toml:7:", "the start, 2 s"},
-      {ball + "motion = { velocity = [1, 0, 0], centre = [0, 0, \"1 s\"] }\n",
-       "scene.toml:7:", "expected a length"},
-      {ball + "motion = { spin = 3 }\n", "scene.toml:7:", "expected { axis"},
-      {ball + "motion = { spin = { axis = [0, 1, 0] } }\n", "scene.toml:7:", "'rate' is missing"},
-      {ball + "motion = { spin = { rate = 3 } }\n", "scene.toml:7:", "'axis' is missing"},
-      {ball + "motion = { spin = { axis = [0, 0, 0], rate = 3 } }\n",
-       "scene.toml:7:", "an axis that has a length"},
-      {ball + "motion = { spin = { axis = [0, 1, 0], rate = \"3 deg\" } }\n",
-       "scene.toml:7:", "a rate of turning"},
-      {ball + "motion = { spin = { axis = [0, 1, 0], rate = \"3 Hz\" } }\n",
-       "scene.toml:7:", "names no angle"},
-      {ball + "motion = { poses = \"\" }\n", "scene.toml:7:", "the name of a CSV file"},
-      {ball + "motion = { poses = \"none.csv\" }\n", "scene.toml:7:", "folder/none.csv: no such file"},
-      {ball + "motion = { keyframes = [] }\n", "scene.toml:7:", "at least one"},
-      {ball + "motion = { keyframes = [1] }\n", "scene.toml:7:", "expected tables"},
       {keys + "{ translate = [0, 0, 0] },\n] }\n", "scene.toml:8:", "'time' is missing"},
       {keys + "{ time = 0 },\n{ time = 1, move = 1 },\n] }\n", "scene.toml:9:", "unknown key 'move'"},
       {keys + "{ time = 0 },\n{ time = \"1 m\" },\n] }\n", "scene.toml:9:", "expected a time"},
@@ -233,19 +174,20 @@ TEST_CASE("a mistake in a motion is told with its line", "[motion]") {
       {keys + "{ time = 0 },\n{ time = 0.0 },\n] }\n",
        "scene.toml:9:", "keyframes out of order: 0 s comes after 0 s"},
   };
-  for (const Mistake& mistake : table) check_mistake(mistake);
+  check_scenes(table);
 }
 
 TEST_CASE("a mistake in a file of poses names that file", "[motion]") {
-  const test::Folder folder;
+  const Folder folder;
   folder.write("poses.csv", "time,x,y,z\n1,0,0,0\n0,0,0,0\n");
   folder.write("empty.csv", "");
   const auto line = [&](const char* file) { return ball + "motion = { poses = \"" + file + "\" }\n"; };
-  check_mistake({line("poses.csv"), (folder.path / "poses.csv").string() + ":3:", "out of order"},
-                folder.path);
-  check_mistake({line("empty.csv"), (folder.path / "empty.csv").string() + ":", "the file is empty"},
-                folder.path);
-  check_mistake({line("."), folder.path.string(), "is a directory"}, folder.path);
+  const Mistake table[] = {
+      {line("poses.csv"), (folder.path / "poses.csv").string() + ":3:", "out of order"},
+      {line("empty.csv"), (folder.path / "empty.csv").string() + ":", "the file is empty"},
+      {line("."), folder.path.string(), "is a directory"},
+  };
+  check_scenes(table, folder.path);
 }
 
 TEST_CASE("a body with a mass has a first velocity, a spin and moments", "[motion]") {
@@ -300,7 +242,7 @@ TEST_CASE("a mistake in a body with a mass is told with its line", "[motion]") {
       {cloth + "[[obstacle]]\nshape = \"bowl\"\nradius = 1\nmass = 1\n",
        "scene.toml:6:", "a bowl cannot move"},
   };
-  for (const Mistake& mistake : table) check_mistake(mistake);
+  check_scenes(table);
 }
 
 TEST_CASE("pins follow a body or a path", "[motion]") {
@@ -343,5 +285,5 @@ TEST_CASE("a mistake in a pin that moves is told with its line", "[motion]") {
       {pin + "motion = { keyframes = [{ time = 1 },\n{ time = 0.5 }] } }]\n",
        "scene.toml:5:", "out of order"},
   };
-  for (const Mistake& mistake : table) check_mistake(mistake);
+  check_scenes(table);
 }

@@ -88,7 +88,7 @@ TEST_CASE("frames: straight in between, and the body stands before and after", "
     CHECK(at == Places{first, second});
   }
   CHECK(frames.frame_count() == 3);
-  CHECK_THROWS_WITH(frames.add(3, a), Contains("later"));
+  CHECK_THROWS_WITH(frames.add(3, a), Contains("later") && Contains("at 3 s"));
   CHECK_THROWS_WITH(frames.add(4, {{0, 0, 0}}), Contains("1 vertices") && Contains("2"));
   CHECK_THROWS_WITH(frames.add(4, {{0, 0, 0}, {0, std::nan(""), 0}}), Contains("vertex 1"));
   CHECK_THROWS_WITH(frames.add(4, {{0, 0, 0}, {0, 1e300, 0}}), Contains("vertex 1"));

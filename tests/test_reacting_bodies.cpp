@@ -82,6 +82,36 @@ TEST_CASE("the solid of a box mesh has the moments of the book", "[reacting]") {
             .norm() < 1e-9 * round.inertia.norm());
 }
 
+TEST_CASE("the solid of a surface does not depend on how its triangles are wound or told", "[reacting]") {
+  const TriangleMesh ball = sphere(3, 0.3);
+  const Solid whole = solid_of(ball);
+  TriangleMesh mixed = ball;
+  for (std::size_t t = 0; t < mixed.triangles.size(); t += 3)
+    std::swap(mixed.triangles[t][0], mixed.triangles[t][1]);
+  for (std::size_t t = 0; t < mixed.triangles.size(); t += 7)
+    mixed.triangles.push_back(Triangle(mixed.triangles[t]));
+  TriangleMesh seamed = ball;  // its first triangle has vertices of its own
+  for (int& v : seamed.triangles[0]) {
+    seamed.positions.push_back(ball.positions[static_cast<std::size_t>(v)]);
+    v = seamed.vertex_count() - 1;
+  }
+  for (const TriangleMesh& mesh : {mixed, seamed}) {
+    const Solid solid = solid_of(mesh);
+    CHECK(solid.volume == Approx(whole.volume));
+    CHECK((solid.centre - whole.centre).norm() < 1e-9);
+    CHECK((solid.inertia - whole.inertia).norm() < 1e-9 * whole.inertia.norm());
+  }
+  TriangleMesh hollow = ball;  // its inner wall, half as large, is wound inwards
+  for (const Vec3& x : ball.positions) hollow.positions.push_back(0.5 * x);
+  for (Triangle t : ball.triangles) {
+    for (int& v : t) v += ball.vertex_count();
+    std::swap(t[0], t[1]);
+    hollow.triangles.push_back(t);
+  }
+  CHECK(solid_of(hollow).volume == Approx(whole.volume * (1 - 0.125)));
+  CHECK(solid_of(hollow).inertia(0, 0) == Approx(whole.inertia(0, 0) * (1 - 0.03125)));
+}
+
 TEST_CASE("momentum of cloth and body together is kept in a collision", "[reacting]") {
   for (const std::string& name : integrator_names()) {
     if (name == "explicit-euler" || name == "midpoint") continue;  // unstable without damping at this step

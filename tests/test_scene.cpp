@@ -6,7 +6,7 @@
 #include "app/fabrics.h"
 #include "app/scene.h"
 #include "app/toml_file.h"
-#include "mesh/obj.h"
+#include "tests/mistakes.h"
 
 using namespace drape;
 using Catch::Contains;
@@ -90,10 +90,7 @@ TEST_CASE("springs given replace the fabric's, and the other way round", "[scene
 }
 
 TEST_CASE("a mistake in a scene is told with its line", "[scene]") {
-  struct Mistake {
-    std::string text, place, message;
-  };
-  const Mistake table[] = {
+  const test::Mistake table[] = {
       {cloth + "bend = \"10 N/m\"\n",
        "scene.toml:3:", "bend = \"10 N/m\": expected a bending rigidity such as \"10 uN.m\""},
       {cloth + "bent = 3\n",
@@ -151,12 +148,7 @@ TEST_CASE("a mistake in a scene is told with its line", "[scene]") {
       {cloth + "mesh = \"again.obj\"\n", "scene.toml:", "is not TOML"},
       {cloth + "bend = 10 uN.m\n", "scene.toml:3:", "is not TOML"},
   };
-  for (const Mistake& mistake : table) {
-    INFO(mistake.text);
-    CHECK_THROWS_AS(read(mistake.text), InputError);
-    CHECK_THROWS_WITH(read(mistake.text),
-                      StartsWith(mistake.place) && Contains(mistake.message) && !Contains("\n"));
-  }
+  test::check_mistakes(table, [](const std::string& text) { return read(text); });
 }
 
 TEST_CASE("settings change a scene before it is read", "[scene]") {

@@ -16,6 +16,8 @@ import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix, diags
 from scipy.sparse.linalg import spsolve
 
+from make_meshes import read
+
 here = pathlib.Path(__file__).resolve().parent
 rate = 30.0                             # Hz
 begin, end, duration = 0.7, 2.7, 3.2    # s: it stands before and after
@@ -26,17 +28,6 @@ knee_joint = np.array([0.17, 0.51, 0.02])
 shoulder = np.array([0.175, 1.42, 0.0])
 leg = hip[1]                            # m, long
 mirrored = np.array([-1.0, 1, 1])
-
-
-def read(path):
-    points, faces = [], []
-    for line in pathlib.Path(path).read_text().splitlines():
-        word = line.split()
-        if word[:1] == ["v"]:
-            points.append([float(w) for w in word[1:4]])
-        elif word[:1] == ["f"]:
-            faces.append([int(w.split("/")[0]) - 1 for w in word[1:]])
-    return np.array(points), faces
 
 
 def smooth(x):
@@ -65,7 +56,6 @@ def weights(points, faces):
     return (harmonic(faces, (y > 1.02) | ((x < -0.02) & (y < 0.9)), (y < 0.76) & (x > 0.02)),
             harmonic(faces, (y > 0.60) | (x < 0), (y < 0.44) & (x > 0)),
             harmonic(faces, torso | (x < 0) | ((y < 1.2) & (x < 0.26)), (x > 0.29) & (y > 0.3)))
-
 
 
 def swung(points, joint, angle, weight):

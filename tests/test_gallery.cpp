@@ -1,0 +1,171 @@
+// The scenes of the gallery as the program reads them: nothing of the cloth ends a step inside a body.
+//   -phi(x) <= 0        vertices, to round-off: they are guarded
+//   -phi(x) <= margin   eight points of every edge: contact is between vertices and a body
+// phi [m]: signed distance of the body where it is then. Each scene goes to where its cloth lies on the body,
+// or has been hit by it; whole scenes would take minutes.
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <set>
+
+#include "app/simulation.h"
+#include "mesh/topology.h"
+#include "tests/folder.h"
+
+using namespace drape;
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path scenes = DRAPE_SOURCE_DIR "/data/scenes";
+constexpr int points_on_edge = 8;
+constexpr double round_off = 1e-9;  // m
+
+struct Part {
+  const char* scene;
+  double until;     // s
+  int every;        // steps from one look to the next
+  bool met = true;  // whether the cloth comes to a body at all
+};
+
+// clang-format off
+const Part gallery[] = {
+    {"dressed-turn", 1.7, 4},     // the first step and half of the turn
+    {"flag", 1.1, 1, false},      // passes the pole at a distance of 8 mm
+    {"ls-ball-0", 0.7, 10},       // slides over the ball and comes to the floor
+    {"ls-ball-09", 0.9, 10},
+    {"net", 0.9, 1},              // the ball comes to it after 0.32 s
+    {"noh-jung-100", 0.5, 1},
+    {"noh-jung-200", 0.5, 1},
+    {"poncho", 0.6, 2},           // has come to the shoulders
+    {"rotating-ball", 4.8, 1},    // the ball turns from 3 s on, the fastest at 4.5 s
+    {"sheet-in-bowl", 0.6, 1},
+    {"sheet-on-ball", 0.6, 1},
+    {"tablecloth", 0.6, 1},       // hangs over the rims
+    {"tablecloth-pull", 1.6, 1},  // and is pulled from 1 s on
+    {"tee", 0.3, 2},
+};
+// clang-format on
+
+// The point that is farthest inside a body, or nearest to it.
+struct Deepest {
+  double depth = -std::numeric_limits<double>::infinity();  // m, negative: outside
+  double time = 0;                                          // s
+  int a = -1, b = -1;                                       // particles: of the edge, or twice the vertex
+  Vec3 place = Vec3::Zero();                                // m, as the body sees it
+
+  void look(const MovingBody& body, const Vec3& x, int i, int j, double t) {
+    const double here = -body.distance(x);
+    if (here > depth) *this = {here, t, i, j, body.pose().to_body(x)};
+  }
+};
+
+std::ostream& operator<<(std::ostream& out, const Deepest& d) {
+  return out << 1000 * d.depth << " mm at " << d.time << " s, between particles " << d.a << " and " << d.b
+             << ", where the body has " << d.place.transpose();
+}
+
+struct Depths {
+  Deepest vertex, edge;
+};
+
+std::vector<Edge> edges_of(const std::vector<Cloth>& cloths) {
+  std::vector<Edge> all;
+  for (const Cloth& cloth : cloths)
+    for (Edge e : edges(cloth.mesh)) {
+      e.a += cloth.first_particle;
+      e.b += cloth.first_particle;
+      all.push_back(e);
+    }
+  return all;
+}
+
+void look(const MovingBody& body, const std::vector<Edge>& edges, const State& state, Depths& depths) {
+  const auto at = [&](int i) { return Vec3(state.x.segment<3>(3 * i)); };
+  for (int i = 0; i < state.particles(); ++i) depths.vertex.look(body, at(i), i, i, state.time);
+  for (const Edge& e : edges) {
+    const Vec3 a = at(e.a), way = at(e.b) - a;
+    // A distance changes no faster than the place: from there none of the points is inside.
+    if (body.distance(a + 0.5 * way) > 0.5 * way.norm()) continue;
+    for (int k = 1; k <= points_on_edge; ++k)
+      depths.edge.look(body, a + k / (points_on_edge + 1.0) * way, e.a, e.b, state.time);
+  }
+}
+
+void check_part(const Part& part, const Scene& scene) {
+  Simulation simulation = make_simulation(scene);
+  const std::vector<Edge> edges = edges_of(simulation.cloths);
+  const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
+  std::vector<Depths> depths(bodies.size());
+  const double h = scene.simulation.time_step;
+  const long steps = std::lround(part.until / h);
+  for (long n = 1; n <= steps; ++n) {
+    INFO(part.scene << ", step " << n);
+    REQUIRE(simulation.integrator->advance(simulation.state, h).done);
+    for (std::size_t k = 0; k < bodies.size() && n % part.every == 0; ++k)
+      look(bodies[k], edges, simulation.state, depths[k]);
+  }
+  bool met = false;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const double margin = bodies[k].obstacle().margin;
+    INFO(part.scene << ", " << scene.obstacles[k].name << ", margin " << 1000 * margin << " mm");
+    INFO("vertices: " << depths[k].vertex);
+    INFO("edges: " << depths[k].edge);
+    CHECK(depths[k].vertex.depth <= round_off);
+    CHECK(depths[k].edge.depth <= margin);
+    met = met || depths[k].vertex.depth > -1.01 * margin;
+  }
+  INFO(part.scene);
+  CHECK(met == part.met);
+}
+
+// Whether all that the scene reads is there. The motion of a body is not kept but made: here, if it must be.
+bool complete(Scene& scene, const test::Folder& folder) {
+  const std::string script = DRAPE_SOURCE_DIR "/data/meshes/make_motion.py";
+  for (ObstacleEntry& obstacle : scene.obstacles)
+    for (fs::path& file : obstacle.frames.files) {
+      if (fs::exists(file)) continue;
+      const test::Outcome made =
+          folder.shell("/usr/bin/python3 '" + script + "' '" + obstacle.mesh.string() + "' motion.pc2");
+      if (made.exit_code != 0) {
+        WARN(scene.label << " is skipped: there is no " << file << ", and it was not made: " << made.err);
+        return false;
+      }
+      file = folder.path / "motion.pc2";
+    }
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("a look at the cloth finds what is inside a body", "[gallery]") {
+  Constraints constraints;
+  constraints.add(Obstacle{.shape = Sphere{{0, 0, 0}, 0.3}});
+  const std::vector<Edge> edges = {{0, 1, 1, 1}, {1, 2, 1, 1}};
+  State state{0.5, VecX::Zero(9), VecX::Zero(9)};
+  state.x << -0.09, 0.295, 0, 0.09, 0.295, 0, 0.09, 0.295,
+      5;  // an edge over the top, and one that leads away
+  Depths depths;
+  look(constraints.bodies()[0], edges, state, depths);
+  CHECK(depths.vertex.depth == Approx(0.3 - std::hypot(0.09, 0.295)));  // outside
+  CHECK(depths.vertex.depth < 0);
+  CHECK(depths.edge.depth == Approx(0.3 - std::hypot(0.01, 0.295)));  // the fourth point of eight
+  CHECK((depths.edge.a == 0 && depths.edge.b == 1));
+  CHECK(depths.edge.time == 0.5);
+}
+
+TEST_CASE("nothing of the cloth ends a step inside a body, in the whole gallery", "[gallery]") {
+  std::set<std::string> listed, found;
+  for (const Part& part : gallery) listed.insert(part.scene);
+  for (const auto& file : fs::directory_iterator(scenes))
+    if (file.path().extension() == ".toml" && !read_scene(file.path(), {}).obstacles.empty())
+      found.insert(file.path().stem().string());
+  CHECK(found == listed);
+  for (const Part& part : gallery) DYNAMIC_SECTION(part.scene) {
+      const test::Folder folder;
+      Scene scene = read_scene(scenes / (std::string(part.scene) + ".toml"), {});
+      if (complete(scene, folder)) check_part(part, scene);
+    }
+}
