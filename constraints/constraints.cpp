@@ -124,6 +124,7 @@ void Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<dou
   x_new_ = x_;
   if (foresight_) x_new_ += h_ * v_;
   faces_.begin_step(bodies_, x_, x_new_, options_.recovery_speed * h_);
+  if (!foresight_) faces_.limit_dampers(masses_, h_);
 }
 
 void Constraints::take_found() {

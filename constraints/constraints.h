@@ -70,7 +70,7 @@ class Constraints {
   const FaceContacts& faces() const { return faces_; }
 
   const std::vector<MovingBody>& bodies() const { return bodies_; }
-  bool bodies_converged() const;  // those that react
+  bool bodies_converged() const;                              // those that react
   const std::vector<int>& pinned() const { return pinned_; }  // ascending
   const std::vector<MovingPin>& moving_pins() const { return moving_pins_; }
 
@@ -91,6 +91,10 @@ class Constraints {
   // The same motion, for the contacts of faces: true when other ones act, and their force has changed.
   bool react_faces(const VecX& x_new, const VecX& v_new) { return faces_.react(x_new, v_new); }
   bool move_bodies(double noise);  // N s, as for react
+  // What faces did in a stage of an explicit step, which takes the force at x, v for so long [s].
+  void count_face_impulse(double duration, const VecX& x, const VecX& v) {
+    faces_.count_impulse(duration, x, v);
+  }
   ContactReport end_step(VecX& x_new, VecX& v_new);
 
   // Without a filter for contacts, only for pins: in the place of begin_step, and of all from friction on to

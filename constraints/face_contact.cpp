@@ -91,6 +91,7 @@ void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const VecX&
     last_.clear();
   }
   touching_.clear();
+  counted_ = false;
   for (const MovingBody& body : bodies) {
     measure_travel(body, x, x_new);
     parallel_for(chunk_count(n), n < serial_below, [&](int k) {
@@ -101,6 +102,27 @@ void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const VecX&
     });
     for (const auto& found : found_) touching_.insert(touching_.end(), found.begin(), found.end());
   }
+}
+
+void FaceContacts::limit_dampers(const std::vector<double>& masses, double h) {
+  for (FaceContact& c : touching_) {
+    double mobility = 0;  // 1/kg
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const double m = masses[static_cast<std::size_t>(c.particles[k])]; m > 0)
+        mobility += c.weights[static_cast<int>(k)] * c.weights[static_cast<int>(k)] / m;
+    c.most_damper = 0.25 / (h * mobility);
+    c.damper = std::min(c.damper, c.most_damper);
+  }
+}
+
+void FaceContacts::count_impulse(double duration, const VecX& x, const VecX& v) {
+  counted_ = true;
+  for (FaceContact& c : touching_) c.impulse += duration * c.force_at(x, v);
+}
+
+void FaceContacts::take_impulse(double h, const VecX& x_new, const VecX& v_new) {
+  if (counted_) return;
+  for (FaceContact& c : touching_) c.impulse = h * c.force_at(x_new, v_new);
 }
 
 void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX& x_new, double recovery,
@@ -159,7 +181,7 @@ bool FaceContacts::react(const VecX& x_new, const VecX& v_new) {
     c.push = std::max(-c.stiffness * gap, 0.0);
     c.slip = c.slip_at(v_new).norm();
     if (c.damper == 0 && c.rubbing() > 0) {
-      c.damper = c.rubbing();
+      c.damper = std::min(c.rubbing(), c.most_damper);
       changed = true;
     }
     if (c.active == (gap < 0) || c.changes == most_changes) continue;

@@ -17,7 +17,9 @@
 // solve. x [m], v [m/s], k [N/m], h [s].
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "constraints/moving_body.h"
@@ -40,10 +42,11 @@ struct FaceContact {
   Vec3 body_velocity;  // m/s
   double friction;     // mu
   bool active = false;
-  int changes = 0;  // of that, within this step
+  int changes = 0;    // of that, within this step
   double push = 0;    // N, of the last solve
   double slip = 0;    // m/s, |u| of the last solve
   double damper = 0;  // N s/m, of the friction in this step
+  double most_damper = std::numeric_limits<double>::infinity();  // N s/m
 
   template <class Vector>
   Vec3 at(const Vector& x) const {
@@ -57,6 +60,11 @@ struct FaceContact {
     const Vec3 u = at(v) - body_velocity;
     return u - normal.dot(u) * normal;
   }
+  Vec3 impulse = Vec3::Zero();  // N s, on the cloth in this step
+
+  Vec3 force_at(const VecX& x, const VecX& v) const {  // N, on the cloth
+    return -stiffness * std::min(gap_at(x), 0.0) * normal - damper * slip_at(v);
+  }
   double rubbing() const;  // N s/m, the damper that push and slip make
 };
 
@@ -68,10 +76,18 @@ class FaceContacts {
   // x -> x_new is the motion that is foreseen. recovery: how far what starts inside is brought out in this
   // step at most [m].
   void begin_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new, double recovery);
+  // For steps that take the force as it is at their start: stops what slides within a few steps of h [s], and
+  // never throws it back, however many faces share a particle.
+  void limit_dampers(const std::vector<double>& masses, double h);
   void follow(const std::vector<MovingBody>& bodies);  // bodies whose motion in this step has changed
   // After a solve: which act; true when that has changed.
   bool react(const VecX& x_new, const VecX& v_new);
   void end_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new);
+
+  // What the step does to the bodies: the force that acted for so long [s], where a step has stages; else that
+  // at its end, x = x_end + h v_b.
+  void count_impulse(double duration, const VecX& x, const VecX& v);
+  void take_impulse(double h, const VecX& x_new, const VecX& v_new);
 
   const std::vector<FaceContact>& touching() const { return touching_; }
 
@@ -85,6 +101,7 @@ class FaceContacts {
   std::vector<ClothFace> faces_;
   std::vector<double> room_;    // body, face: within this distance the body was not when last looked [m]
   std::vector<double> travel_;  // of a particle, as the body at hand sees it [m]
+  bool counted_ = false;
   std::vector<FaceContact> touching_, last_;     // of this step, of the last completed one; by body, by face
   std::vector<std::vector<FaceContact>> found_;  // by chunk of faces
 };

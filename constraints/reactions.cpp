@@ -42,12 +42,13 @@ void Constraints::receive(const VecX& v, const VecX& r) {
 }
 
 void Constraints::receive_faces(const VecX& v) {
+  if (faces_.touching().empty()) return;
+  x_new_ = x_ + h_ * v + correction_;
+  faces_.take_impulse(h_, x_new_, v);
   for (const FaceContact& c : faces_.touching()) {
-    Vec3 place = c.at(x_) + h_ * c.at(v) + c.at(correction_);
-    const double gap = c.gap + c.normal.dot(place);
-    const Vec3 impulse = h_ * (c.stiffness * std::max(-gap, 0.0) * c.normal - c.damper * c.slip_at(v));
-    work_ += c.body_velocity.dot(impulse);
-    bodies_[static_cast<std::size_t>(c.body)].push(-impulse, place, (c.at(v_) - c.body_velocity).norm());
+    work_ += c.body_velocity.dot(c.impulse);
+    bodies_[static_cast<std::size_t>(c.body)].push(-c.impulse, c.at(x_new_),
+                                                   (c.at(v_) - c.body_velocity).norm());
   }
 }
 

@@ -16,7 +16,10 @@ void Constraints::begin_response(const VecX& x, const VecX& v, const std::vector
                                  double h) {
   open_step(x, v, masses, t, h);
   if (bodies_.empty()) return;
-  if (!faces_.all().empty()) faces_.begin_step(bodies_, x_, x_, options_.recovery_speed * h_);
+  if (!faces_.all().empty()) {
+    faces_.begin_step(bodies_, x_, x_, options_.recovery_speed * h_);
+    faces_.limit_dampers(masses_, h_);
+  }
   if (responses_.size() == found_.size()) return;
   responses_.resize(found_.size());
   for (auto& responses : responses_) responses.reserve(3 * chunk_size);

@@ -46,6 +46,7 @@ StepReport Explicit::advance(State& state, double h) {
     const Stopwatch assembly(report.assemble_ms);
     motion_.acceleration(x_, V_[i], A_[i]);
     work += h * tableau_.b[i] * motion_.power();
+    motion_.count(h * tableau_.b[i], x_, V_[i]);
   }
   x_ = state.x;
   v_ = start;

@@ -35,14 +35,14 @@ class FaceContactForce final : public Force {
 
   void add_force(const VecX& x, const VecX& v, VecX& f) const override {
     for (const FaceContact& c : touching())
-      spread(c, -c.stiffness * std::min(c.gap_at(x), 0.0) * c.normal - c.damper * c.slip_at(v), f);
+      spread(c, c.force_at(x, v), f);
   }
 
   void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,
                       BlockMatrix& A, VecX& b) const override {
     for (const FaceContact& contact : touching()) {
       const double g = contact.gap_at(x), d = contact.damper;
-      const bool acts = contact.active || g < 0;
+      const bool acts = stiffness == Stiffness::tangent ? g < 0 : contact.active;
       const double push = acts ? contact.stiffness * (g + contact.normal.dot(contact.at(y))) : 0;
       spread(contact, c * (-push * contact.normal - d * contact.slip_at(v)), b);
       const double k = acts || stiffness == Stiffness::majorant ? contact.stiffness : 0;

@@ -35,6 +35,8 @@ void HeldMotion::acceleration(const VecX& x, const VecX& v, VecX& a) {
     power_ -= mass[static_cast<std::size_t>(e.particle)] * v.segment<3>(3 * e.particle).dot(whole - kept);
     a.segment<3>(3 * e.particle) = kept;
   }
+  for (const FaceContact& c : constraints_.faces().touching())
+    power_ += c.body_velocity.dot(c.force_at(x, v));
 }
 
 bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOptions& options, State& state,

@@ -27,7 +27,12 @@ class HeldMotion {
   const Filter& held() const { return held_; }  // in particle order
 
   void acceleration(const VecX& x, const VecX& v, VecX& a);  // S M^-1 f
-  double power() const { return power_; }  // W, that what holds particles gave to them there
+  double power() const { return power_; }  // W, that bodies and what holds particles gave to them there
+  bool faces_touch() const { return !constraints_.faces().touching().empty(); }
+  // The force at x, v acts for so long [s], on bodies that react, too.
+  void count(double duration, const VecX& x, const VecX& v) {
+    constraints_.count_face_impulse(duration, x, v);
+  }
 
   // State(t) -> State(t + h), when the method came from v_start to x, v. False, and why in the report, when
   // they are not finite; the state is as it was then.

@@ -47,6 +47,7 @@ class SundialsOde final : public Integrator {
   void make_arkode(N_Vector y, N_Vector tolerance);
   void take_up(const State& state);
   int run(double until);
+  int run(double until, bool one_step);
   bool same_held(const Filter& held) const;
   std::string why(int flag) const;
   void count();
@@ -62,11 +63,11 @@ class SundialsOde final : public Integrator {
   SUNLinearSolver linear_ = nullptr;
   SUNNonlinearSolver fixed_point_ = nullptr;
   StepReport report_;
-  double time_ = 0;                             // s, of SUNDIALS
+  double time_ = 0, reached_ = 0;               // s, of SUNDIALS
   bool going_ = false;                          // it stands at the end of the last step
   Filter held_;                                 // in the last step
   long steps_ = 0, rounds_ = 0, rejected_ = 0;  // of SUNDIALS, up to the last step
-  VecX y_, x_, v_, a_, f_, b_, dv_;             // y = (x, v)
+  VecX y_, y_before_, x_, v_, a_, f_, b_, dv_;  // y = (x, v)
 };
 
 SundialsOde::SundialsOde(std::string_view name, System& system, Constraints& constraints,
@@ -164,7 +165,7 @@ void SundialsOde::take_up(const State& state) {
   y_.tail(n) = motion_.start_velocity();
   held_ = motion_.held();
   const sundials::View y(y_, context_);
-  time_ = 0;
+  time_ = reached_ = 0;
   if (cvode_) {
     CVodeReInit(memory_, 0, y);
     steps_ = rounds_ = rejected_ = 0;
@@ -175,14 +176,36 @@ void SundialsOde::take_up(const State& state) {
 }
 
 int SundialsOde::run(double until) {
+  if (!motion_.faces_touch()) return run(until, false);
+  // Inner step by inner step, so that bodies get what the faces get, by the trapezoidal rule.
+  const Eigen::Index n = y_.size() / 2;
+  const auto count_faces = [&](double duration) {
+    x_ = y_.head(n);
+    v_ = y_.tail(n);
+    motion_.count(duration / 2, x_, v_);
+  };
+  y_before_ = y_;
+  for (int step = 0; step < options_.max_inner_steps; ++step) {
+    const double from = reached_;
+    if (const int flag = run(until, true); flag < 0) return flag;
+    std::swap(y_, y_before_);
+    count_faces(reached_ - from);
+    std::swap(y_, y_before_);
+    count_faces(reached_ - from);
+    y_before_ = y_;
+    if (reached_ >= until) return 0;
+  }
+  return cvode_ ? CV_TOO_MUCH_WORK : ARK_TOO_MUCH_WORK;
+}
+
+int SundialsOde::run(double until, bool one_step) {
   const sundials::View y(y_, context_);
-  double reached = 0;
   if (cvode_) {
     CVodeSetStopTime(memory_, until);
-    return CVode(memory_, until, y, &reached, CV_NORMAL);
+    return CVode(memory_, until, y, &reached_, one_step ? CV_ONE_STEP : CV_NORMAL);
   }
   ARKStepSetStopTime(memory_, until);
-  return ARKStepEvolve(memory_, until, y, &reached, ARK_NORMAL);
+  return ARKStepEvolve(memory_, until, y, &reached_, one_step ? ARK_ONE_STEP : ARK_NORMAL);
 }
 
 void SundialsOde::count() {
