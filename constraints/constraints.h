@@ -6,8 +6,7 @@
 //   filter       S and z for a given velocity;  friction  the dampers and impulses of what slides
 //   receive      takes the reaction r of a solve, for the bodies that it moves
 //   react        the same: releases, sticks, slides; true when the step must be solved again
-//   check_paths  takes the motion found: catches what would pass through a body; true when it must be solved
-//                again
+//   check_paths  takes the motion found: catches what would pass through a body; true as for react
 //   move_bodies  when all these have come to a decision: true when a body that reacts moves otherwise than it
 //                was taken to, and the step must be solved again
 //   end_step     guards the final motion (nothing crosses a surface), commits the contacts

@@ -42,10 +42,10 @@ struct FaceContact {
   Vec3 body_velocity;  // m/s
   double friction;     // mu
   bool active = false;
-  int changes = 0;    // of that, within this step
-  double push = 0;    // N, of the last solve
-  double slip = 0;    // m/s, |u| of the last solve
-  double damper = 0;  // N s/m, of the friction in this step
+  int changes = 0;                                               // of that, within this step
+  double push = 0;                                               // N, of the last solve
+  double slip = 0;                                               // m/s, |u| of the last solve
+  double damper = 0;                                             // N s/m, of the friction in this step
   double most_damper = std::numeric_limits<double>::infinity();  // N s/m
 
   template <class Vector>
@@ -84,8 +84,8 @@ class FaceContacts {
   bool react(const VecX& x_new, const VecX& v_new);
   void end_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new);
 
-  // What the step does to the bodies: the force that acted for so long [s], where a step has stages; else that
-  // at its end, x = x_end + h v_b.
+  // What the step does to the bodies: the force that acted for so long [s], where a step has stages; else
+  // that at its end, x = x_end + h v_b.
   void count_impulse(double duration, const VecX& x, const VecX& v);
   void take_impulse(double h, const VecX& x_new, const VecX& v_new);
 

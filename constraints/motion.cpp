@@ -77,6 +77,8 @@ void require_finite(const Keyframe& keyframe) {
 }  // namespace
 
 void check_order(const Keyframe& before, const Keyframe& next) {
+  if (!std::isfinite(next.time - before.time))
+    throw InputError("keyframes: from " + in_words(before) + " to " + in_words(next) + " it is too long");
   if (!(next.time > before.time))
     throw InputError("keyframes out of order: " + in_words(next) + " comes after " + in_words(before) +
                      "; times must increase from one to the next");

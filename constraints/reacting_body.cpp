@@ -27,6 +27,8 @@ Mat3 turned_by(const Vec3& angle) {
 void check(const RigidBody& body) {
   if (!(body.mass > 0) || !std::isfinite(body.mass))
     throw InputError("mass = " + std::to_string(body.mass) + " kg: a mass is positive");
+  if (body.mass < 1e-9)  // lighter than a grain of dust: a slip of the unit, and 1 / m is out of all range
+    throw InputError("mass: a body that reacts has a microgram at least");
   const Eigen::SelfAdjointEigenSolver<Mat3> principal(body.inertia);
   const Vec3 I = principal.eigenvalues();  // ascending
   if (!body.inertia.allFinite() || !(I[0] > 0))

@@ -34,8 +34,7 @@ class FaceContactForce final : public Force {
   }
 
   void add_force(const VecX& x, const VecX& v, VecX& f) const override {
-    for (const FaceContact& c : touching())
-      spread(c, c.force_at(x, v), f);
+    for (const FaceContact& c : touching()) spread(c, c.force_at(x, v), f);
   }
 
   void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,

@@ -289,6 +289,8 @@ TEST_CASE("a motion that cannot be is refused", "[motion]") {
   CHECK_THROWS_AS(Motion::keyframes({}, zero), InputError);
   CHECK_THROWS_WITH(Motion::keyframes({{1, zero}, {0.5, zero}}, zero),
                     Contains("keyframes out of order: 0.5 s comes after 1 s"));
+  CHECK_THROWS_WITH(Motion::keyframes({{.time = -1e308}, {.time = 1e308}}, Vec3::Zero()),
+                    Contains("it is too long"));
   CHECK_THROWS_WITH(Motion::keyframes({{1, zero}, {1, zero}}, zero), Contains("out of order"));
   CHECK_THROWS_WITH(Motion::keyframes({{nan, zero}}, zero), Contains("finite"));
   CHECK_THROWS_WITH(Motion::keyframes({{0, zero}, {infinity, zero}}, zero), Contains("finite"));

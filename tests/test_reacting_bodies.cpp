@@ -127,7 +127,8 @@ TEST_CASE("momentum of cloth and body together is kept in a collision", "[reacti
   for (const std::string& name : integrator_names())
     for (double mass : {0.02, 0.5})
       for (bool faces : {false, true}) {
-        if (name == "explicit-euler" || name == "midpoint") continue;  // unstable without damping at this step
+        if (name == "explicit-euler" || name == "midpoint")
+          continue;  // unstable without damping at this step
         INFO(name << " " << mass << (faces ? ", faces" : ""));
         Cloth cloth(Vec3::Zero(), faces);
         Obstacle thrown = ball(mass, 0.08, {0.03, 0.1, 0.02});
@@ -198,6 +199,8 @@ TEST_CASE("bodies that cannot be are refused", "[reacting]") {
   Obstacle o = ball(0.1, 0.1, Vec3::Zero());
   o.rigid->mass = 0;
   CHECK_THROWS_WITH(constraints.add(o), Catch::Contains("mass") && Catch::Contains("positive"));
+  o.rigid->mass = 1e-300;  // whose reciprocal is out of range
+  CHECK_THROWS_WITH(constraints.add(o), Catch::Contains("mass") && Catch::Contains("microgram"));
   o.rigid->mass = 1;
   o.rigid->inertia = Vec3(1, 1, 3).asDiagonal();
   CHECK_THROWS_WITH(constraints.add(o), Catch::Contains("moment"));
