@@ -98,9 +98,11 @@ class Constraints {
 
   // Without a filter for contacts, only for pins: in the place of begin_step, and of all from friction on to
   // check_paths. A free motion to x [m], v [m/s] ends at x_new, v_new after the response of the bodies
-  // (constraints/response.h); bodies that react get the other side of it.
+  // (constraints/response.h); bodies that react get the other side of it. pulled [N s]: what carries pins did
+  // to them, besides bringing them to their velocity.
   void begin_response(const VecX& x, const VecX& v, const std::vector<double>& masses, double t, double h);
-  void respond(ContactMode mode, const VecX& x, const VecX& v, VecX& x_new, VecX& v_new, double noise);
+  void respond(ContactMode mode, const VecX& x, const VecX& v, const VecX& pulled, VecX& x_new, VecX& v_new,
+               double noise);
 
   // Of the step under way, and after it; those released in it have no planes.
   const std::vector<Contact>& touching() const { return trial_; }
@@ -120,8 +122,10 @@ class Constraints {
   };
   void respond(ContactMode mode, int particle, std::size_t chunk, VecX& x_new, VecX& v_new);
   bool respond(ContactMode mode, int body, std::size_t chunk, StepVelocities& step, Contact& contact);
-  void take_responses(const VecX& v_new);
+  void take_responses(const VecX& v_new, const VecX& pulled);
+  void push(int body, int particle, const Vec3& v, const Vec3& body_velocity, const Vec3& impulse);
   void receive_faces(const VecX& v);
+  void receive_pin(const MovingPin& pin, const Vec3& impulse);
   void open_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double t, double h);
   void prepare(int particles, const std::vector<double>& masses);
   void look_for_contact(int particle, std::vector<Contact>& found, double& deepest);

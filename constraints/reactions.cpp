@@ -5,15 +5,17 @@
 
 namespace drape {
 
+// The other side of an impulse on a particle, which ends the step with v and is pushed at body_velocity.
+void Constraints::push(int body, int particle, const Vec3& v, const Vec3& body_velocity,
+                       const Vec3& impulse) {
+  work_ += body_velocity.dot(impulse);
+  bodies_[static_cast<std::size_t>(body)].push(-impulse, x_.segment<3>(3 * particle) + h_ * v,
+                                               (body_velocity - v_.segment<3>(3 * particle)).norm());
+}
+
 void Constraints::receive(const VecX& v, const VecX& r) {
   work_ = 0;
   for (MovingBody& body : bodies_) body.clear_impulse();
-  const auto push = [&](int body, int particle, const Vec3& velocity, const Vec3& impulse) {
-    work_ += velocity.dot(impulse);
-    bodies_[static_cast<std::size_t>(body)].push(
-        -impulse, x_.segment<3>(3 * particle) + h_ * v.segment<3>(3 * particle),
-        (velocity - v_.segment<3>(3 * particle)).norm());
-  };
   for (const Contact& c : trial_) {
     if (!c.active()) continue;
     Vec3 rest = r.segment<3>(3 * c.particle);
@@ -21,24 +23,26 @@ void Constraints::receive(const VecX& v, const VecX& r) {
     for (int k = 1; k < c.planes; ++k) {  // of several bodies each has its plane's part
       const ContactPlane& p = c.plane[static_cast<std::size_t>(k)];
       const Vec3 part = lambda[static_cast<std::size_t>(k)] * p.normal;
-      push(p.obstacle, c.particle, p.body_velocity, part);
+      push(p.obstacle, c.particle, v.segment<3>(3 * c.particle), p.body_velocity, part);
       rest -= part;
     }
-    push(c.plane[0].obstacle, c.particle, c.body_velocity(), rest);
+    push(c.plane[0].obstacle, c.particle, v.segment<3>(3 * c.particle), c.body_velocity(), rest);
   }
   for (const ContactFriction& f : friction_) {
     const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
-    push(f.body, f.particle, f.body_velocity, f.impulse - h_ * (f.damping * slip));
+    push(f.body, f.particle, v.segment<3>(3 * f.particle), f.body_velocity,
+         f.impulse - h_ * (f.damping * slip));
   }
   receive_faces(v);
-  for (const MovingPin& pin : moving_pins_) {
-    const Vec3 impulse = r.segment<3>(3 * pin.particle),
-               velocity = pin_velocity_.segment<3>(3 * pin.particle);
-    if (pin.body >= 0)
-      push(pin.body, pin.particle, velocity, impulse);
-    else
-      work_ += velocity.dot(impulse);
-  }
+  for (const MovingPin& pin : moving_pins_) receive_pin(pin, r.segment<3>(3 * pin.particle));
+}
+
+void Constraints::receive_pin(const MovingPin& pin, const Vec3& impulse) {
+  const Vec3 velocity = pin_velocity_.segment<3>(3 * pin.particle);
+  if (pin.body < 0)
+    work_ += velocity.dot(impulse);
+  else
+    push(pin.body, pin.particle, velocity, velocity, impulse);
 }
 
 void Constraints::receive_faces(const VecX& v) {

@@ -25,8 +25,8 @@ void Constraints::begin_response(const VecX& x, const VecX& v, const std::vector
   for (auto& responses : responses_) responses.reserve(3 * chunk_size);
 }
 
-void Constraints::respond(ContactMode mode, const VecX& x, const VecX& v, VecX& x_new, VecX& v_new,
-                          double noise) {
+void Constraints::respond(ContactMode mode, const VecX& x, const VecX& v, const VecX& pulled, VecX& x_new,
+                          VecX& v_new, double noise) {
   const int n = static_cast<int>(x.size() / 3);
   bool moved = false;
   for (bool again = true; again; moved = moved || again) {
@@ -40,7 +40,7 @@ void Constraints::respond(ContactMode mode, const VecX& x, const VecX& v, VecX& 
       for (int i = k * chunk_size; i < std::min(n, (k + 1) * chunk_size); ++i)
         if (!held(i)) respond(mode, i, chunk, x_new, v_new);
     });
-    take_responses(v_new);
+    take_responses(v_new, pulled);
     again = move_bodies(noise);
   }
   if (!moved) return;
@@ -51,7 +51,7 @@ void Constraints::respond(ContactMode mode, const VecX& x, const VecX& v, VecX& 
   }
 }
 
-void Constraints::take_responses(const VecX& v_new) {
+void Constraints::take_responses(const VecX& v_new, const VecX& pulled) {
   trial_.clear();
   for (const auto& found : found_) trial_.insert(trial_.end(), found.begin(), found.end());
   work_ = 0;
@@ -62,6 +62,11 @@ void Constraints::take_responses(const VecX& v_new) {
       bodies_[static_cast<std::size_t>(r.body)].push(-r.impulse, r.place, r.approach);
     }
   receive_faces(v_new);
+  for (const MovingPin& pin : moving_pins_) {
+    const Vec3 brought = pin_velocity_.segment<3>(3 * pin.particle) - v_.segment<3>(3 * pin.particle);
+    receive_pin(
+        pin, pulled.segment<3>(3 * pin.particle) + masses_[static_cast<std::size_t>(pin.particle)] * brought);
+  }
 }
 
 void Constraints::respond(ContactMode mode, int particle, std::size_t chunk, VecX& x_new, VecX& v_new) {

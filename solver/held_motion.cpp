@@ -15,6 +15,8 @@ void HeldMotion::begin(const State& state, double h, StepReport& report) {
   else
     constraints_.begin_response(state.x, state.v, system_.masses(), state.time, h);
   constraints_.filter(state.v, held_);
+  pull_.setZero(state.x.size());
+  pulled_.setZero(state.x.size());
   v_start_ = state.v;
   for (const FilterEntry& e : held_.entries()) v_start_.segment<3>(3 * e.particle) += e.z;
 }
@@ -32,11 +34,24 @@ void HeldMotion::acceleration(const VecX& x, const VecX& v, VecX& a) {
   for (const FilterEntry& e : held_.entries()) {
     const Vec3 whole = a.segment<3>(3 * e.particle);
     const Vec3 kept = e.S.isZero(0) ? Vec3(Vec3::Zero()) : Vec3(e.S * whole);
-    power_ -= mass[static_cast<std::size_t>(e.particle)] * v.segment<3>(3 * e.particle).dot(whole - kept);
+    pull_.segment<3>(3 * e.particle) = mass[static_cast<std::size_t>(e.particle)] * (kept - whole);
+    power_ += v.segment<3>(3 * e.particle).dot(pull_.segment<3>(3 * e.particle));
     a.segment<3>(3 * e.particle) = kept;
   }
   for (const FaceContact& c : constraints_.faces().touching())
     power_ += c.body_velocity.dot(c.force_at(x, v));
+}
+
+bool HeldMotion::counts() const {
+  const auto& bodies = constraints_.bodies();
+  return std::any_of(bodies.begin(), bodies.end(), [](const MovingBody& b) { return b.reacting(); }) &&
+         (!constraints_.faces().touching().empty() || !constraints_.moving_pins().empty());
+}
+
+void HeldMotion::count(double duration, const VecX& x, const VecX& v) {
+  constraints_.count_face_impulse(duration, x, v);
+  for (const MovingPin& pin : constraints_.moving_pins())
+    pulled_.segment<3>(3 * pin.particle) += duration * pull_.segment<3>(3 * pin.particle);
 }
 
 bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOptions& options, State& state,
@@ -54,7 +69,7 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
       solve_contacts(state, x, v, h, options, report);
     } else {
       const Stopwatch watch(report.collide_ms);
-      constraints_.respond(contact_, x, v, x_new_, v_new_, impulse_noise(h));
+      constraints_.respond(contact_, x, v, pulled_, x_new_, v_new_, impulse_noise(h));
     }
     constraints_.react_faces(x_new_, v_new_);
     end_step(constraints_, x_new_, v_new_, report);
@@ -146,6 +161,11 @@ void HeldMotion::move_within_constraints(const State& state, const VecX& x, doub
   for (const ContactFriction& f : friction)
     r_.segment<3>(3 * f.particle) +=
         h * (f.damping * (v_new_.segment<3>(3 * f.particle) - v_free_.segment<3>(3 * f.particle)));
+  for (const MovingPin& pin : constraints_.moving_pins()) {
+    const int i = 3 * pin.particle;
+    r_.segment<3>(i) =
+        pulled_.segment<3>(i) + mass(pin.particle) * (v_new_.segment<3>(i) - state.v.segment<3>(i));
+  }
   for (const Contact& c : constraints_.touching()) {
     const int i = 3 * c.particle;
     r_.segment<3>(i) += mass(c.particle) * (v_new_.segment<3>(i) - v_free_.segment<3>(i));

@@ -28,11 +28,10 @@ class HeldMotion {
 
   void acceleration(const VecX& x, const VecX& v, VecX& a);  // S M^-1 f
   double power() const { return power_; }  // W, that bodies and what holds particles gave to them there
-  bool faces_touch() const { return !constraints_.faces().touching().empty(); }
-  // The force at x, v acts for so long [s], on bodies that react, too.
-  void count(double duration, const VecX& x, const VecX& v) {
-    constraints_.count_face_impulse(duration, x, v);
-  }
+  // The force at x, v, whose acceleration was asked for last, acts for so long [s], on bodies that react,
+  // too.
+  void count(double duration, const VecX& x, const VecX& v);
+  bool counts() const;  // a body wants to know
 
   // State(t) -> State(t + h), when the method came from v_start to x, v. False, and why in the report, when
   // they are not finite; the state is as it was then.
@@ -52,6 +51,7 @@ class HeldMotion {
   ContactMode contact_;
   Filter held_, filter_;
   VecX v_start_, v_free_, x_new_, v_new_, a_, r_;
+  VecX pull_, pulled_;  // N, N s, of what carries pins, besides bringing them to their velocity
   double power_ = 0;
 };
 

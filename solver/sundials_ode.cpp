@@ -176,23 +176,21 @@ void SundialsOde::take_up(const State& state) {
 }
 
 int SundialsOde::run(double until) {
-  if (!motion_.faces_touch()) return run(until, false);
-  // Inner step by inner step, so that bodies get what the faces get, by the trapezoidal rule.
+  if (!motion_.counts()) return run(until, false);
+  // Inner step by inner step, so that bodies get what faces and pins get, by the trapezoidal rule.
   const Eigen::Index n = y_.size() / 2;
-  const auto count_faces = [&](double duration) {
-    x_ = y_.head(n);
-    v_ = y_.tail(n);
-    motion_.count(duration / 2, x_, v_);
+  const auto count_half = [&](const VecX& y, double from) {
+    x_ = y.head(n);
+    v_ = y.tail(n);
+    motion_.acceleration(x_, v_, a_);
+    motion_.count((reached_ - from) / 2, x_, v_);
   };
-  y_before_ = y_;
   for (int step = 0; step < options_.max_inner_steps; ++step) {
     const double from = reached_;
-    if (const int flag = run(until, true); flag < 0) return flag;
-    std::swap(y_, y_before_);
-    count_faces(reached_ - from);
-    std::swap(y_, y_before_);
-    count_faces(reached_ - from);
     y_before_ = y_;
+    if (const int flag = run(until, true); flag < 0) return flag;
+    count_half(y_before_, from);
+    count_half(y_, from);
     if (reached_ >= until) return 0;
   }
   return cvode_ ? CV_TOO_MUCH_WORK : ARK_TOO_MUCH_WORK;
