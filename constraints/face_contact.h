@@ -100,6 +100,7 @@ class FaceContacts {
 
   std::vector<ClothFace> faces_;
   std::vector<double> room_;    // body, face: within this distance the body was not when last looked [m]
+  std::vector<Vec3> likely_;    // body, face: the weights of its lowest point when last looked
   std::vector<double> travel_;  // of a particle, as the body at hand sees it [m]
   bool counted_ = false;
   std::vector<FaceContact> touching_, last_;     // of this step, of the last completed one; by body, by face

@@ -198,8 +198,11 @@ std::optional<Hit> first_hit_any(const Path& path) {
 // The advancement along the distance, and what it may not see: a surface gone through within r, and one that
 // meets a path which starts within the margin and leaves.
 std::optional<Hit> first_hit_deforming(const SurfaceDistance& surface, const Path& path) {
-  const std::optional<Hit> hit = first_hit_any(path);
   const Station start = path.at(0);
+  if (start.f > touch &&
+      surface.stays_clear(path.start, path.start + path.length * path.direction, path.margin + touch))
+    return std::nullopt;
+  const std::optional<Hit> hit = first_hit_any(path);
   const bool leaves = start.f <= touch;
   const bool seen = 2 * path.margin >= resolution_of(path) && !leaves;
   const bool too_far = std::abs(start.surface.distance) > path.length;

@@ -32,9 +32,9 @@ class MovingBoxes {
   void near(const Vec3& x, double s, const Ask& ask) const;
 
   // ask(face) -> the s that is still of interest, for every face whose box the straight way from x0 (at s =
-  // 0) to x1 (at s = 1) is in at some s in [from, the last answer].
+  // 0) to x1 (at s = 1) is in, or beside by `beside` [m], at some s in [from, the last answer].
   template <class Ask>
-  void along(const Vec3& x0, const Vec3& x1, double from, const Ask& ask) const;
+  void along(const Vec3& x0, const Vec3& x1, double from, const Ask& ask, double beside = 0) const;
 
  private:
   using Four = Eigen::Array<float, 4, 1>;
@@ -96,9 +96,9 @@ void MovingBoxes::near(const Vec3& x, double s, const Ask& ask) const {
 }
 
 template <class Ask>
-void MovingBoxes::along(const Vec3& x0, const Vec3& x1, double from, const Ask& ask) const {
+void MovingBoxes::along(const Vec3& x0, const Vec3& x1, double from, const Ask& ask, double beside) const {
   const Vec3 place = x0 - origin_, target = x1 - origin_;
-  const double slack = slack_;
+  const double slack = slack_ + beside;
   double until = 1;
   std::array<Waiting, deepest> stack;
   int waiting = 0;

@@ -329,6 +329,25 @@ std::optional<double> SurfaceDistance::first_crossing(const Vec3& x0, const Vec3
   return first <= 1 ? std::optional(first) : std::nullopt;
 }
 
+bool SurfaceDistance::stays_clear(const Vec3& x0, const Vec3& x1, double margin) const {
+  const Tree& tree = *tree_;
+  if (!tree.moving || !x0.allFinite() || !x1.allFinite()) return false;
+  bool clear = true;
+  tree.boxes->along(
+      x0, x1, 0,
+      [&](int f) {
+        const Triangle& t = tree.surface.faces[f].v;
+        double most = 0;
+        for (int v : t) most = std::max(most, (x1 - x0 - (tree.end[v] - tree.start[v])).squaredNorm());
+        const Vec3 nearest =
+            closest_on_triangle(x0, tree.start[t[0]], tree.start[t[1]], tree.start[t[2]]).first;
+        if ((x0 - nearest).norm() - std::sqrt(most) <= margin) clear = false;
+        return clear ? 1.0 : -1.0;
+      },
+      margin);
+  return clear;
+}
+
 SurfaceDistance::Anchor SurfaceDistance::anchor(const Vec3& x, double s) const {
   return tree_->in_pose(s, [&](const auto& pose) {
     const Candidate c = tree_->find(x, pose);

@@ -60,6 +60,10 @@ class SurfaceDistance {
   // what goes along the surface does not go through.
   std::optional<double> first_crossing(const Vec3& x0, const Vec3& x1, double from = 0) const;
 
+  // No triangle comes as near as `margin` [m] to what goes straight from x0 (s = 0) to x1 (s = 1): by where
+  // each is at s = 0 and how far the two move against each other. False may be a false alarm.
+  bool stays_clear(const Vec3& x0, const Vec3& x1, double margin) const;
+
   // A point that the surface carries with it, beside its closest triangle.
   struct Anchor {
     Triangle triangle;  // vertices

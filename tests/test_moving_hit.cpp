@@ -178,6 +178,37 @@ TEST_CASE("what moves along with a surface is not hit", "[moving]") {
     }
 }
 
+TEST_CASE("what stays clear of a moving surface is nowhere as near as the margin", "[moving]") {
+  for (const TriangleMesh& mesh : {sphere(2, 0.3), box_mesh({0.5, 0.02, 0.5}), open_sheet()}) {
+    Random r;
+    SurfaceDistance surface(mesh);
+    int clear = 0, near = 0, alarms = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 drift = r(0, 0.3) * r.direction();
+      const Mat3 turn = Eigen::AngleAxisd(r(0, 0.3), r.direction()).toRotationMatrix();
+      Places end = mesh.positions;
+      for (Vec3& x : end) x = turn * x + drift;
+      surface.move(mesh.positions, end);
+      const double margin = r(0, 0.02);
+      const Vec3 x0 = on_mesh(mesh, r) + r(0.001, 0.1) * r.direction();
+      const Vec3 x1 = turn * x0 + drift + r(0, 0.05) * r.direction();
+      double least = 1;
+      for (int k = 0; k <= 20; ++k) {
+        const double s = k / 20.0;
+        least = std::min(least, std::abs(surface.closest(x0 + s * (x1 - x0), s).distance));
+      }
+      const bool told = surface.stays_clear(x0, x1, margin);
+      if (told) CHECK(least > margin);
+      clear += told;
+      near += least <= margin;
+      alarms += !told && least > margin + 0.1;
+    }
+    CHECK(clear > 100);
+    CHECK(near > 300);
+    CHECK(alarms == 0);
+  }
+}
+
 TEST_CASE("a body that deforms is a shape like the others", "[moving]") {
   const TriangleMesh ball = sphere(2, 0.5);
   Shape shape = moving(ball, ball.positions, ball.positions);

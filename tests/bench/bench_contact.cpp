@@ -162,6 +162,13 @@ void bench_falls() {
   bench_fall("mesh at rest", MeshBody(surface), {});
   bench_fall("mesh, turning 1 rad/s", MeshBody(surface),
              Motion::constant(Vec3::Zero(), Vec3::UnitY(), Vec3::Zero()));
+  const TriangleMesh ball = bumpy_ball();
+  auto frames = std::make_shared<MeshFrames>();
+  frames->add(0, ball.positions);
+  std::vector<Vec3> swollen = ball.positions;
+  for (Vec3& x : swollen) x = 1.05 * x + Vec3(0.1 * x.y(), 0, 0);
+  frames->add(1, swollen);
+  bench_fall("mesh that deforms", DeformingBody{std::make_shared<SurfaceDistance>(ball), frames}, {});
   bench_fall("its level set",
              std::make_shared<const LevelSet>(LevelSet::from_mesh(bumpy_ball(), {.voxel = 0.005})), {});
 }
