@@ -93,6 +93,10 @@ void Constraints::open_step(const VecX& x, const VecX& v, const std::vector<doub
   prepare(static_cast<int>(x.size() / 3), masses);
   t_ = t;
   h_ = h;
+  if (x != x_end_) {  // a state from elsewhere: what was known of distances says nothing
+    std::fill(clearance_.begin(), clearance_.end(), 0.0);
+    faces_.look_again();
+  }
   x_ = x;
   v_ = v;
   for (MovingBody& body : bodies_) body.begin_step(t, h);
@@ -225,6 +229,7 @@ ContactReport Constraints::end_step(VecX& x_new, VecX& v_new) {
   for (MovingBody& body : bodies_)
     if (!body.end_step()) report.converged = false;
   last_h_ = h_;
+  x_end_ = x_new;
   report.contacts = static_cast<int>(committed_.size());
   return report;
 }

@@ -160,6 +160,7 @@ class Constraints {
   double last_h_ = 0;           // s, of the last completed step
   std::vector<double> masses_;  // kg
   VecX x_, v_, x_new_, correction_;
+  VecX x_end_;                   // m, of the last completed step
   VecX pin_velocity_;            // m/s; empty without moving pins
   std::vector<char> held_;       // pinned, or without mass
   std::vector<int> contact_of_;  // particle -> place in trial_, -1: none

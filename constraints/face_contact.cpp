@@ -131,7 +131,7 @@ void FaceContacts::limit_dampers(const std::vector<double>& masses, double h) {
     for (std::size_t k = 0; k < 3; ++k)
       if (const double m = masses[static_cast<std::size_t>(c.particles[k])]; m > 0)
         mobility += c.weights[static_cast<int>(k)] * c.weights[static_cast<int>(k)] / m;
-    c.most_damper = 0.25 / (h * mobility);
+    c.most_damper = 0.125 / (h * mobility);
     c.damper = std::min(c.damper, c.most_damper);
   }
 }
@@ -194,6 +194,7 @@ void FaceContacts::follow(const std::vector<MovingBody>& bodies) {
   for (FaceContact& c : touching_) {
     const MovingBody& body = bodies[static_cast<std::size_t>(c.body)];
     const Vec3 before = c.body_velocity;
+    c.changes = 0;
     c.body_velocity = body.velocity(c.place);
     c.gap -= body.step() * c.normal.dot(c.body_velocity - before);
   }

@@ -38,7 +38,7 @@ struct FaceContact {
   double stiffness;    // N/m
   Vec3 normal;         // unit, out of the body
   Vec3 place;          // m, of p at the start
-  double gap;          // m, g above at x = 0, v_b = 0: so that g = gap + n . sum w_k x_k
+  double gap;          // m, g above at x = 0, with the body as it moves: g = gap + n . sum w_k x_k
   Vec3 body_velocity;  // m/s
   double friction;     // mu
   bool active = false;
@@ -88,6 +88,8 @@ class FaceContacts {
   // that at its end, x = x_end + h v_b.
   void count_impulse(double duration, const VecX& x, const VecX& v);
   void take_impulse(double h, const VecX& x_new, const VecX& v_new);
+
+  void look_again() { std::fill(room_.begin(), room_.end(), 0.0); }  // at all: they have been moved
 
   const std::vector<FaceContact>& touching() const { return touching_; }
 

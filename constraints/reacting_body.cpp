@@ -58,15 +58,15 @@ Pose ReactingBody::moved() const {
 }
 
 Pose ReactingBody::begin_step(double h) {
-  const double share = h_ > 0 ? h / h_ : 0;  // of the last step's impulses
+  const double share = last_h_ > 0 ? h / last_h_ : 0;  // of the last step's impulses
   h_ = h;
-  q_.head<3>() = v_ + h * body_.gravity + share * J_ / body_.mass;
-  q_.tail<3>() = radius_ * (world_inertia(pose_).inverse() * (L_ + share * T_));
+  q_.head<3>() = v_ + h * body_.gravity + share * last_J_ / body_.mass;
+  q_.tail<3>() = radius_ * (world_inertia(pose_).inverse() * (L_ + share * last_T_));
   q_free_.head<3>() = v_ + h * body_.gravity;
   q_free_.tail<3>() = radius_ * (world_inertia(pose_).inverse() * L_);
   corrections_ = changes_ = 0;
   known_ = false;
-  if (J_.isZero(0)) relaxation_ = 0;
+  if (last_J_.isZero(0)) relaxation_ = 0;
   return moved();
 }
 
@@ -146,6 +146,9 @@ bool ReactingBody::end_step(const Pose& end) {
   v_ = q.head<3>();
   L_ = converged ? Vec3(L_ + T_) : Vec3(world_inertia(pose_) * q.tail<3>() / radius_);
   pose_ = end;
+  last_h_ = h_;
+  last_J_ = J_;
+  last_T_ = T_;
   return converged;
 }
 

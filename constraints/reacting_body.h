@@ -73,10 +73,12 @@ class ReactingBody {
   double radius_;  // m, of gyration
   Pose pose_;
   Vec3 v_, L_;
-  Vec3 J_ = Vec3::Zero(), T_ = Vec3::Zero();
+  double last_h_ = 0;                                   // s, of the last completed step
+  Vec3 last_J_ = Vec3::Zero(), last_T_ = Vec3::Zero();  // N s, N m s, then
 
   // Of the step under way.
   double h_ = 0;
+  Vec3 J_ = Vec3::Zero(), T_ = Vec3::Zero();
   double relaxation_ = 0;  // a; 0: nothing touches it
   double approach_ = 0;    // m/s
   double meeting_ = 0;     // m/s, the approach at the start of the step

@@ -236,7 +236,7 @@ LinearReport Bdf::solve_within_contacts(const State& state, Stiffness stiffness,
       } else {
         if (!constraints_.move_bodies(noise)) return linear;
         round = 0;
-        anew = !constraints_.faces().touching().empty();
+        anew = back_ > 0 || !constraints_.faces().touching().empty();  // what they touch moves otherwise, too
       }
     }
     if (anew) linearise(state, stiffness, report);

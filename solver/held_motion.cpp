@@ -43,15 +43,14 @@ void HeldMotion::acceleration(const VecX& x, const VecX& v, VecX& a) {
 }
 
 bool HeldMotion::counts() const {
-  const auto& bodies = constraints_.bodies();
-  return std::any_of(bodies.begin(), bodies.end(), [](const MovingBody& b) { return b.reacting(); }) &&
-         (!constraints_.faces().touching().empty() || !constraints_.moving_pins().empty());
+  return !constraints_.touching().empty() || !constraints_.faces().touching().empty() ||
+         (!constraints_.bodies().empty() && !constraints_.moving_pins().empty());
 }
 
 void HeldMotion::count(double duration, const VecX& x, const VecX& v) {
   constraints_.count_face_impulse(duration, x, v);
-  for (const MovingPin& pin : constraints_.moving_pins())
-    pulled_.segment<3>(3 * pin.particle) += duration * pull_.segment<3>(3 * pin.particle);
+  for (const FilterEntry& e : held_.entries())
+    pulled_.segment<3>(3 * e.particle) += duration * pull_.segment<3>(3 * e.particle);
 }
 
 bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOptions& options, State& state,
@@ -65,13 +64,19 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
   v_new_ = v;
   if (!constraints_.bodies().empty()) {
     if (contact_ == ContactMode::constraint) {
-      set_free(v, h);
+      set_free(v);
       solve_contacts(state, x, v, h, options, report);
     } else {
       const Stopwatch watch(report.collide_ms);
       constraints_.respond(contact_, x, v, pulled_, x_new_, v_new_, impulse_noise(h));
     }
     constraints_.react_faces(x_new_, v_new_);
+    if (!constraints_.bodies_converged()) {
+      report.done = false;
+      report.failure = {.what = "the motion of a body that reacts and that of the cloth do not agree",
+                        .force = {}};
+      return false;
+    }
     end_step(constraints_, x_new_, v_new_, report);
   }
   state.x = x_new_;
@@ -81,16 +86,11 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
 }
 
 // The velocity without the constraints: what they took at the start and during the step is given back.
-void HeldMotion::set_free(const VecX& v, double h) {
+void HeldMotion::set_free(const VecX& v) {
   v_free_ = v;
-  filter_ = held_;
-  held_.clear();
-  acceleration(x_new_, v, a_);
-  held_ = filter_;
-  for (const FilterEntry& e : held_.entries()) {
-    const Vec3 a = a_.segment<3>(3 * e.particle);
-    v_free_.segment<3>(3 * e.particle) += h * (a - e.S * a) - e.z;
-  }
+  for (const FilterEntry& e : held_.entries())
+    if (const double mass = system_.masses()[static_cast<std::size_t>(e.particle)]; mass > 0)
+      v_free_.segment<3>(3 * e.particle) -= pulled_.segment<3>(3 * e.particle) / mass + e.z;
 }
 
 // What was held and is let go, or comes loose, gets back the velocity that was taken from it at the start,
@@ -163,6 +163,7 @@ void HeldMotion::move_within_constraints(const State& state, const VecX& x, doub
         h * (f.damping * (v_new_.segment<3>(3 * f.particle) - v_free_.segment<3>(3 * f.particle)));
   for (const MovingPin& pin : constraints_.moving_pins()) {
     const int i = 3 * pin.particle;
+    x_new_.segment<3>(i) = state.x.segment<3>(i) + h * v_new_.segment<3>(i);
     r_.segment<3>(i) =
         pulled_.segment<3>(i) + mass(pin.particle) * (v_new_.segment<3>(i) - state.v.segment<3>(i));
   }

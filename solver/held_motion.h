@@ -3,7 +3,7 @@
 //             with its target velocity, v_0 = v_n + z, and has the acceleration S M^-1 f.
 //   finish    solves the constrained step with the mass alone, particle by particle: from the velocity that
 //             a particle would have had,
-//               v_free = v_1 - z + h (I - S) M^-1 f(x_1, v_1),
+//               v_free = v_1 - z + integral of (I - S) M^-1 f over the step,
 //             come the impulse that holds it, r = m (v - v_free) and friction, hence what is released, sticks
 //             and slides (what is let go moves from the next step on); what touches moves to x = x_n +
 //             correction + h v.      [constraints/contact.h]
@@ -31,16 +31,16 @@ class HeldMotion {
   // The force at x, v, whose acceleration was asked for last, acts for so long [s], on bodies that react,
   // too.
   void count(double duration, const VecX& x, const VecX& v);
-  bool counts() const;  // a body wants to know
+  bool counts() const;  // something is held by a body
 
   // State(t) -> State(t + h), when the method came from v_start to x, v. False, and why in the report, when
-  // they are not finite; the state is as it was then.
+  // they are not finite, or do not agree with the bodies that react; the state is as it was then.
   bool finish(const VecX& x, const VecX& v, double h, const StepOptions& options, State& state,
               StepReport& report);
 
  private:
   double impulse_noise(double h) const;
-  void set_free(const VecX& v, double h);
+  void set_free(const VecX& v);
   void move_within_constraints(const State& state, const VecX& x, double h);
   void let_go(const VecX& x, const VecX& v);
   void solve_contacts(const State& state, const VecX& x, const VecX& v, double h, const StepOptions& options,
@@ -50,8 +50,8 @@ class HeldMotion {
   Constraints& constraints_;
   ContactMode contact_;
   Filter held_, filter_;
-  VecX v_start_, v_free_, x_new_, v_new_, a_, r_;
-  VecX pull_, pulled_;  // N, N s, of what carries pins, besides bringing them to their velocity
+  VecX v_start_, v_free_, x_new_, v_new_, r_;
+  VecX pull_, pulled_;  // N, N s, of what holds particles, besides bringing them to their velocity
   double power_ = 0;
 };
 

@@ -154,11 +154,11 @@ bool NewtonKinsol::attempt(State& state, const Piece& piece) {
     if (!constraints_.move_bodies(noise)) break;
     round = 0;
   }
-  report_.converged = report_.converged && solved_;
   if (!constraints_.bodies_converged() && !piece.shortest)  // the report says so then
     return fail("the motion of a body that reacts and that of the cloth do not agree");
   x_ = x_bar_ + h * v_;
   if (!x_.allFinite()) return fail("the new positions are not finite numbers");
+  report_.converged = report_.converged && solved_;
   end_step(constraints_, x_, v_, report_);
   state.x = x_;
   state.v = v_;

@@ -149,7 +149,11 @@ StepReport SundialsOde::advance(State& state, double h) {
       time_ += h;
       x_ = y_.head(n);
       v_ = y_.tail(n);
-      if (!motion_.finish(x_, v_, h, options_, state, report_)) going_ = false;
+      if (!motion_.finish(x_, v_, h, options_, state, report_)) {
+        going_ = false;
+        report_.failure.what +=
+            "; what touches is settled once a step: take a shorter time step, or implicit-euler";
+      }
     }
   }
   report_.step_ms = step_ms;
