@@ -7,6 +7,7 @@
 #include <memory>
 #include <new>
 
+#include "app/check.h"
 #include "app/commands.h"
 #include "app/compare/compare.h"
 #include "app/words.h"

@@ -25,7 +25,6 @@ struct LevelSetWords {
 };
 int make_level_set(const LevelSetWords& words);
 
-int check_file(const std::filesystem::path& file);
 int list_parts();
 
 }  // namespace drape

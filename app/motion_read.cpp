@@ -47,11 +47,10 @@ fs::path pose_file(Table& motion, const fs::path& folder) {
   return path;
 }
 
-Motion read_steady(Table& motion, const Vec3& centre) {
+Motion read_steady(Table& motion, const Vec3& centre, double& start) {
   if (!motion.has("velocity") && !motion.has("spin"))
     motion.fail("", "there is a start or an end, but neither velocity nor spin");
   Vec3 velocity = Vec3::Zero();
-  double start = 0;
   std::optional<double> end;
   motion.read("velocity", velocity, dimension::speed);
   motion.read("start", start, dimension::time);
@@ -78,7 +77,7 @@ Vec3 read_spin(Table& table) {
 }
 
 std::optional<Motion> read_motion(Table& table, const fs::path& folder, const Vec3& default_centre,
-                                  fs::path& poses) {
+                                  MotionSource& source) {
   const Node* const node = table.take("motion");
   if (!node) return std::nullopt;
   const std::string kinds = "one of velocity and spin, keyframes = [...], poses = \"poses.csv\"";
@@ -93,10 +92,17 @@ std::optional<Motion> read_motion(Table& table, const fs::path& folder, const Ve
 
   Vec3 centre = default_centre;
   motion.read("centre", centre, dimension::length);
-  if (steady) return read_steady(motion, centre);
-  if (motion.has("keyframes")) return Motion::keyframes(read_keyframes(motion), centre);
-  poses = pose_file(motion, folder);
-  return Motion::keyframes(read_poses(poses), centre);
+  if (steady) {
+    source.kind = "velocity and spin";
+    return read_steady(motion, centre, source.start);
+  }
+  source.kind = motion.has("keyframes") ? "keyframes" : "poses";
+  if (motion.has("poses")) source.poses = pose_file(motion, folder);
+  const std::vector<Keyframe> all =
+      motion.has("keyframes") ? read_keyframes(motion) : read_poses(source.poses);
+  const Motion path = Motion::keyframes(all, centre);  // refuses none
+  source.start = all.front().time;
+  return path;
 }
 
 }  // namespace drape

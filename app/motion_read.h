@@ -4,15 +4,16 @@
 #include <filesystem>
 #include <optional>
 
+#include "app/scene.h"
 #include "app/table.h"
 #include "constraints/motion.h"
 
 namespace drape {
 
 // Nothing when the table has no such key. `default_centre` [m]: what it turns about where no other is given.
-// `poses` becomes the CSV file that it is read from, if it is.
+// `source` becomes how it was given.
 std::optional<Motion> read_motion(Table& table, const std::filesystem::path& folder,
-                                  const Vec3& default_centre, std::filesystem::path& poses);
+                                  const Vec3& default_centre, MotionSource& source);
 
 Vec3 read_spin(Table& table);  // `spin = { axis, rate }` [rad/s], zero when absent
 

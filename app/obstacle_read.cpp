@@ -114,10 +114,15 @@ Friction read_friction(Table& table) {
   both.read_required("static", friction.statics, dimension::number, Range::not_negative);
   both.read_required("kinetic", friction.kinetic, dimension::number, Range::not_negative);
   both.finish();
+  if (friction.kinetic > friction.statics)
+    both.fail("kinetic", "is more than static = " + shortest(friction.statics) +
+                             ": what slides is not held more than what sticks; expected at most that, or a "
+                             "greater static friction");
   return friction;
 }
 
-// What a body turns about where the scene does not say.
+}  // namespace
+
 Vec3 middle(const ObstacleEntry& entry) {
   const Shape& shape = entry.obstacle.shape;
   if (const Plane* const plane = std::get_if<Plane>(&shape)) return plane->point;
@@ -127,8 +132,6 @@ Vec3 middle(const ObstacleEntry& entry) {
   if (const Capsule* const capsule = std::get_if<Capsule>(&shape)) return (capsule->a + capsule->b) / 2;
   return entry.placement.translate;
 }
-
-}  // namespace
 
 ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
   ObstacleEntry entry;
@@ -153,7 +156,7 @@ ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
   table.read("margin", entry.obstacle.margin, dimension::length, Range::not_negative);
   table.read("restitution", entry.obstacle.restitution, dimension::number, Range::not_negative);
   if (entry.obstacle.restitution > 1) table.fail("restitution", "expected a number from 0 to 1");
-  entry.obstacle.motion = read_motion(table, folder, middle(entry), entry.poses).value_or(Motion());
+  entry.obstacle.motion = read_motion(table, folder, middle(entry), entry.source).value_or(Motion());
   read_rigid(table, entry, middle(entry));
   table.finish();
   try {

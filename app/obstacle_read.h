@@ -11,6 +11,8 @@ namespace drape {
 
 ObstacleEntry read_obstacle(Table& table, const std::filesystem::path& folder);
 
+Vec3 middle(const ObstacleEntry& entry);  // m, what it turns about where the scene does not say
+
 using Turns = std::vector<Eigen::AngleAxisd>;  // the first is made first
 
 Vec3 read_axis(Table& table);    // `axis`, required; of length 1

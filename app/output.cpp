@@ -24,11 +24,11 @@ std::vector<fs::path> inputs_of(const Scene& scene) {
   };
   for (const ClothEntry& cloth : scene.cloths) {
     add(cloth.mesh);
-    for (const PinEntry& pin : cloth.pins) add(pin.poses);
+    for (const PinEntry& pin : cloth.pins) add(pin.source.poses);
   }
   for (const ObstacleEntry& obstacle : scene.obstacles) {
     add(obstacle.mesh);
-    add(obstacle.poses);
+    add(obstacle.source.poses);
     for (const fs::path& frame : frame_files(obstacle.frames)) add(frame);
   }
   return inputs;

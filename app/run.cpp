@@ -64,6 +64,7 @@ class Run {
  private:
   bool step();
   bool at_rest(const StepRow& row) const;
+  bool slow(double cloth_speed) const;
   void record_step(const StepRow& row);
   void write_due_frames();
   void write_frame();
@@ -167,8 +168,11 @@ bool Run::step() {
 }
 
 // Nothing moves, nor is it going to.
-bool Run::at_rest(const StepRow& row) const {
-  if (!(row.max_speed < wanted_.settle_speed) || row.time < last_motion_) return false;
+bool Run::at_rest(const StepRow& row) const { return slow(row.max_speed) && !(row.time < last_motion_); }
+
+// Neither cloth nor body with a mass moves. [m/s]
+bool Run::slow(double cloth_speed) const {
+  if (!(cloth_speed < wanted_.settle_speed)) return false;
   for (const MovingBody& body : simulation_.constraints->bodies())
     if (body.reacting() && !(body.reacting()->velocity().norm() < wanted_.settle_speed)) return false;
   return true;
@@ -257,7 +261,7 @@ void Run::note_failure(const StepFailure& failure) {
 void Run::conclude() {
   if (!(wanted_.frame_rate > 0)) write_frame();
   record_.simulated_seconds = simulation_.state.time;
-  record_.settled = record_.steps > 0 && record_.max_speed < wanted_.settle_speed;
+  record_.settled = record_.steps > 0 && slow(record_.max_speed);
   for (double depth : simulation_.constraints->penetration(simulation_.state.x))
     record_.max_penetration = std::max(record_.max_penetration, depth);
   record_.bodies = body_records(simulation_);

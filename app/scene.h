@@ -22,12 +22,19 @@ struct Placement {
   Vec3 translate = Vec3::Zero();  // m
 };
 
+// How a motion was given, for what is said of it.
+struct MotionSource {
+  std::string kind;             // "keyframes", "poses", "velocity and spin"; empty: there is none
+  double start = 0;             // s
+  std::filesystem::path poses;  // the CSV file that it was read from, if it was
+};
+
 struct PinEntry {
   PinRule rule;
   std::string where;             // "scene.toml:21"
   std::string follow;            // the obstacle that it is fastened to; empty: none
   std::optional<Motion> motion;  // or a path of its own
-  std::filesystem::path poses;   // the CSV file that the motion was read from, if it was
+  MotionSource source;
 };
 
 struct ClothEntry {
@@ -63,12 +70,12 @@ struct FramesEntry {
 
 struct ObstacleEntry {
   std::string name;
-  Obstacle obstacle;            // a mesh's shape is null until it is loaded
-  std::filesystem::path mesh;   // OBJ, of the shapes "mesh" and "level-set"; of the latter also .vdb
-  Placement placement;          // of the mesh and its frames
-  FramesEntry frames;           // of a mesh
-  double voxel = 0;             // m, of the level set; 0: chosen
-  std::filesystem::path poses;  // the CSV file that its motion was read from, if it was
+  Obstacle obstacle;           // a mesh's shape is null until it is loaded
+  std::filesystem::path mesh;  // OBJ, of the shapes "mesh" and "level-set"; of the latter also .vdb
+  Placement placement;         // of the mesh and its frames
+  FramesEntry frames;          // of a mesh
+  double voxel = 0;            // m, of the level set; 0: chosen
+  MotionSource source;         // of its motion
   std::optional<RigidBodyEntry> rigid;
   std::string where;
 };

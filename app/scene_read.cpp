@@ -122,7 +122,7 @@ PinEntry read_pin(Table& pin, const fs::path& folder) {
   if (pin.has("follow") && entry.follow.empty()) pin.fail("follow", "expected the name of an obstacle");
   if (pin.has("follow") && pin.has("motion"))
     pin.fail("follow", "a pin follows a body or has a motion of its own, not both");
-  entry.motion = read_motion(pin, folder, Vec3::Zero(), entry.poses);
+  entry.motion = read_motion(pin, folder, Vec3::Zero(), entry.source);
   return entry;
 }
 

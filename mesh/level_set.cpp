@@ -22,6 +22,12 @@ std::string short_number(double value) {
   return text;
 }
 
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
 std::string described(const Hole& hole) {
   std::string text = std::to_string(hole.edges) + " edges, " + short_number(hole.circumference) +
                      " m round, " + short_number(hole.width) + " m across, about (";
@@ -44,7 +50,20 @@ std::string described(const Hole& hole) {
                    " in your modeller, or use shape = \"mesh\", which takes it as a thick surface");
 }
 
+[[noreturn]] void refuse_voxel(double voxel, const Vec3& size) {
+  std::string sides = number(size[0]) + " x " + number(size[1]) + " x " + number(size[2]) + " m";
+  throw InputError("a voxel of " + number(voxel) + " m is too coarse for a body of " + sides +
+                   ": nothing of it would be left; choose one of at most a quarter of its thickness");
+}
+
 }  // namespace
+
+void check_size(const Vec3& lower, const Vec3& upper, const std::string& name) {
+  const double size = (upper - lower).maxCoeff();
+  if (size >= least_size && size <= largest_size) return;
+  throw InputError(name + ": the body is " + number(size) + " m long; a level set is made of " +
+                   number(least_size) + " m to " + number(largest_size) + " m: change the scale");
+}
 
 double default_voxel(const TriangleMesh& mesh) {
   const MeshReport report = examine(mesh);
@@ -56,20 +75,23 @@ LevelSet LevelSet::from_mesh(const TriangleMesh& mesh, const LevelSetOptions& op
                              const std::string& name) {
   const SurfaceDistance surface(mesh);
   if (!surface.closed()) refuse_open(mesh, name);
-  const double voxel = options.voxel > 0 ? options.voxel : default_voxel(mesh);
   Vec3 lower = mesh.positions[static_cast<std::size_t>(mesh.triangles.front()[0])], upper = lower;
   for (const Triangle& t : mesh.triangles)
     for (const int v : t) {
       lower = lower.cwiseMin(mesh.positions[v]);
       upper = upper.cwiseMax(mesh.positions[v]);
     }
+  check_size(lower, upper, name);
+  const double voxel = options.voxel > 0 ? options.voxel : default_voxel(mesh);
   const double band = std::max(options.band, least_band * voxel);
   try {
+    if (!(voxel < (upper - lower).maxCoeff())) refuse_voxel(voxel, upper - lower);
     auto grid = std::make_shared<VoxelGrid>(empty_grid(voxel, band, lower, upper));
     find_near_bricks(*grid, [&](const Vec3& x) { return surface.closest(x).distance; });
     fill_bricks(*grid,
                 [&](const Index& i) { return surface.closest(voxel * Vec3(i[0], i[1], i[2])).distance; });
     grid->error = measure_error(*grid, surface);
+    if (grid->error->vanished >= 1) refuse_voxel(voxel, upper - lower);
     return LevelSet(std::move(grid));
   } catch (const InputError& error) {
     throw InputError(name + ": " + error.what());
@@ -78,6 +100,7 @@ LevelSet LevelSet::from_mesh(const TriangleMesh& mesh, const LevelSetOptions& op
 
 LevelSet LevelSet::read(const std::filesystem::path& path, double scale) {
   VdbFile file = read_vdb(path, scale);
+  check_size(file.grid.lower, file.grid.upper, path.string());
   return LevelSet(std::make_shared<const VoxelGrid>(std::move(file.grid)))
       .moved(Mat3::Identity(), file.origin);
 }

@@ -39,8 +39,8 @@ struct LevelSetOptions {
 
 class LevelSet {
  public:
-  // Throws InputError when the mesh is not closed (with its holes) or the grid would be too large. `name`
-  // stands in messages.
+  // Throws InputError when the mesh is not closed (with its holes), its size is none of a body, or the grid
+  // would be too large or so coarse that nothing is left. `name` stands in messages.
   static LevelSet from_mesh(const TriangleMesh& mesh, const LevelSetOptions& options = {},
                             const std::string& name = "the mesh");
 
@@ -71,6 +71,11 @@ class LevelSet {
 };
 
 bool has_openvdb();  // whether this build reads and writes .vdb files
+
+// Of a body, the longest side of its box [m]: what lies outside is a wrong unit, and too much for floats.
+inline constexpr double least_size = 1e-6, largest_size = 1e6;
+// Throws InputError unless the body with this box is of such a size.
+void check_size(const Vec3& lower, const Vec3& upper, const std::string& name);
 
 // Three quarters of the median edge, between 1/500 and 1/100 of the size (the box's diagonal). [m]
 double default_voxel(const TriangleMesh& mesh);

@@ -278,6 +278,10 @@ VdbFile read_vdb(const std::filesystem::path& path, double scale) {
 }
 
 std::string format_vdb(const VoxelGrid& grid) {
+  constexpr double least_voxel = 1.5e-5;  // m: OpenVDB takes a cell of less than 3e-15 m^3 for none at all
+  if (!(grid.voxel >= least_voxel))
+    throw InputError("a .vdb file cannot hold a voxel of " + std::to_string(1e6 * grid.voxel) +
+                     " um, which is less than 15 um; choose a larger voxel, or a larger scale");
   std::ostringstream bytes(std::ios::binary);
   with_openvdb("the level set", "cannot be written", [&] {
     vdb::io::Stream(bytes).write(vdb::GridCPtrVec{surface_of(grid), far_of(grid), near_of(grid)});

@@ -250,6 +250,69 @@ TEST_CASE("check and list change nothing", "[cli]") {
   CHECK(shop.files(".") == before);
 }
 
+TEST_CASE("check says how bodies and pins move", "[cli]") {
+  const Workshop shop;
+  shop.write("poses.csv", "time,x,y,z,qx,qy,qz,qw\n0.5,0,0,0,0,0,0,1\n2,0.3,0,0.4,0,0,0,1\n");
+  const auto said = [&](const std::string& text) {
+    shop.write("m.toml", shop.cloth + text + "[simulation]\nduration = 3\n");
+    const Outcome check = shop.drape("check m.toml");
+    INFO(text << check.err);
+    CHECK(check.exit_code == 0);
+    return check.out;
+  };
+  const std::string ball = "[[obstacle]]\nshape = \"sphere\"\nradius = 0.1\ncentre = [1, 0, 0]\n";
+  CHECK_THAT(said(ball), Contains("\n  stands\n"));
+  CHECK_THAT(said(ball + "motion = { keyframes = [{ time = 1, translate = [9, 9, 9] }] }\n"),
+             Contains("\n  stands, as keyframes says\n"));
+  CHECK_THAT(
+      said(ball +
+           "mass = \"250 g\"\nvelocity = [0, 3, 4]\nspin = { axis = [0, 1, 0], rate = \"90 deg/s\" }\n"),
+      Contains("\n  mass 0.25 kg, moves by what acts on it: at first 5 m/s, 90 deg/s\n"));
+  // There and back: as far as it gets, not as far as it ends.
+  CHECK_THAT(
+      said(ball +
+           "motion = { keyframes = [{ time = 0.4 }, { time = 1, translate = [0, 0.5, 0], rotate = { axis "
+           "= [0, 0, 1], angle = \"30 deg\" } }, { time = 1.56, translate = [0, 0, 0], rotate = { axis "
+           "= [0, 0, 1], angle = 0 } }] }\n"),
+      Contains("moved by keyframes, 0.4 to 1.56 s: by up to 0.5 m, turned by up to 30 deg\n"));
+  CHECK_THAT(said(ball + "motion = { poses = \"poses.csv\" }\n"),
+             Contains("moved by poses.csv, 0.5 to 2 s: by up to 0.5 m, turned by up to 0 deg\n"));
+  // Half a turn about the origin takes the ball across; many turns are counted.
+  CHECK_THAT(
+      said(ball +
+           "motion = { spin = { axis = [0, 1, 0], rate = \"6000 rpm\" }, centre = [0, 0, 0], start = 1 }\n"),
+      Contains("moved by velocity and spin, 1 s on: by up to 2 m, turned by up to 7.2e+04 deg in the run\n"));
+  CHECK_THAT(said(ball + "motion = { velocity = [1, 0, 0], start = 5 }\n"),
+             Contains("moved by velocity and spin, 5 s on: after the end of the run\n"));
+  const std::string pins = said(
+      "[[cloth.pins]]\nvertices = [0, 1, 2]\nfollow = \"sphere\"\n[[cloth.pins]]\nvertices = "
+      "[12]\n[[cloth.pins]]\n"
+      "vertices = [5, 6]\nmotion = { velocity = [0, 0.1, 0], end = 2 }\n" +
+      ball);
+  CHECK_THAT(pins, Contains("\n6 vertices pinned, 3 to sphere, 2 along a path\n"));
+  CHECK_THAT(
+      pins,
+      Contains("\n  2 vertices of sheet: moved by velocity and spin, 0 to 2 s: by up to 0.2 m, turned by "
+               "up to 0 deg\n"));
+}
+
+TEST_CASE("a run is settled only when bodies with a mass are, too", "[cli]") {
+  const Workshop shop;
+  const std::string body =
+      "pins = [{ vertices = [0, 12] }]\n[[obstacle]]\nshape = \"sphere\"\nradius = 0.1\ncentre = "
+      "[0, 9, 0]\nmass = 1\n";
+  for (const std::string velocity : {"0", "0.1"}) {
+    INFO(velocity);
+    shop.write("m.toml", shop.cloth + body + "velocity = [0, " + velocity + ", 0]\n" +
+                             "[simulation]\ngravity = [0, 0, 0]\nduration = 0.1\n");
+    const Outcome run = shop.drape("simulate m.toml --out o");
+    REQUIRE(run.exit_code == 0);
+    const std::string state = velocity == "0" ? "settled" : "moving";
+    CHECK(shop.json("o/run.json")["state"] == state);
+    CHECK_THAT(run.out, Contains("state: " + state));
+  }
+}
+
 TEST_CASE("help and version end well", "[cli]") {
   const Workshop shop;
   for (const char* words :

@@ -209,7 +209,26 @@ TEST_CASE("drape level-set makes a file that a scene can name", "[level-set][cli
   refused("level-set ball.obj -o no/folder/a.vdb", "cannot write");
   refused("level-set sheet.obj -o no/folder/a.vdb", "cannot write");  // before anything is computed
   refused("level-set ball.obj -o a.vdb --voxel 1e-7", "ball.obj: a voxel of 1e-07 m makes too large a grid");
+  const std::string to_a = "level-set ball.obj -o a.vdb ";
+  refused(to_a + "--voxel 0", "--voxel 0: expected a length greater than zero");
+  refused(to_a + "--voxel nan", "--voxel nan: is not a finite number");
+  refused(to_a + "--scale 0", "--scale 0: expected a number greater than zero");
+  refused(to_a + "--voxel 0.7", "ball.obj: a voxel of 0.7 m is too coarse for a body of 0.6 x 0.6 x 0.6 m");
+  refused(to_a + "--voxel 1e400", "too coarse for a body");
+  for (const char* scale : {"1e30", "1e7", "1e-7", "1e-30", "1e-200"})
+    refused(to_a + "--scale " + scale, "a level set is made of 1e-06 m to 1e+06 m: change the scale");
   CHECK_FALSE(fs::exists(room.path / "a.vdb"));
+  const std::string before = content(room.path / "ball-grid.vdb");
+  refused("level-set ball.obj -o ball-grid.vdb --voxel 0.7", "too coarse");
+  CHECK(content(room.path / "ball-grid.vdb") == before);
+  refused(to_a + "--scale 1e-5", "a .vdb file cannot hold a voxel of");
+  CHECK(room.drape("level-set ball.obj -o small.vdb --scale 0.003 --voxel '15.1 um'").exit_code == 0);
+  CHECK(room.drape("level-set ball.obj -o large.vdb --scale 1e6").exit_code == 0);
+  room.write("c.toml", Room::scene("mesh = \"ball.obj\"\nvoxel = 0.7"));
+  refused("simulate c.toml --out c", "a voxel of 0.7 m is too coarse");
+  CHECK_FALSE(fs::exists(room.path / "c"));
+  room.write("z.toml", Room::scene("mesh = \"ball-grid.vdb\"\nscale = 1e9"));
+  refused("check z.toml", "change the scale");
   room.write("w.toml", Room::scene("mesh = \"ball-grid.vdb\"\nvoxel = 0.01"));
   refused("check w.toml", "w.toml:8: voxel");
   room.write("m.toml", Room::scene("mesh = \"ball-grid.vdb\"\nmargin = \"5 cm\""));

@@ -134,7 +134,7 @@ TEST_CASE("a mistake in a scene is told with its line", "[scene]") {
       {cloth + sphere + "radius = 1\nsize = [1, 1, 1]\n", "scene.toml:6:", "unknown key 'size'"},
       {cloth + sphere + "radius = 1\nfriction = -0.1\n", "scene.toml:6:", "not negative"},
       {cloth + sphere + "radius = 1\nfriction = { static = 0.1, kinetic = 0.3 }\n",
-       "scene.toml:3:", "kinetic"},
+       "scene.toml:6:", "kinetic = 0.3: is more than static = 0.1"},
       {cloth + sphere + "radius = 1\nmargin = \"-1 mm\"\n", "scene.toml:6:", "not negative"},
       {cloth + "[[obstacle]]\nshape = \"box\"\nsize = [1, 0, 1]\n", "scene.toml:3:", "size"},
       {cloth + "[[obstacle]]\nshape = \"plane\"\nnormal = [0, 0, 0]\n", "scene.toml:3:", "normal"},
