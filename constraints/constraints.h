@@ -69,7 +69,8 @@ class Constraints {
   const FaceContacts& faces() const { return faces_; }
 
   const std::vector<MovingBody>& bodies() const { return bodies_; }
-  bool bodies_converged() const;                              // those that react
+  // Those that react: their motion is the one that the impulses make, to this share of what the step changes.
+  bool bodies_converged(double share = ReactingBody::well) const;
   const std::vector<int>& pinned() const { return pinned_; }  // ascending
   const std::vector<MovingPin>& moving_pins() const { return moving_pins_; }
 

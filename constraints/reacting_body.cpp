@@ -15,7 +15,6 @@ namespace {
 
 constexpr double close_enough = 1e-3;  // of the change of velocity in the step
 constexpr double round_off = 1e-12;    // of the velocity: what floats freely without gravity has no more
-constexpr double too_far = 0.02;       // of the same: not converged
 
 Mat3 turned_by(const Vec3& angle) {
   const double a = angle.norm();
@@ -135,8 +134,8 @@ bool ReactingBody::correct(Pose& end, double noise) {
   return true;
 }
 
-bool ReactingBody::converged() const {
-  return difference().norm() <= too_far * change() + round_off * q_.norm();
+bool ReactingBody::converged(double share) const {
+  return difference().norm() <= share * change() + round_off * q_.norm();
 }
 
 bool ReactingBody::end_step(const Pose& end) {

@@ -38,6 +38,8 @@ void check(const RigidBody& body);
 
 class ReactingBody {
  public:
+  static constexpr double well = 0.02;  // of what the step changes: converged
+
   ReactingBody(const RigidBody& body, const Pose& pose);
 
   // Of the last completed step.
@@ -55,7 +57,7 @@ class ReactingBody {
   // True when the motion that was prescribed is not the one that the impulse makes: then `end` is the new
   // one. noise [N s]: of the impulses.
   bool correct(Pose& end, double noise = 0);
-  bool converged() const;
+  bool converged(double share = well) const;
   bool end_step(const Pose& end);  // false: not converged
 
  private:

@@ -75,9 +75,10 @@ bool Constraints::move_bodies(double noise) {
   return true;
 }
 
-bool Constraints::bodies_converged() const {
-  return std::all_of(bodies_.begin(), bodies_.end(),
-                     [](const MovingBody& body) { return !body.reacting() || body.reacting()->converged(); });
+bool Constraints::bodies_converged(double share) const {
+  return std::all_of(bodies_.begin(), bodies_.end(), [share](const MovingBody& body) {
+    return !body.reacting() || body.reacting()->converged(share);
+  });
 }
 
 }  // namespace drape

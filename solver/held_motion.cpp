@@ -71,7 +71,7 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
       constraints_.respond(contact_, x, v, pulled_, x_new_, v_new_, impulse_noise(h));
     }
     constraints_.react_faces(x_new_, v_new_);
-    if (!constraints_.bodies_converged()) {
+    if (!constraints_.bodies_converged(0.5)) {  // what is nearer is counted as not converged
       report.done = false;
       report.failure = {.what = "the motion of a body that reacts and that of the cloth do not agree",
                         .force = {}};
