@@ -85,7 +85,7 @@ class FaceContacts {
   void end_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new);
 
   // What the step does to the bodies: the force that acted for so long [s], where a step has stages; else
-  // that at its end, x = x_end + h v_b.
+  // that at its end.
   void count_impulse(double duration, const VecX& x, const VecX& v);
   void take_impulse(double h, const VecX& x_new, const VecX& v_new);
 

@@ -238,6 +238,17 @@ TEST_CASE("a wall that is let go bears nothing, and friction forgets it", "[cont
   }
 }
 
+TEST_CASE("a particle that is put elsewhere meets what is there", "[contact]") {
+  Particle p;
+  p.constraints.add(Obstacle{.shape = Plane{}});
+  p.state.x = Vec3(0, 1, 0);
+  p.step(0.01);
+  p.state.x = Vec3(0, 0.003, 0);  // by hand: a metre nearer than it was
+  p.state.v = Vec3(0, -3, 0);
+  p.step(0.01);
+  CHECK(p.state.x[1] >= 0.002 - 1e-9);
+}
+
 TEST_CASE("a cloth laid on a plane comes to rest and stays", "[contact]") {
   Cloth cloth(grid(12, 12, 0.5, 0.5), soft(), {0, 0.02, 0});
   cloth.constraints.add(Obstacle{.shape = Plane{}});
