@@ -2,6 +2,7 @@
 #pragma once
 
 #include "constraints/constraints.h"
+#include "mesh/embedding.h"
 #include "mesh/examine.h"
 #include "mesh/generate.h"
 #include "mesh/mesh_frames.h"
@@ -9,5 +10,5 @@
 #include "mesh/threads.h"
 #include "mesh/topology.h"
 #include "solver/bdf.h"
-#include "solver/fabric.h"
+#include "solver/noh_jung.h"
 #include "solver/system.h"
