@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "app/body_frames.h"
+#include "app/cloth_model.h"
 #include "app/level_set_cache.h"
 #include "app/warnings.h"
 #include "mesh/obj.h"
 #include "mesh/solid.h"
 #include "solver/face_contact_force.h"
-#include "solver/noh_jung.h"
 
 namespace drape {
 namespace {
@@ -31,15 +31,19 @@ TriangleMesh load(const std::filesystem::path& path, const std::string& where, c
 
 void add_cloths(const Scene& scene, Simulation& simulation) {
   std::vector<double> all_masses;
+  std::vector<Connections> connections;
   for (const ClothEntry& entry : scene.cloths) {
     Cloth cloth;
     cloth.name = entry.name;
-    cloth.first_particle = static_cast<int>(all_masses.size());
     cloth.mesh = load(entry.mesh, entry.where, entry.placement, cloth.report, simulation.messages);
-    const std::vector<double> own = masses(cloth.mesh, entry.fabric);
-    all_masses.insert(all_masses.end(), own.begin(), own.end());
+    ClothModel model = cloth_model(entry, cloth.mesh, cloth.mesh, simulation.messages);
+    cloth.first_particle = static_cast<int>(all_masses.size());
+    all_masses.insert(all_masses.end(), model.masses.begin(), model.masses.end());
     cloth.end_particle = static_cast<int>(all_masses.size());
     cloth.embedding = Embedding::each(cloth.first_particle, cloth.mesh.vertex_count());
+    for (const StretchConnection& s : model.connections.stretch)
+      if (s.L > 0) cloth.edges.push_back({cloth.first_particle + s.i, cloth.first_particle + s.j, s.L});
+    connections.push_back(std::move(model.connections));
     simulation.cloths.push_back(std::move(cloth));
   }
   simulation.system = std::make_unique<System>(std::move(all_masses));
@@ -47,13 +51,8 @@ void add_cloths(const Scene& scene, Simulation& simulation) {
   simulation.state.x.resize(3 * simulation.system->particles());
   simulation.state.v = VecX::Zero(3 * simulation.system->particles());
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
-    Cloth& cloth = simulation.cloths[k];
-    const ClothEntry& entry = scene.cloths[k];
-    const Connections connections = noh_jung_connections(cloth.mesh, cloth.mesh, entry.fabric);
-    for (const StretchConnection& s : connections.stretch)
-      if (s.L > 0) cloth.edges.push_back({cloth.first_particle + s.i, cloth.first_particle + s.j, s.L});
-    warn_if_limp(entry, limp_below(connections, entry.fabric), simulation.messages);
-    simulation.system->add(forces_of(connections, entry.fabric, cloth.first_particle));
+    const Cloth& cloth = simulation.cloths[k];
+    simulation.system->add(forces_of(connections[k], scene.cloths[k].fabric, cloth.first_particle));
     simulation.state.x.segment(3 * cloth.first_particle, 3 * cloth.mesh.vertex_count()) =
         stacked(cloth.mesh.positions);
   }

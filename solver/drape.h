@@ -10,5 +10,6 @@
 #include "mesh/threads.h"
 #include "mesh/topology.h"
 #include "solver/bdf.h"
+#include "solver/choi_ko.h"
 #include "solver/noh_jung.h"
 #include "solver/system.h"
