@@ -134,7 +134,7 @@ bool Run::step() {
   before_ = state;
   StepRow row;
   row.step = next_step_;
-  row.report = simulation_.integrator->advance(state, at_last_step() ? last_step_ : wanted_.time_step);
+  row.report = simulation_.advance(at_last_step() ? last_step_ : wanted_.time_step);
   if (const int bad = first_not_finite(state); bad >= 0) {  // out of the range of numbers
     if (row.report.done) row.report.failure = {"a position or velocity is not a finite number", bad, {}};
     row.report.done = false;

@@ -5,6 +5,7 @@
 #include "app/motion_read.h"
 #include "app/obstacle_read.h"
 #include "app/scene.h"
+#include "app/sewing_read.h"
 #include "app/table.h"
 #include "mesh/obj.h"
 
@@ -132,7 +133,16 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
   cloth.mesh = read_path(table, "mesh", folder);
   cloth.name = read_name(table, cloth.mesh);
   cloth.placement = read_placement(table);
+  std::string rest = "mesh";
+  table.read("rest", rest, Names{"mesh", "uv"});
+  cloth.rest_is_flat = rest == "uv";
+  table.read("uv_scale", cloth.uv_scale, dimension::length, Range::positive);
+  if (table.has("uv_scale") && !cloth.rest_is_flat) table.fail("uv_scale", "goes with rest = \"uv\"");
+  cloth.panels = read_panels(table);
+  cloth.seams = read_seams(table);
   table.read("model", cloth.model, model_names());
+  if (!cloth.seams.empty() && cloth.model != "noh-jung")
+    table.fail("model", "a cloth with seams is no regular grid; expected \"noh-jung\"");
   table.read("fabric", cloth.fabric_name, fabric_names());
   if (!cloth.fabric_name.empty()) cloth.fabric = load_fabric(cloth.fabric_name).fabric;
   read_fabric(table, cloth.fabric);

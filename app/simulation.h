@@ -2,11 +2,12 @@
 // obstacles.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "app/scene.h"
+#include "app/sewing.h"
 #include "mesh/embedding.h"
 #include "mesh/examine.h"
 #include "solver/integrator.h"
@@ -26,7 +27,17 @@ struct Cloth {
   MeshReport report;
   int first_particle = 0, end_particle = 0;  // of the system
   Embedding embedding;                       // of the mesh in the particles
+  TriangleMesh rest;                         // its triangle k is the mesh's (solver/noh_jung.h)
   std::vector<RestEdge> edges;
+
+  struct Stitched {
+    OpenSeam seam;
+    Force* force;  // of the system; null: there is nothing left to close
+  };
+  std::vector<Stitched> seams;  // that are open
+
+  // Particle i is number[i] from now on.
+  void renumber(const std::vector<int>& number);
 };
 
 // A mesh or an obstacle as it was loaded, for `drape check`.
@@ -43,7 +54,15 @@ struct Simulation {
   std::unique_ptr<Constraints> constraints;
   std::unique_ptr<Integrator> integrator;  // refers to the two above
   State state;
-  Names messages;  // "warning: ..." and "note: ...", one line each
+  Names messages;                      // "warning: ..." and "note: ...", one line each
+  std::shared_ptr<const Scene> scene;  // what it was made from
+  // Makes the integrator, now and again when particles have become one.
+  std::function<std::unique_ptr<Integrator>(System&, Constraints&)> make_integrator;
+
+  // One step, h [s]. Seams go on closing; those that have closed are merged.
+  StepReport advance(double h);
+  // Takes another integrator from now on.
+  void use(std::function<std::unique_ptr<Integrator>(System&, Constraints&)> make);
 
   const Cloth& cloth_of(int particle) const;
 };

@@ -75,7 +75,7 @@ class GridSearch {
   void find_neighbours() {
     for (int q = 0; q < static_cast<int>(grid_.quads.size()); ++q)
       for (int k = 0; k < 4; ++k) {
-        const auto [low, high] = std::minmax(corner(q, k), corner(q, k + 1));
+        const auto [low, high] = std::minmax({corner(q, k), corner(q, k + 1)});
         sides_.push_back({low, high, q, k});
       }
     std::sort(sides_.begin(), sides_.end(), [](const Side& s, const Side& t) {

@@ -4,6 +4,7 @@
 #include "constraints/constraints.h"
 #include "mesh/embedding.h"
 #include "mesh/examine.h"
+#include "mesh/flat_pattern.h"
 #include "mesh/generate.h"
 #include "mesh/mesh_frames.h"
 #include "mesh/obj.h"
