@@ -279,8 +279,11 @@ StepReport Simulation::advance(double h) {
   bool open = false;
   for (Cloth& cloth : cloths)
     for (Cloth::Stitched& stitched : cloth.seams) {
-      if (stitched.force) close_until(*stitched.force, stitched.seam, state.time + h);
       open = true;
+      if (!stitched.force) continue;
+      const double before = stitched.force->energy(state.x);
+      close_until(*stitched.force, stitched.seam, state.time + h);
+      integrator->count_given(std::max(0.0, stitched.force->energy(state.x) - before));
     }
   const StepReport report = integrator->advance(state, h);
   if (open && report.done && merge_closed_seams(*this)) integrator = make_integrator(*system, *constraints);
