@@ -6,6 +6,7 @@
 
 #include "solver/buckling_spring.h"
 #include "solver/damping.h"
+#include "solver/linear_spring.h"
 #include "tests/tables.h"
 
 using namespace drape;
@@ -24,6 +25,11 @@ struct Weld {
   static Law::Rest rest() { return {0, 50}; }
   static std::vector<double> kinks() { return {}; }
 };
+struct Linear {
+  using Law = LinearSpring;
+  static Law::Rest rest() { return {0.7, 120}; }
+  static std::vector<double> kinks() { return {}; }
+};
 struct Bend {
   using Law = BucklingSpring;
   static Law::Rest rest() { return BucklingSpring::rest(0.7, 0.3, 200); }
@@ -34,7 +40,7 @@ struct BendAlwaysClamped {
   static Law::Rest rest() { return BucklingSpring::rest(0.7, 3, 200); }
   static std::vector<double> kinks() { return {0.7}; }
 };
-using Laws = std::tuple<Stretch, Weld, Bend, BendAlwaysClamped>;
+using Laws = std::tuple<Stretch, Weld, Linear, Bend, BendAlwaysClamped>;
 
 bool near_kink(const std::vector<double>& kinks, double l) {
   for (double k : kinks)
