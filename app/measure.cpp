@@ -5,8 +5,6 @@
 #include <cstdio>
 #include <numeric>
 
-#include "mesh/topology.h"
-
 namespace drape {
 namespace {
 
@@ -19,18 +17,11 @@ std::uint64_t fnv1a(std::uint64_t hash, const VecX& numbers) {
 
 }  // namespace
 
-void EdgeStrain::add(const TriangleMesh& mesh, int first_particle) {
-  for (const Edge& e : edges(mesh)) {
-    const Vec3 along =
-        mesh.positions[static_cast<std::size_t>(e.b)] - mesh.positions[static_cast<std::size_t>(e.a)];
-    if (along.norm() > 0) edges_.push_back({first_particle + e.a, first_particle + e.b, along.norm()});
-  }
-}
-
-double EdgeStrain::largest(const VecX& x) const {
+double largest_strain(const std::vector<Cloth>& cloths, const VecX& x) {
   double largest = 0;
-  for (const RestEdge& e : edges_)
-    largest = std::max(largest, (x.segment<3>(3 * e.j) - x.segment<3>(3 * e.i)).norm() / e.length - 1);
+  for (const Cloth& cloth : cloths)
+    for (const RestEdge& e : cloth.edges)
+      largest = std::max(largest, (x.segment<3>(3 * e.j) - x.segment<3>(3 * e.i)).norm() / e.L - 1);
   return largest;
 }
 

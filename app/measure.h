@@ -5,25 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "mesh/triangle_mesh.h"
-#include "solver/state.h"
+#include "app/simulation.h"
 
 namespace drape {
 
-// Largest relative stretch of an edge: max (l - L) / L over the edges that have a rest length L [m]; 0 when
-// none is stretched.
-class EdgeStrain {
- public:
-  void add(const TriangleMesh& mesh, int first_particle);
-  double largest(const VecX& x) const;
-
- private:
-  struct RestEdge {
-    int i, j;
-    double length;  // m
-  };
-  std::vector<RestEdge> edges_;
-};
+// Largest relative stretch of an edge: max (l - L) / L; 0 when none is stretched.
+double largest_strain(const std::vector<Cloth>& cloths, const VecX& x);
 
 double max_speed(const VecX& v);  // m/s, of a particle
 

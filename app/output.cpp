@@ -13,10 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<Vec3> positions_of(const Cloth& cloth, const State& state) {
-  return unstacked(state.x.segment(3 * cloth.first_particle, 3 * cloth.mesh.vertex_count()));
-}
-
 std::vector<fs::path> inputs_of(const Scene& scene) {
   std::vector<fs::path> inputs;
   const auto add = [&](const fs::path& path) {
@@ -113,11 +109,11 @@ void Output::frame(const State& state) {
   for (std::size_t k = 0; k < simulation_.cloths.size(); ++k) {
     const Cloth& cloth = simulation_.cloths[k];
     if (frames_ == Frames::pc2) {
-      caches_[k].add(state.x, cloth.first_particle);
+      caches_[k].add(cloth.embedding.positions(state.x));
       continue;
     }
     AtomicFile file(frame_path(folder_, cloth.name, frame_count_));
-    file.write(format_obj(cloth.mesh, positions_of(cloth, state)));
+    file.write(format_obj(cloth.mesh, cloth.embedding.positions(state.x)));
     file.keep();
   }
 }
@@ -127,7 +123,8 @@ void Output::finish(const State& state, const RunRecord& record) {
   steps_->close();
   std::vector<AtomicFile> texts;
   for (const Cloth& cloth : simulation_.cloths) {
-    texts.emplace_back(cloth_path(cloth, ".obj")).write(format_obj(cloth.mesh, positions_of(cloth, state)));
+    texts.emplace_back(cloth_path(cloth, ".obj"))
+        .write(format_obj(cloth.mesh, cloth.embedding.positions(state.x)));
     texts.back().close();
   }
   bodies_.finish(state.time, texts);

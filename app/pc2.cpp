@@ -45,9 +45,10 @@ Pc2Writer::Pc2Writer(std::filesystem::path path, int points) : file_(std::move(p
   file_.write(bytes_.data(), bytes_.size());
 }
 
-void Pc2Writer::add(const VecX& x, int first_particle) {
+void Pc2Writer::add(const std::vector<Vec3>& positions) {
   bytes_.clear();
-  for (int i = 0; i < 3 * points_; ++i) append(bytes_, static_cast<float>(x[3 * first_particle + i]));
+  for (const Vec3& x : positions)
+    for (double coordinate : x) append(bytes_, static_cast<float>(coordinate));
   file_.write(bytes_.data(), bytes_.size());
   ++samples_;
 }

@@ -18,8 +18,8 @@ class Pc2Writer {
  public:
   Pc2Writer(std::filesystem::path path, int points);
 
-  void add(const VecX& x, int first_particle);  // a sample: the points from this particle on
-  void close();                                 // writes the number of samples into the header
+  void add(const std::vector<Vec3>& positions);  // a sample [m]
+  void close();                                  // writes the number of samples into the header
   void keep() { file_.keep(); }
   const std::filesystem::path& path() const { return file_.path(); }
 

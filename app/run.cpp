@@ -80,7 +80,6 @@ class Run {
   Output& output_;
   bool quiet_;
   Progress progress_;
-  EdgeStrain strain_;
   RunRecord record_;
   State before_;  // the step under way
   Clock::time_point start_ = Clock::now();
@@ -115,11 +114,9 @@ Run::Run(const Scene& scene, Simulation& simulation, Output& output, const RunOp
   record_.duration = wanted_.duration;
   record_.time_step = h;
   record_.warnings = simulation.messages;
-  for (const Cloth& c : simulation.cloths) {
-    strain_.add(c.mesh, c.first_particle);
+  for (const Cloth& c : simulation.cloths)
     record_.cloths.push_back(
         {c.name, c.mesh.vertex_count(), c.mesh.triangle_count(), c.report.edges, c.report.diagonals});
-  }
 }
 
 int Run::to_the_end() {
@@ -154,7 +151,7 @@ bool Run::step() {
   row.elastic_energy = simulation_.system->elastic_energy(state.x);
   row.gravity_energy = simulation_.system->gravity_energy(state.x);
   row.max_speed = max_speed(state.v);
-  row.max_edge_strain = strain_.largest(state.x);
+  row.max_edge_strain = largest_strain(simulation_.cloths, state.x);
   record_step(row);
   ++next_step_;
   write_due_frames();
@@ -247,7 +244,7 @@ void Run::note_failure(const StepFailure& failure) {
     noted.cloth = cloth.name;
     if (noted.term.empty())
       noted.term = strongest_term(*simulation_.system, simulation_.state, failure.particle);
-    noted.vertex = failure.particle - cloth.first_particle;
+    noted.vertex = cloth.embedding.vertex(failure.particle);
     line += ", worst at vertex " + std::to_string(noted.vertex) + " of " + cloth.name + " (at " +
             rounded(x[0], 4) + ", " + rounded(x[1], 4) + ", " + rounded(x[2], 4) + " m)";
   }

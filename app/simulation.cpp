@@ -7,8 +7,8 @@
 #include "app/warnings.h"
 #include "mesh/obj.h"
 #include "mesh/solid.h"
-#include "solver/fabric.h"
 #include "solver/face_contact_force.h"
+#include "solver/noh_jung.h"
 
 namespace drape {
 namespace {
@@ -38,6 +38,8 @@ void add_cloths(const Scene& scene, Simulation& simulation) {
     cloth.mesh = load(entry.mesh, entry.where, entry.placement, cloth.report, simulation.messages);
     const std::vector<double> own = masses(cloth.mesh, entry.fabric);
     all_masses.insert(all_masses.end(), own.begin(), own.end());
+    cloth.end_particle = static_cast<int>(all_masses.size());
+    cloth.embedding = Embedding::each(cloth.first_particle, cloth.mesh.vertex_count());
     simulation.cloths.push_back(std::move(cloth));
   }
   simulation.system = std::make_unique<System>(std::move(all_masses));
@@ -45,8 +47,13 @@ void add_cloths(const Scene& scene, Simulation& simulation) {
   simulation.state.x.resize(3 * simulation.system->particles());
   simulation.state.v = VecX::Zero(3 * simulation.system->particles());
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
-    const Cloth& cloth = simulation.cloths[k];
-    simulation.system->add(noh_jung(cloth.mesh, scene.cloths[k].fabric, cloth.first_particle));
+    Cloth& cloth = simulation.cloths[k];
+    const ClothEntry& entry = scene.cloths[k];
+    const Connections connections = noh_jung_connections(cloth.mesh, cloth.mesh, entry.fabric);
+    for (const StretchConnection& s : connections.stretch)
+      if (s.L > 0) cloth.edges.push_back({cloth.first_particle + s.i, cloth.first_particle + s.j, s.L});
+    warn_if_limp(entry, limp_below(connections, entry.fabric), simulation.messages);
+    simulation.system->add(forces_of(connections, entry.fabric, cloth.first_particle));
     simulation.state.x.segment(3 * cloth.first_particle, 3 * cloth.mesh.vertex_count()) =
         stacked(cloth.mesh.positions);
   }
@@ -54,7 +61,7 @@ void add_cloths(const Scene& scene, Simulation& simulation) {
 
 void pin_down(const PinEntry& pin, const Cloth& cloth, const Scene& scene, Simulation& simulation) {
   std::vector<int> particles = select(pin.rule, cloth.mesh);
-  for (int& v : particles) v += cloth.first_particle;
+  for (int& v : particles) v = cloth.embedding.particle(v);
   Constraints& constraints = *simulation.constraints;
   if (pin.motion) return constraints.pin_along(particles, *pin.motion, simulation.state.x);
   if (pin.follow.empty()) return constraints.pin(particles);
@@ -161,7 +168,7 @@ void add_faces(const Scene& scene, Simulation& simulation) {
     std::vector<ClothFace> faces;
     for (const Triangle& t : cloth.mesh.triangles)
       faces.push_back(
-          {{cloth.first_particle + t[0], cloth.first_particle + t[1], cloth.first_particle + t[2]},
+          {{cloth.embedding.particle(t[0]), cloth.embedding.particle(t[1]), cloth.embedding.particle(t[2])},
            fabric.stretch_spring.value_or(fabric.stretch)});
     simulation.constraints->add_faces(faces);
   }
@@ -172,7 +179,7 @@ void add_faces(const Scene& scene, Simulation& simulation) {
 
 const Cloth& Simulation::cloth_of(int particle) const {
   const auto after =
-      std::find_if(cloths.begin(), cloths.end(), [&](const Cloth& c) { return particle < c.end_particle(); });
+      std::find_if(cloths.begin(), cloths.end(), [&](const Cloth& c) { return particle < c.end_particle; });
   return after == cloths.end() ? cloths.back() : *after;
 }
 

@@ -7,18 +7,26 @@
 #include <vector>
 
 #include "app/scene.h"
+#include "mesh/embedding.h"
 #include "mesh/examine.h"
 #include "solver/integrator.h"
 
 namespace drape {
 
+// A pair of particles whose strain is watched, l / L - 1.
+struct RestEdge {
+  int i, j;
+  double L;  // m
+};
+
+// What is simulated as particles and written as a mesh.
 struct Cloth {
   std::string name;
-  TriangleMesh mesh;       // at rest, placed
-  int first_particle = 0;  // of the system: its vertex 0
+  TriangleMesh mesh;  // as the file has it, placed
   MeshReport report;
-
-  int end_particle() const { return first_particle + mesh.vertex_count(); }
+  int first_particle = 0, end_particle = 0;  // of the system
+  Embedding embedding;                       // of the mesh in the particles
+  std::vector<RestEdge> edges;
 };
 
 // A mesh or an obstacle as it was loaded, for `drape check`.

@@ -2,17 +2,10 @@
 
 #include <cmath>
 
+#include "solver/connections.h"
+
 namespace drape {
 namespace {
-
-void warn_if_limp(const Cloth& cloth, const Fabric& fabric, Names& messages) {
-  const double curvature = limp_below(cloth.mesh, fabric);
-  if (!(curvature > 2 * limp_curvature(fabric.bend, fabric.area_density))) return;
-  messages.push_back("warning: cloth " + cloth.name +
-                     ": the buckling clamp makes it limp below a curvature of " + rounded(curvature, 2) +
-                     " 1/m (a radius of " + rounded(100 / curvature, 2) +
-                     " cm): gentler folds have no bending stiffness; raise buckling_clamp, or leave it out");
-}
 
 std::string body_name(const Obstacle& obstacle, const std::string& name_given) {
   const std::string kind(name(obstacle.shape));
@@ -28,10 +21,10 @@ void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       int inside = 0, deepest = -1;
       double deepest_depth = negligible;
-      for (int i = 0; i < cloth.mesh.vertex_count(); ++i) {
-        const auto particle = static_cast<std::size_t>(cloth.first_particle + i);
+      for (int i = cloth.first_particle; i < cloth.end_particle; ++i) {
+        const auto particle = static_cast<std::size_t>(i);
         if (!(depth[particle] > negligible) || simulation.system->masses()[particle] == 0) continue;
-        const double d = -bodies[k].distance(cloth.mesh.positions[static_cast<std::size_t>(i)]);
+        const double d = -bodies[k].distance(simulation.state.x.segment<3>(3 * i));
         if (!(d > negligible)) continue;
         ++inside;
         if (d > deepest_depth) deepest = i, deepest_depth = d;
@@ -42,8 +35,9 @@ void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
           "warning: " + counted(inside, "vertex") + " of " + cloth.name +
           (inside == 1 ? " starts" : " start") + " inside " +
           body_name(bodies[k].obstacle(), scene.obstacles[k].name) + ", the deepest (vertex " +
-          std::to_string(deepest) + ") by " + rounded(1000 * deepest_depth, 3) + " mm; " + all +
-          " will be brought out at " + rounded(scene.simulation.contact.recovery_speed, 3) + " m/s");
+          std::to_string(cloth.embedding.vertex(deepest)) + ") by " + rounded(1000 * deepest_depth, 3) +
+          " mm; " + all + " will be brought out at " + rounded(scene.simulation.contact.recovery_speed, 3) +
+          " m/s");
     }
   }
 }
@@ -105,11 +99,16 @@ void warn_of_time(const SimulationOptions& options, Names& messages) {
 
 }  // namespace
 
+void warn_if_limp(const ClothEntry& cloth, double curvature, Names& messages) {
+  if (!(curvature > 2 * limp_curvature(cloth.fabric.bend, cloth.fabric.area_density))) return;
+  messages.push_back("warning: cloth " + cloth.name +
+                     ": the buckling clamp makes it limp below a curvature of " + rounded(curvature, 2) +
+                     " 1/m (a radius of " + rounded(100 / curvature, 2) +
+                     " cm): gentler folds have no bending stiffness; raise buckling_clamp, or leave it out");
+}
+
 void add_warnings(const Scene& scene, Simulation& simulation) {
-  for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
-    warn_if_heavy(scene.cloths[k], simulation.messages);
-    warn_if_limp(simulation.cloths[k], scene.cloths[k].fabric, simulation.messages);
-  }
+  for (const ClothEntry& cloth : scene.cloths) warn_if_heavy(cloth, simulation.messages);
   warn_of_vertices_inside(scene, simulation);
   warn_if_coarse(scene, simulation);
   warn_of_restitution(scene, simulation.messages);

@@ -19,6 +19,7 @@ bool names_twice(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2
 struct Side {
   int b;         // upper vertex
   int opposite;  // third vertex of the triangle
+  int triangle;
   bool forward;  // the triangle runs from the lower vertex to b
 };
 
@@ -55,7 +56,8 @@ Sides sort_sides(const TriangleMesh& mesh) {
       },
       [&](std::size_t i, std::size_t slot) {
         const auto [from, to] = ends(i);
-        result.sides[slot] = {std::max(from, to), mesh.triangles[counted[i / 3]][(i + 2) % 3], from < to};
+        result.sides[slot] = {std::max(from, to), mesh.triangles[counted[i / 3]][(i + 2) % 3], counted[i / 3],
+                              from < to};
       });
   for (int a = 0; a < mesh.vertex_count(); ++a) {
     std::sort(
@@ -133,7 +135,8 @@ std::vector<Hinge> hinges(const TriangleMesh& mesh) {
   for_each_edge(sides, [&](int a, const Side* first, const Side* last) {
     for (const Side* s = first; s != last; ++s) {
       for (const Side* t = s + 1; t != last; ++t) {
-        if (s->opposite != t->opposite) by_edge.push_back({a, s->b, s->opposite, t->opposite});
+        if (s->opposite != t->opposite)
+          by_edge.push_back({a, s->b, s->opposite, t->opposite, s->triangle, t->triangle});
       }
     }
   });
@@ -282,10 +285,12 @@ double triangle_area(const TriangleMesh& mesh, const Triangle& t) {
   return (mesh.positions[t[1]] - x).cross(mesh.positions[t[2]] - x).norm() / 2;
 }
 
-std::vector<double> vertex_areas(const TriangleMesh& mesh) {
+std::vector<double> vertex_areas(const TriangleMesh& mesh) { return vertex_areas(mesh, mesh); }
+
+std::vector<double> vertex_areas(const TriangleMesh& mesh, const TriangleMesh& rest) {
   std::vector<double> areas(mesh.positions.size(), 0.0);
   for (const int i : counted_triangles(mesh)) {
-    const double third = triangle_area(mesh, mesh.triangles[i]) / 3;
+    const double third = triangle_area(rest, rest.triangles[i]) / 3;
     for (const int v : mesh.triangles[i]) areas[v] += third;
   }
   return areas;

@@ -18,8 +18,9 @@ struct Edge {
 
 // Two triangles that share the edge (a, b); c and d are the vertices opposite it.
 struct Hinge {
-  int a, b;  // a < b
-  int c, d;  // c < d
+  int a, b;    // a < b
+  int c, d;    // c < d
+  int tc, td;  // the triangles of c and of d
 };
 
 // Two vertices that face each other across one or more edges [Noh & Jung, section 2]; a distinct pair, c < d.
@@ -52,7 +53,10 @@ struct Hole {
 std::vector<Hole> holes(const TriangleMesh& mesh);  // the widest first
 
 double triangle_area(const TriangleMesh& mesh, const Triangle& t);  // m^2
-std::vector<double> vertex_areas(const TriangleMesh& mesh);  // m^2, a third of every triangle around a vertex
+// m^2, a third of every triangle around a vertex.
+std::vector<double> vertex_areas(const TriangleMesh& mesh);
+// The same where triangle k of the mesh has the area of the rest's triangle k.
+std::vector<double> vertex_areas(const TriangleMesh& mesh, const TriangleMesh& rest);
 
 // Piece number of every vertex (connected through triangles); a vertex without triangles is its own piece.
 // Pieces are numbered by their lowest vertex.

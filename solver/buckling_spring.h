@@ -6,9 +6,9 @@
 //   t*   = max(t, c_b (l - L))                                the clamp: linear from l = L to its crossing
 //   with t
 // k_b [N m^2], L [m], c_b [N/m].  l >= L: no force.
-// The clamp takes the bending rigidity away below a curvature (solver/fabric.h says which, and chooses c_b).
-// When c_b L^3 / k_b <= 4 pi^2 the line never leaves the clamp for good: the connection is then linear
-// throughout.
+// The clamp takes the bending rigidity away below a curvature (solver/noh_jung.h says which;
+// solver/connections.h chooses c_b). When c_b L^3 / k_b <= 4 pi^2 the line never leaves the clamp for good:
+// the connection is then linear throughout.
 #pragma once
 
 #include "solver/pair_force.h"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "constraints/constraints.h"
+#include "mesh/embedding.h"
 #include "mesh/examine.h"
 #include "mesh/generate.h"
 #include "mesh/lattice.h"
@@ -10,6 +11,6 @@
 #include "mesh/threads.h"
 #include "mesh/topology.h"
 #include "solver/bdf.h"
-#include "solver/fabric.h"
+#include "solver/noh_jung.h"
 #include "solver/soft.h"
 #include "solver/system.h"

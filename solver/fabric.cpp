@@ -1,15 +1,11 @@
 #include "solver/fabric.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
 #include "mesh/obj.h"
 #include "mesh/topology.h"
-#include "solver/buckling_spring.h"
-#include "solver/damping.h"
-#include "solver/tension_spring.h"
 
 namespace drape {
 namespace {
@@ -19,77 +15,6 @@ void require(bool good, const char* field, double value, const char* unit, const
   std::ostringstream message;
   message << field << " = " << value << " " << unit << ": " << what;
   throw InputError(message.str());
-}
-
-// A diagonal with the sums over the hinges it spans.
-struct BendConnection {
-  int c, d;
-  double L;         // m
-  double k_b;       // N m^2
-  double clamp_k2;  // N/m/m^2: c_b times the square of the curvature below which it goes limp
-  double B;         // N m: the bending rigidity that k_b amounts to here
-};
-
-std::vector<BendConnection> bend_connections(const TriangleMesh& mesh, const Fabric& fabric) {
-  std::vector<BendConnection> out;
-  for (const Hinge& hinge : hinges(mesh)) {
-    const Vec3 &a = mesh.positions[static_cast<std::size_t>(hinge.a)],
-               &b = mesh.positions[static_cast<std::size_t>(hinge.b)];
-    const Vec3 &c = mesh.positions[static_cast<std::size_t>(hinge.c)],
-               &d = mesh.positions[static_cast<std::size_t>(hinge.d)];
-    const double l = (b - a).norm(), L = (d - c).norm();
-    if (l == 0 || L == 0) continue;
-    // Slivers would be infinitely stiff: a height counts for at least a fifth of the edge.
-    double h1 = (b - a).cross(c - a).norm() / l, h2 = (b - a).cross(d - a).norm() / l;
-    if (h1 < 1e-9 * l || h2 < 1e-9 * l) continue;
-    h1 = std::max(h1, 0.2 * l);
-    h2 = std::max(h2, 0.2 * l);
-    const double per_rigidity = l * L * L * L / (6 * h1 * h2 * (h1 + h2));
-    const double k_b = fabric.bend_spring.value_or(fabric.bend * per_rigidity);
-    const double clamp_k2 = 96 * k_b / (L * h1 * h2 * (h1 + h2) * (h1 + h2));
-    if (!out.empty() && out.back().c == hinge.c && out.back().d == hinge.d) {
-      if (!fabric.bend_spring) out.back().k_b += k_b;
-      out.back().clamp_k2 = std::max(out.back().clamp_k2, clamp_k2);
-    } else {
-      out.push_back({hinge.c, hinge.d, L, k_b, clamp_k2, k_b / per_rigidity});
-    }
-  }
-  return out;
-}
-
-std::vector<PairForce<TensionSpring>::Element> stretch_elements(const TriangleMesh& mesh,
-                                                                const Fabric& fabric, int first) {
-  std::vector<PairForce<TensionSpring>::Element> elements;
-  const std::vector<Edge> all = edges(mesh);
-  std::vector<double> area(all.size(), 0.0);
-  for (int counted : counted_triangles(mesh)) {
-    const Triangle& t = mesh.triangles[static_cast<std::size_t>(counted)];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [a, b] = std::minmax(t[k], t[(k + 1) % 3]);
-      const auto it =
-          std::lower_bound(all.begin(), all.end(), std::pair(a, b),
-                           [](const Edge& e, const auto& key) { return std::pair(e.a, e.b) < key; });
-      if (it != all.end() && it->a == a && it->b == b)
-        area[static_cast<std::size_t>(it - all.begin())] += triangle_area(mesh, t);
-    }
-  }
-  for (std::size_t e = 0; e < all.size(); ++e) {
-    const Edge& edge = all[e];
-    const double l =
-        (mesh.positions[static_cast<std::size_t>(edge.a)] - mesh.positions[static_cast<std::size_t>(edge.b)])
-            .norm();
-    double k = l == 0 ? fabric.stretch : fabric.stretch * area[e] / (l * l);
-    if (fabric.stretch_spring) k = *fabric.stretch_spring;
-    if (k > 0) elements.push_back({first + edge.a, first + edge.b, {l, k}});
-  }
-  return elements;
-}
-
-double clamp_of(const BendConnection& bend, const Fabric& fabric) {
-  if (fabric.buckling_clamp) return *fabric.buckling_clamp;
-  const double kappa = limp_curvature(bend.B, fabric.area_density),
-               k_s = fabric.stretch_spring.value_or(fabric.stretch);
-  return std::clamp(bend.clamp_k2 / (kappa * kappa), k_s, stiffest_clamp * k_s);
 }
 
 }  // namespace
@@ -110,8 +35,8 @@ void check(const Fabric& f) {
   require(f.damping >= 0, "damping", f.damping, "N.s/m", "a damping coefficient is not negative");
 }
 
-std::vector<double> lumped_mass(const TriangleMesh& mesh, double area_density) {
-  std::vector<double> mass = vertex_areas(mesh);
+std::vector<double> lumped_mass(const TriangleMesh& mesh, const TriangleMesh& rest, double area_density) {
+  std::vector<double> mass = vertex_areas(mesh, rest);
   std::vector<char> used(mass.size(), 0);
   for (const Triangle& t : mesh.triangles)
     for (int i : t) used[static_cast<std::size_t>(i)] = 1;
@@ -124,6 +49,10 @@ std::vector<double> lumped_mass(const TriangleMesh& mesh, double area_density) {
   for (std::size_t i = 0; i < mass.size(); ++i)
     mass[i] = area_density * (used[i] ? std::max(mass[i], 1e-3 * total / count) : 0.0);
   return mass;
+}
+
+std::vector<double> lumped_mass(const TriangleMesh& mesh, double area_density) {
+  return lumped_mass(mesh, mesh, area_density);
 }
 
 std::vector<double> neighbour_weighted(std::vector<double> masses, const TriangleMesh& mesh) {
@@ -144,46 +73,12 @@ std::vector<double> neighbour_weighted(std::vector<double> masses, const Triangl
 }
 
 std::vector<double> masses(const TriangleMesh& mesh, const Fabric& fabric) {
-  std::vector<double> lumped = lumped_mass(mesh, fabric.area_density);
+  return masses(mesh, mesh, fabric);
+}
+
+std::vector<double> masses(const TriangleMesh& mesh, const TriangleMesh& rest, const Fabric& fabric) {
+  std::vector<double> lumped = lumped_mass(mesh, rest, fabric.area_density);
   return fabric.neighbour_weighting ? neighbour_weighted(std::move(lumped), mesh) : lumped;
-}
-
-std::vector<std::unique_ptr<Force>> noh_jung(const TriangleMesh& mesh, const Fabric& fabric,
-                                             int first_particle) {
-  check(fabric);
-  std::vector<std::unique_ptr<Force>> forces;
-  auto stretch = stretch_elements(mesh, fabric, first_particle);
-  std::vector<PairForce<BucklingSpring>::Element> bend;
-  for (const BendConnection& b : bend_connections(mesh, fabric)) {
-    if (b.k_b > 0)
-      bend.push_back({first_particle + b.c, first_particle + b.d,
-                      BucklingSpring::rest(b.L, b.k_b, clamp_of(b, fabric))});
-  }
-  if (fabric.damping > 0) {
-    std::vector<PairDamping::Element> damped;
-    damped.reserve(stretch.size() + bend.size());
-    for (const auto& e : stretch) damped.push_back({e.i, e.j});
-    for (const auto& e : bend) damped.push_back({e.i, e.j});
-    forces.push_back(std::make_unique<PairDamping>(std::move(damped), fabric.damping, fabric.damping_kind));
-  }
-  if (!stretch.empty()) forces.push_back(std::make_unique<PairForce<TensionSpring>>(std::move(stretch)));
-  if (!bend.empty()) forces.push_back(std::make_unique<PairForce<BucklingSpring>>(std::move(bend)));
-  return forces;
-}
-
-double limp_curvature(double bend, double area_density) {
-  return 0.1 * std::cbrt(area_density * 9.81 / bend);
-}
-
-double limp_below(const TriangleMesh& mesh, const Fabric& fabric) {
-  std::vector<double> curvature;
-  for (const BendConnection& b : bend_connections(mesh, fabric))
-    if (const double clamp = clamp_of(b, fabric); b.k_b > 0 && clamp > 0)
-      curvature.push_back(std::sqrt(b.clamp_k2 / clamp));
-  if (curvature.empty()) return 0;
-  const auto middle = curvature.begin() + static_cast<std::ptrdiff_t>(curvature.size() / 2);
-  std::nth_element(curvature.begin(), middle, curvature.end());
-  return *middle;
 }
 
 }  // namespace drape

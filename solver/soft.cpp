@@ -73,14 +73,17 @@ std::vector<std::unique_ptr<Force>> soft_body(const Lattice& lattice, const Soft
   add_springs(lattice, lattice.shear, shear, by_cells, first_particle, springs);
   add_springs(lattice, lattice.bend, bend, by_cells, first_particle, springs);
   std::vector<std::unique_ptr<Force>> forces;
-  if (material.damping > 0) {
+  if (springs.empty()) return forces;
+  const bool axial = material.damping_kind == DampingKind::axial;
+  if (material.damping > 0 && !axial) {
     std::vector<PairDamping::Element> damped;
     damped.reserve(springs.size());
     for (const auto& s : springs) damped.push_back({s.i, s.j});
     forces.push_back(
         std::make_unique<PairDamping>(std::move(damped), material.damping, material.damping_kind));
   }
-  if (!springs.empty()) forces.push_back(std::make_unique<PairForce<LinearSpring>>(std::move(springs)));
+  forces.push_back(
+      std::make_unique<PairForce<LinearSpring>>(std::move(springs), axial ? material.damping : 0));
   return forces;
 }
 

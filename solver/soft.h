@@ -1,6 +1,6 @@
 // What a soft body is made of: a lattice of particles (mesh/lattice.h) with springs of three kinds.      [SB]
 //   LinearSpring  structural, shear and bend, each with its own k [N/m], the same for every spring
-//   PairDamping   along every spring
+//   damping       along every spring, in the same loop (or of all relative motion, PairDamping)
 // or young [Pa] of an isotropic solid with Poisson's number 1/4 (what central springs can be: Cauchy's
 // relation), on cubes of edge a, each spring as strong as the part of the cells round it that is there:
 //   k_structural = 22/35 E a,   k_shear = 6/35 E a,   k_bend = 0

@@ -153,8 +153,9 @@ TEST_CASE("a row holds what dense algebra says of its solution", "[compare]") {
   Simulation& simulation = run.simulation;  // as if it were two cloths
   Cloth upper, lower;
   upper.name = "upper", lower.name = "lower";
-  upper.mesh.positions.resize(1), lower.mesh.positions.resize(35);
-  lower.first_particle = 1;
+  upper.embedding = Embedding::each(0, 1), lower.embedding = Embedding::each(1, 35);
+  upper.end_particle = lower.first_particle = 1;
+  lower.end_particle = 36;
   simulation.cloths = {upper, lower};
 
   VecX loose = system.guess, best = system.guess;

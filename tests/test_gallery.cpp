@@ -71,32 +71,27 @@ struct Depths {
   Deepest vertex, edge;
 };
 
-std::vector<Edge> edges_of(const std::vector<Cloth>& cloths) {
-  std::vector<Edge> all;
-  for (const Cloth& cloth : cloths)
-    for (Edge e : edges(cloth.mesh)) {
-      e.a += cloth.first_particle;
-      e.b += cloth.first_particle;
-      all.push_back(e);
-    }
+std::vector<RestEdge> edges_of(const std::vector<Cloth>& cloths) {
+  std::vector<RestEdge> all;
+  for (const Cloth& cloth : cloths) all.insert(all.end(), cloth.edges.begin(), cloth.edges.end());
   return all;
 }
 
-void look(const MovingBody& body, const std::vector<Edge>& edges, const State& state, Depths& depths) {
+void look(const MovingBody& body, const std::vector<RestEdge>& edges, const State& state, Depths& depths) {
   const auto at = [&](int i) { return Vec3(state.x.segment<3>(3 * i)); };
   for (int i = 0; i < state.particles(); ++i) depths.vertex.look(body, at(i), i, i, state.time);
-  for (const Edge& e : edges) {
-    const Vec3 a = at(e.a), way = at(e.b) - a;
+  for (const RestEdge& e : edges) {
+    const Vec3 a = at(e.i), way = at(e.j) - a;
     // A distance changes no faster than the place: from there none of the points is inside.
     if (body.distance(a + 0.5 * way) > 0.5 * way.norm()) continue;
     for (int k = 1; k <= points_on_edge; ++k)
-      depths.edge.look(body, a + k / (points_on_edge + 1.0) * way, e.a, e.b, state.time);
+      depths.edge.look(body, a + k / (points_on_edge + 1.0) * way, e.i, e.j, state.time);
   }
 }
 
 void check_part(const Part& part, const Scene& scene) {
   Simulation simulation = make_simulation(scene);
-  const std::vector<Edge> edges = edges_of(simulation.cloths);
+  const std::vector<RestEdge> edges = edges_of(simulation.cloths);
   const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
   std::vector<Depths> depths(bodies.size());
   const double h = scene.simulation.time_step;
@@ -143,7 +138,7 @@ bool complete(Scene& scene, const test::Folder& folder) {
 TEST_CASE("a look at the cloth finds what is inside a body", "[gallery]") {
   Constraints constraints;
   constraints.add(Obstacle{.shape = Sphere{{0, 0, 0}, 0.3}});
-  const std::vector<Edge> edges = {{0, 1, 1, 1}, {1, 2, 1, 1}};
+  const std::vector<RestEdge> edges = {{0, 1, 1}, {1, 2, 1}};
   State state{0.5, VecX::Zero(9), VecX::Zero(9)};
   state.x << -0.09, 0.295, 0, 0.09, 0.295, 0, 0.09, 0.295,
       5;  // an edge over the top, and one that leads away

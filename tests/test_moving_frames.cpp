@@ -38,9 +38,7 @@ struct Walk : Folder {
     for (int k = 0; k < 5; ++k) {
       const TriangleMesh mesh = frame(k);
       write_obj(path / "walk" / ("body_000" + std::to_string(k + 1) + ".obj"), mesh, mesh.positions);
-      VecX x(3 * mesh.vertex_count());
-      for (int i = 0; i < mesh.vertex_count(); ++i) x.segment<3>(3 * i) = mesh.positions[i];
-      cache.add(x, 0);
+      cache.add(mesh.positions);
     }
     cache.close();
     cache.keep();
@@ -175,7 +173,7 @@ TEST_CASE("frames that are wrong are told with their file", "[moving]") {
   walk.write("walk.pc2", whole.substr(0, 20));
   CHECK_THAT(refused(cache), Contains("is not a PC2 point cache"));
   Pc2Writer few(walk.path / "walk.pc2", 7);
-  few.add(VecX::Zero(21), 0);
+  few.add(std::vector<Vec3>(7, Vec3::Zero()));
   few.close();
   few.keep();
   CHECK_THAT(refused(cache), Contains("has 7 points") && Contains("body.obj has 8 vertices"));

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "mesh/generate.h"
-#include "solver/fabric.h"
+#include "solver/noh_jung.h"
 
 namespace drape {
 
@@ -29,6 +29,8 @@ Simulation make_hung_sheet(const Scene& scene, int side) {
   Cloth cloth;
   cloth.name = entry.name;
   cloth.mesh = grid(side, side, 1, 1);
+  cloth.end_particle = cloth.mesh.vertex_count();
+  cloth.embedding = Embedding::each(0, cloth.mesh.vertex_count());
   simulation.system = std::make_unique<System>(masses(cloth.mesh, entry.fabric));
   simulation.system->add(noh_jung(cloth.mesh, entry.fabric));
   simulation.system->add(Gravity{scene.simulation.gravity});

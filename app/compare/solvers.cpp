@@ -195,7 +195,7 @@ void SolverBench::find_difference(SolverRow& row, const VecX& difference, const 
   row.difference = u.norm();
   const int particle = system.A.pattern().particle_of()[static_cast<std::size_t>(worst)];
   const Cloth& cloth = simulation.cloth_of(particle);
-  row.vertex = particle - cloth.first_particle;
+  row.vertex = cloth.embedding.vertex(particle);
   row.cloth = cloth.name;
   const double asked = residual_slack * std::max(tolerance_, finest_tolerance);
   const std::optional<double> g = influence(judge, system, worst, u / row.difference);

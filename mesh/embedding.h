@@ -1,0 +1,40 @@
+// Where the vertices of a mesh are, given particles: what is seen, carried by what is computed.
+//   x_v = sum_k w_k x_(p_k),  sum_k w_k = 1
+// A cloth's vertex is one particle; several vertices may be the same one (a sewn seam), and a vertex may lie
+// between particles (the surface of a lattice).                    x [m], w without a unit.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "mesh/triangle_mesh.h"
+
+namespace drape {
+
+class Embedding {
+ public:
+  struct Share {
+    int particle;
+    double weight;
+  };
+
+  Embedding() = default;
+  // Vertex v is the particle first + v.
+  static Embedding each(int first, int vertices);
+
+  void add_vertex(int particle) { add_vertex({{particle, 1.0}}); }
+  void add_vertex(const std::vector<Share>& shares);
+
+  int vertices() const { return static_cast<int>(start_.size()) - 1; }
+  // The particle that the vertex is; -1: it lies between several.
+  int particle(int vertex) const;
+  // The first vertex that is this particle, or moves with it; -1: none does.
+  int vertex(int particle) const;
+  std::vector<Vec3> positions(const VecX& x) const;
+
+ private:
+  std::vector<std::size_t> start_ = {0};  // vertices + 1 entries into shares_
+  std::vector<Share> shares_;
+};
+
+}  // namespace drape
