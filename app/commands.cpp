@@ -100,6 +100,7 @@ int list_parts() {
                               : "a closed OBJ file, as a grid of distances (.vdb files: not in this build)");
   std::printf("forces:\n");
   print_line("noh-jung", "edges that pull, diagonals that buckle, damping along both");
+  print_line("soft", "springs of a lattice that resist both ways, damping along them");
   print_line("gravity", "mass times gravity");
   std::printf("integrators:\n");
   for (const IntegratorInfo& info : integrators()) print_line(info.name, info.summary);

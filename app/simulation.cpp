@@ -4,6 +4,7 @@
 
 #include "app/body_frames.h"
 #include "app/level_set_cache.h"
+#include "app/soft_body.h"
 #include "app/warnings.h"
 #include "mesh/obj.h"
 #include "mesh/solid.h"
@@ -29,7 +30,7 @@ TriangleMesh load(const std::filesystem::path& path, const std::string& where, c
   return mesh;
 }
 
-void add_cloths(const Scene& scene, Simulation& simulation) {
+void add_cloths(const Scene& scene, std::vector<SoftBody>& softs, Simulation& simulation) {
   std::vector<double> all_masses;
   for (const ClothEntry& entry : scene.cloths) {
     Cloth cloth;
@@ -41,6 +42,12 @@ void add_cloths(const Scene& scene, Simulation& simulation) {
     cloth.end_particle = static_cast<int>(all_masses.size());
     cloth.embedding = Embedding::each(cloth.first_particle, cloth.mesh.vertex_count());
     simulation.cloths.push_back(std::move(cloth));
+  }
+  for (const SoftEntry& entry : scene.softs) {
+    softs.push_back(make_soft_body(entry, static_cast<int>(all_masses.size()), simulation.messages));
+    const SoftBody& soft = softs.back();
+    all_masses.insert(all_masses.end(), soft.masses.begin(), soft.masses.end());
+    simulation.cloths.push_back(soft.cloth);
   }
   simulation.system = std::make_unique<System>(std::move(all_masses));
   simulation.system->add(Gravity{scene.simulation.gravity});
@@ -57,11 +64,15 @@ void add_cloths(const Scene& scene, Simulation& simulation) {
     simulation.state.x.segment(3 * cloth.first_particle, 3 * cloth.mesh.vertex_count()) =
         stacked(cloth.mesh.positions);
   }
+  for (SoftBody& soft : softs) {
+    simulation.system->add(std::move(soft.forces));
+    const VecX x = stacked(soft.positions);
+    simulation.state.x.segment(3 * soft.cloth.first_particle, x.size()) = x;
+  }
 }
 
 void pin_down(const PinEntry& pin, const Cloth& cloth, const Scene& scene, Simulation& simulation) {
-  std::vector<int> particles = select(pin.rule, cloth.mesh);
-  for (int& v : particles) v = cloth.embedding.particle(v);
+  const std::vector<int> particles = pinned_particles(pin.rule, cloth, simulation.state.x);
   Constraints& constraints = *simulation.constraints;
   if (pin.motion) return constraints.pin_along(particles, *pin.motion, simulation.state.x);
   if (pin.follow.empty()) return constraints.pin(particles);
@@ -71,9 +82,9 @@ void pin_down(const PinEntry& pin, const Cloth& cloth, const Scene& scene, Simul
 }
 
 void add_pins(const Scene& scene, Simulation& simulation) {
-  for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
+  for (std::size_t k = 0; k < simulation.cloths.size(); ++k) {
     const Cloth& cloth = simulation.cloths[k];
-    for (const PinEntry& pin : scene.cloths[k].pins) {
+    for (const PinEntry& pin : scene.pins_of(k)) {
       try {
         pin_down(pin, cloth, scene, simulation);
       } catch (const InputError& error) {
@@ -160,7 +171,7 @@ void add_obstacles(const Scene& scene, bool keep_level_sets, Simulation& simulat
 }
 
 // Corners and rims of bodies are kept off the inside of triangles, too.
-void add_faces(const Scene& scene, Simulation& simulation) {
+void add_faces(const Scene& scene, const std::vector<SoftBody>& softs, Simulation& simulation) {
   if (scene.obstacles.empty()) return;
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
     const Cloth& cloth = simulation.cloths[k];
@@ -172,6 +183,7 @@ void add_faces(const Scene& scene, Simulation& simulation) {
            fabric.stretch_spring.value_or(fabric.stretch)});
     simulation.constraints->add_faces(faces);
   }
+  for (const SoftBody& soft : softs) simulation.constraints->add_faces(soft.faces);
   simulation.system->add(face_contact_force(*simulation.constraints));
 }
 
@@ -181,6 +193,11 @@ const Cloth& Simulation::cloth_of(int particle) const {
   const auto after =
       std::find_if(cloths.begin(), cloths.end(), [&](const Cloth& c) { return particle < c.end_particle; });
   return after == cloths.end() ? cloths.back() : *after;
+}
+
+TriangleMesh load_mesh(const std::filesystem::path& path, const std::string& where,
+                       const Placement& placement, MeshReport& report, Names& messages) {
+  return load(path, where, placement, report, messages);
 }
 
 TriangleMesh placed(TriangleMesh mesh, const Placement& placement, const std::string& name) {
@@ -205,9 +222,10 @@ void add_messages(const MeshReport& report, const std::string& name, Names& mess
 Simulation make_simulation(const Scene& scene, bool keep_level_sets) {
   Simulation simulation;
   simulation.constraints = std::make_unique<Constraints>(scene.simulation.contact);
-  add_cloths(scene, simulation);
+  std::vector<SoftBody> softs;
+  add_cloths(scene, softs, simulation);
   add_obstacles(scene, keep_level_sets, simulation);
-  add_faces(scene, simulation);
+  add_faces(scene, softs, simulation);
   add_pins(scene, simulation);  // some of them to bodies
   add_warnings(scene, simulation);
   simulation.integrator =

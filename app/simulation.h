@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,11 @@ struct RestEdge {
   double L;  // m
 };
 
+// Springs of a soft body.
+struct LatticeCounts {
+  int structural, shear, bend;
+};
+
 // What is simulated as particles and written as a mesh.
 struct Cloth {
   std::string name;
@@ -27,6 +33,7 @@ struct Cloth {
   int first_particle = 0, end_particle = 0;  // of the system
   Embedding embedding;                       // of the mesh in the particles
   std::vector<RestEdge> edges;
+  std::optional<LatticeCounts> soft;  // a soft body, and no cloth
 };
 
 // A mesh or an obstacle as it was loaded, for `drape check`.
@@ -37,7 +44,7 @@ struct Body {
 };
 
 struct Simulation {
-  std::vector<Cloth> cloths;
+  std::vector<Cloth> cloths;  // those of the scene, then its soft bodies
   std::vector<Body> bodies;
   std::unique_ptr<System> system;
   std::unique_ptr<Constraints> constraints;
@@ -51,6 +58,10 @@ struct Simulation {
 // Throws InputError when a mesh cannot be read or simulated, or a pin selects nothing. Level sets that are
 // made are kept beside their meshes (app/level_set_cache.h), or not.
 Simulation make_simulation(const Scene& scene, bool keep_level_sets = true);
+
+// Read, placed, looked over. where: stands before a file that is missing.
+TriangleMesh load_mesh(const std::filesystem::path& path, const std::string& where,
+                       const Placement& placement, MeshReport& report, Names& messages);
 
 TriangleMesh placed(TriangleMesh mesh, const Placement& placement, const std::string& name);
 

@@ -88,9 +88,8 @@ void join_particles(Lattice& lattice) {
       if (!along_edge) return;
       const double further = cells_round(lattice, q, d);
       if (further > 0)
-        lattice.bend.push_back(
-            {i, lattice.particle[number({q[0] + d[0], q[1] + d[1], q[2] + d[2]}, count)],
-             std::min(cells, further)});
+        lattice.bend.push_back({i, lattice.particle[number({q[0] + d[0], q[1] + d[1], q[2] + d[2]}, count)],
+                                std::min(cells, further)});
     });
   });
 }
@@ -127,9 +126,10 @@ void fill_along_surface(Lattice& lattice, const TriangleMesh& surface) {
     std::array<Vec3, 3> t;
     Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
     for (std::size_t k = 0; k < 3; ++k) {
-      t[k] = surface.positions[static_cast<std::size_t>(
-                 surface.triangles[static_cast<std::size_t>(counted)][k])] -
-             lattice.origin;
+      t[k] =
+          surface
+              .positions[static_cast<std::size_t>(surface.triangles[static_cast<std::size_t>(counted)][k])] -
+          lattice.origin;
       lower = lower.cwiseMin(t[k]);
       upper = upper.cwiseMax(t[k]);
     }
@@ -169,7 +169,8 @@ void surround(Lattice& lattice, const TriangleMesh& surface, double spacing) {
   for (std::size_t a = 0; a < 3; ++a) {
     const auto k = static_cast<Eigen::Index>(a);
     const double whole = std::max(1.0, std::ceil((upper[k] - lower[k]) / spacing - slack));
-    if (!(whole < 1e9)) throw InputError("a lattice of more than 1e9 cells along an axis; take a wider spacing");
+    if (!(whole < 1e9))
+      throw InputError("a lattice of more than 1e9 cells along an axis; take a wider spacing");
     lattice.cells[a] = static_cast<int>(whole);
     lattice.origin[k] = 0.5 * (lower[k] + upper[k] - spacing * whole);
   }
@@ -191,7 +192,8 @@ Cell cell_of(const Lattice& lattice, const Vec3& u) {
   double least = std::numeric_limits<double>::infinity();
   for_each_in({0, 0, 0}, lattice.cells, [&](const Cell& c) {
     const Vec3 centre(c[0] + 0.5, c[1] + 0.5, c[2] + 0.5);
-    const double outside = lattice.spacing.cwiseProduct((u - centre).cwiseAbs().array().max(0.5).matrix()).norm();
+    const double outside =
+        lattice.spacing.cwiseProduct((u - centre).cwiseAbs().array().max(0.5).matrix()).norm();
     if (is_filled(lattice, c) && outside < least) least = outside, nearest = c;
   });
   return nearest;

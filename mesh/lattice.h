@@ -25,10 +25,10 @@ struct LatticePair {
 };
 
 struct Lattice {
-  Vec3 origin, spacing;        // m: the corner with the least coordinates, and the edges of a cell
-  std::array<int, 3> cells;    // of the box round all
-  std::vector<char> filled;    // cell -> it is there
-  std::vector<int> particle;   // corner of the box of cells -> particle, -1: none
+  Vec3 origin, spacing;         // m: the corner with the least coordinates, and the edges of a cell
+  std::array<int, 3> cells;     // of the box round all
+  std::vector<char> filled;     // cell -> it is there
+  std::vector<int> particle;    // corner of the box of cells -> particle, -1: none
   std::vector<Vec3> positions;  // m, of the particles
   std::vector<double> volumes;  // m^3: an eighth of every cell round a particle
   std::vector<LatticePair> structural, shear, bend;

@@ -60,9 +60,10 @@ std::vector<std::unique_ptr<Force>> soft_body(const Lattice& lattice, const Soft
   double structural = material.structural, shear = material.shear, bend = material.bend;
   if (material.young) {
     const Vec3& a = lattice.spacing;
-    require(a.maxCoeff() - a.minCoeff() <= 1e-9 * a.maxCoeff(), "young", *material.young, "Pa",
-            "a modulus needs cubic cells, of the same spacing along x, y and z; or give structural, shear and "
-            "bend instead");
+    require(
+        a.maxCoeff() - a.minCoeff() <= 1e-9 * a.maxCoeff(), "young", *material.young, "Pa",
+        "a modulus needs cubic cells, of the same spacing along x, y and z; or give structural, shear and "
+        "bend instead");
     structural = 22.0 / 35 * *material.young * a[0];
     shear = 6.0 / 35 * *material.young * a[0];
     bend = 0;

@@ -18,12 +18,12 @@
 namespace drape {
 
 struct SoftMaterial {
-  double density = 300;                 // kg/m^3: an eighth of each cell to each of its corners
-  std::optional<double> mass = {};      // kg, of the whole body; replaces density
-  bool equal_masses = false;            // the mass in equal parts to all particles, as SB
-  std::optional<double> young = 20e3;   // Pa; replaces the three below
+  double density = 300;                        // kg/m^3: an eighth of each cell to each of its corners
+  std::optional<double> mass = {};             // kg, of the whole body; replaces density
+  bool equal_masses = false;                   // the mass in equal parts to all particles, as SB
+  std::optional<double> young = 20e3;          // Pa; replaces the three below
   double structural = 0, shear = 0, bend = 0;  // N/m, of every spring
-  double damping = 0;                   // N s/m, of every spring
+  double damping = 0;                          // N s/m, of every spring
   DampingKind damping_kind = DampingKind::axial;
 };
 

@@ -100,16 +100,16 @@ TEST_CASE("springs of one strength each have the moduli of the affine sum", "[so
   };
   // Counted out for this box: so many springs of each kind, C = 1/V sum k l^2 t^4.
   const double V = volume_of(cube), s = n - 1.0;
-  const double C11 = a * a / V *
-                     (k_s * s * n * n + 4 * k_b * (s - 1) * n * n + k_h * (0.5 * 4 * s * s * n) +
-                      k_h / 3 * 4 * s * s * s);
+  const double C11 =
+      a * a / V *
+      (k_s * s * n * n + 4 * k_b * (s - 1) * n * n + k_h * (0.5 * 4 * s * s * n) + k_h / 3 * 4 * s * s * s);
   const double C12 = a * a / V * (k_h * 0.5 * 2 * s * s * n + k_h / 3 * 4 * s * s * s);
   Mat3 stretch = Mat3::Zero(), shear = Mat3::Zero();
   stretch(0, 0) = 1e-6;
   shear(0, 1) = shear(1, 0) = 1e-6;
   CHECK(modulus(stretch) == Approx(C11).epsilon(1e-4));
-  CHECK(modulus(shear) == Approx(2 * C12).epsilon(1e-4));                      // Cauchy: C44 = C12
-  CHECK(C11 == Approx((k_s + 4 * k_b + 10 * k_h / 3) / a).epsilon(0.12));      // of the endless lattice
+  CHECK(modulus(shear) == Approx(2 * C12).epsilon(1e-4));                  // Cauchy: C44 = C12
+  CHECK(C11 == Approx((k_s + 4 * k_b + 10 * k_h / 3) / a).epsilon(0.12));  // of the endless lattice
   CHECK(C12 == Approx(7 * k_h / 3 / a).epsilon(0.12));
 }
 
