@@ -5,6 +5,7 @@
 #include "app/motion_extent.h"
 #include "app/obstacle_read.h"
 #include "app/simulation.h"
+#include "app/soft_body.h"
 #include "mesh/obj.h"
 
 namespace drape {
@@ -55,6 +56,21 @@ void print_cloth(const ClothEntry& entry, const Cloth& cloth) {
                             : (rounded(f.bend, 4) + " N.m").c_str());
 }
 
+void print_soft(const SoftEntry& entry, const Cloth& cloth, const System& system) {
+  print_report("soft body " + cloth.name, cloth.report);
+  double mass = 0;
+  for (int i = cloth.first_particle; i < cloth.end_particle; ++i)
+    mass += system.masses()[static_cast<std::size_t>(i)];
+  const SoftMaterial& m = entry.material;
+  std::printf("  %s, springs: %d structural, %d shear, %d bend; %s kg, %s\n",
+              counted(cloth.end_particle - cloth.first_particle, "particle").c_str(), cloth.soft->structural,
+              cloth.soft->shear, cloth.soft->bend, rounded(mass, 4).c_str(),
+              m.young ? (rounded(*m.young, 4) + " Pa").c_str()
+                      : (rounded(m.structural, 4) + " / " + rounded(m.shear, 4) + " / " + rounded(m.bend, 4) +
+                         " N/m each")
+                            .c_str());
+}
+
 // Of all vertices that are pinned: how many a body carries, and how many go along a path.
 void print_pins(const Scene& scene, const Simulation& simulation) {
   const Constraints& constraints = *simulation.constraints;
@@ -70,16 +86,16 @@ void print_pins(const Scene& scene, const Simulation& simulation) {
 }
 
 // The path of the vertices' middle.
-void print_paths(const ClothEntry& entry, const Cloth& cloth, double duration) {
-  for (const PinEntry& pin : entry.pins) {
+void print_paths(const std::vector<PinEntry>& pins, const Cloth& cloth, const State& start, double duration) {
+  for (const PinEntry& pin : pins) {
     if (!pin.motion) continue;
-    const std::vector<int> vertices = select(pin.rule, cloth.mesh);
+    const std::vector<int> particles = pinned_particles(pin.rule, cloth, start.x);
     Vec3 x = Vec3::Zero();
-    for (const int v : vertices) x += cloth.mesh.positions[static_cast<std::size_t>(v)];
-    x /= static_cast<double>(vertices.size());
+    for (const int i : particles) x += start.x.segment<3>(3 * i);
+    x /= static_cast<double>(particles.size());
     const std::string text =
         described(*pin.motion, pin.source, pin.motion->at(0).to_body(x), duration);  // there at time 0
-    std::printf("  %s of %s: %s\n", counted(static_cast<long>(vertices.size()), "vertex").c_str(),
+    std::printf("  %s of %s: %s\n", counted(static_cast<long>(particles.size()), "vertex").c_str(),
                 cloth.name.c_str(), one_line(text).c_str());
   }
 }
@@ -121,9 +137,11 @@ void check_scene(const std::filesystem::path& file) {
               rounded(s.duration, 4).c_str(), rounded(s.time_step, 4).c_str(), s.integrator.c_str(),
               s.linear_solver.c_str(), rounded(s.step.tolerance, 3).c_str());
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) print_cloth(scene.cloths[k], simulation.cloths[k]);
+  for (std::size_t k = 0; k < scene.softs.size(); ++k)
+    print_soft(scene.softs[k], simulation.cloths[scene.cloths.size() + k], *simulation.system);
   print_pins(scene, simulation);
-  for (std::size_t k = 0; k < scene.cloths.size(); ++k)
-    print_paths(scene.cloths[k], simulation.cloths[k], s.duration);
+  for (std::size_t k = 0; k < simulation.cloths.size(); ++k)
+    print_paths(scene.pins_of(k), simulation.cloths[k], simulation.state, s.duration);
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k)
     print_obstacle(scene.obstacles[k], simulation.constraints->bodies()[k].obstacle(), simulation.bodies[k],
                    s.duration);

@@ -10,6 +10,7 @@
 #include "app/check.h"
 #include "app/commands.h"
 #include "app/compare/compare.h"
+#include "app/stability/stability.h"
 #include "app/words.h"
 #include "mesh/obj.h"
 
@@ -161,6 +162,37 @@ void add_compare(CLI::App& app, int& exit_code) {
       [=, &exit_code] { exit_code = compare(words->scene, words->compare, words->run.common(*command)); });
 }
 
+void add_stability(CLI::App& app, int& exit_code) {
+  CLI::App* const command =
+      app.add_subcommand("stability", "finds the largest stable step of each integrator in a scene");
+  struct Words {
+    std::string scene;
+    StabilityWords stability;
+    RunWords run;
+  };
+  auto words = std::make_shared<Words>();
+  command->add_option("SCENE", words->scene, "scene file (TOML)")->required();
+  const auto option = [&](const char* name, std::string& value, const char* type, const char* help) {
+    command->add_option(name, value, help)->type_name(type);
+  };
+  StabilityWords& w = words->stability;
+  option("--time", w.time, "TIME", "of every run (the scene's duration)");
+  option("--integrators", w.integrators, "NAME,...",
+         "see 'drape list' (all but those that choose their own steps)");
+  option("--longest", w.longest, "TIME", "no step is tried beyond (a tenth of the time)");
+  option("--shortest", w.shortest, "TIME", "nor below (a 50000th of the time)");
+  option("--precision", w.precision, "X", "of the steps that are found (0.01)");
+  option("--growth", w.growth, "X",
+         "energy that may be made, as a multiple of what the motion was given (1)");
+  option("--shake", w.shake, "SPEED",
+         "random velocities that every particle has at first, so that there is something to grow (1 mm/s)");
+  command->add_option("--out", words->run.out, "output folder (out/stability/NAME)")->type_name("DIR");
+  add_scene_options(*command, words->run);
+  command->callback([=, &exit_code] {
+    exit_code = stability(words->scene, words->stability, words->run.common(*command));
+  });
+}
+
 void add_level_set(CLI::App& app, int& exit_code) {
   CLI::App* const command =
       app.add_subcommand("level-set", "makes a grid of the distances to a closed mesh, a .vdb file");
@@ -211,6 +243,7 @@ int parse_and_run(int argc, char** argv) {
   add_simulate(app, exit_code);
   add_drop(app, label, exit_code);
   add_compare(app, exit_code);
+  add_stability(app, exit_code);
   add_level_set(app, exit_code);
   add_check_and_list(app, exit_code);
   if (argc > 1 && argv[1][0] != '-') check_command(app, argv[1]);

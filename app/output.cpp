@@ -22,6 +22,10 @@ std::vector<fs::path> inputs_of(const Scene& scene) {
     add(cloth.mesh);
     for (const PinEntry& pin : cloth.pins) add(pin.source.poses);
   }
+  for (const SoftEntry& soft : scene.softs) {
+    add(soft.mesh);
+    for (const PinEntry& pin : soft.pins) add(pin.source.poses);
+  }
   for (const ObstacleEntry& obstacle : scene.obstacles) {
     add(obstacle.mesh);
     add(obstacle.source.poses);

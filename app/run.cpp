@@ -44,8 +44,8 @@ std::string strongest_term(const System& system, const State& state, int particl
 // s, until when bodies or pins are moved: cloth that rests before may still be set going.
 double last_motion(const Scene& scene, const Constraints& constraints) {
   double last = 0;
-  for (const ClothEntry& cloth : scene.cloths)
-    for (const PinEntry& pin : cloth.pins)
+  for (std::size_t k = 0; k < scene.cloths.size() + scene.softs.size(); ++k)
+    for (const PinEntry& pin : scene.pins_of(k))
       if (pin.motion) last = std::max(last, pin.motion->last_time());
   for (const MovingBody& body : constraints.bodies()) {
     last = std::max(last, body.obstacle().motion.last_time());
@@ -116,8 +116,12 @@ Run::Run(const Scene& scene, Simulation& simulation, Output& output, const RunOp
   record_.time_step = h;
   record_.warnings = simulation.messages;
   for (const Cloth& c : simulation.cloths)
-    record_.cloths.push_back(
-        {c.name, c.mesh.vertex_count(), c.mesh.triangle_count(), c.report.edges, c.report.diagonals});
+    if (c.soft)
+      record_.softs.push_back({c.name, c.end_particle - c.first_particle, c.mesh.vertex_count(),
+                               c.mesh.triangle_count(), *c.soft});
+    else
+      record_.cloths.push_back(
+          {c.name, c.mesh.vertex_count(), c.mesh.triangle_count(), c.report.edges, c.report.diagonals});
 }
 
 int Run::to_the_end() {
@@ -246,8 +250,10 @@ void Run::note_failure(const StepFailure& failure) {
     if (noted.term.empty())
       noted.term = strongest_term(*simulation_.system, simulation_.state, failure.particle);
     noted.vertex = cloth.embedding.vertex(failure.particle);
-    line += ", worst at vertex " + std::to_string(noted.vertex) + " of " + cloth.name + " (at " +
-            rounded(x[0], 4) + ", " + rounded(x[1], 4) + ", " + rounded(x[2], 4) + " m)";
+    const std::string place =
+        noted.vertex < 0 ? "a particle inside " : "vertex " + std::to_string(noted.vertex) + " of ";
+    line += ", worst at " + place + cloth.name + " (at " + rounded(x[0], 4) + ", " + rounded(x[1], 4) + ", " +
+            rounded(x[2], 4) + " m)";
   }
   if (!noted.term.empty()) line += "; the term is '" + noted.term + "'";
   line += "; try a smaller --time-step, a lower stiffness, or look at the mesh there with 'drape check'";

@@ -17,6 +17,19 @@ Json cloths_json(const std::vector<ClothCounts>& cloths) {
   return list;
 }
 
+Json softs_json(const std::vector<SoftCounts>& softs) {
+  Json::List list;
+  for (const SoftCounts& s : softs)
+    list.push_back(Json::Members{{"name", s.name},
+                                 {"particles", s.particles},
+                                 {"vertices", s.vertices},
+                                 {"triangles", s.triangles},
+                                 {"structural", s.springs.structural},
+                                 {"shear", s.springs.shear},
+                                 {"bend", s.springs.bend}});
+  return list;
+}
+
 Json vector_json(const Vec3& v) { return Json::List{v[0], v[1], v[2]}; }
 
 Json bodies_json(const std::vector<BodyRecord>& bodies) {
@@ -52,6 +65,7 @@ std::string run_json(const RunRecord& record) {
       {"drape_version", DRAPE_VERSION},
       {"scene", record.scene},
       {"cloths", cloths_json(record.cloths)},
+      {"softs", softs_json(record.softs)},
       {"bodies", bodies_json(record.bodies)},
       {"integrator", record.integrator},
       {"contact", record.contact},

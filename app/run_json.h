@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/simulation.h"
 #include "app/words.h"
 #include "mesh/triangle_mesh.h"
 
@@ -13,6 +14,12 @@ namespace drape {
 struct ClothCounts {
   std::string name;
   int particles = 0, triangles = 0, edges = 0, diagonals = 0;
+};
+
+struct SoftCounts {
+  std::string name;
+  int particles = 0, vertices = 0, triangles = 0;  // the latter two of the mesh that it carries
+  LatticeCounts springs = {};
 };
 
 struct BodyRecord {
@@ -37,6 +44,7 @@ struct Failure {
 struct RunRecord {
   std::string scene, integrator, contact, linear_solver;
   std::vector<ClothCounts> cloths;
+  std::vector<SoftCounts> softs;
   std::vector<BodyRecord> bodies;
   Names warnings;
   int threads = 1;

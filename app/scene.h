@@ -12,6 +12,7 @@
 #include "constraints/constraints.h"
 #include "solver/fabric.h"
 #include "solver/integrator.h"
+#include "solver/soft.h"
 
 namespace drape {
 
@@ -71,6 +72,18 @@ struct ClothEntry {
   std::string where;
 };
 
+// A lattice of particles and springs: a box of them, or the inside of a mesh.
+struct SoftEntry {
+  std::string name;                          // of the output files
+  std::filesystem::path mesh;                // OBJ, closed; empty: a box
+  std::array<int, 3> particles = {0, 0, 0};  // of a box, along x, y and z
+  Vec3 spacing = Vec3::Zero();               // m; of a mesh the same along all
+  Placement placement;                       // of mesh and lattice together
+  SoftMaterial material;
+  std::vector<PinEntry> pins;
+  std::string where;
+};
+
 // A body that moves by what acts on it.
 struct RigidBodyEntry {
   double mass = 0;               // kg
@@ -123,7 +136,13 @@ struct Scene {
   std::string label;  // the scene's file as it was given, or the command line of a drop
   SimulationOptions simulation;
   std::vector<ClothEntry> cloths;
+  std::vector<SoftEntry> softs;
   std::vector<ObstacleEntry> obstacles;
+
+  // Of a cloth, or after them of a soft body.
+  const std::vector<PinEntry>& pins_of(std::size_t k) const {
+    return k < cloths.size() ? cloths[k].pins : softs[k - cloths.size()].pins;
+  }
 };
 
 // Reads and checks the whole scene, with the settings applied first. Throws InputError "scene.toml:12: ...".

@@ -6,6 +6,7 @@
 #include "app/obstacle_read.h"
 #include "app/scene.h"
 #include "app/sewing_read.h"
+#include "app/soft_read.h"
 #include "app/table.h"
 #include "mesh/obj.h"
 
@@ -151,12 +152,26 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
   return cloth;
 }
 
-void check_names(const std::vector<ClothEntry>& cloths) {
-  for (std::size_t i = 0; i < cloths.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (cloths[i].name == cloths[j].name)
-        throw InputError(cloths[i].where + ": two cloths are called '" + cloths[i].name +
-                         "'; give one another name");
+SoftEntry read_whole_soft(Table& table, const fs::path& folder) {
+  SoftEntry soft = read_soft(table, folder);
+  soft.name = read_name(table, soft.mesh.empty() ? fs::path("soft") : soft.mesh);
+  for (Table& pin : table.tables("pins")) soft.pins.push_back(read_pin(pin, folder));
+  table.finish();
+  return soft;
+}
+
+// Cloths and soft bodies are written side by side.
+void check_names(const Scene& scene) {
+  std::vector<std::pair<std::string, std::string>> named;  // and where
+  const auto add = [&](const std::string& name, const std::string& where, const char* kind) {
+    for (const auto& before : named)
+      if (before.first == name)
+        throw InputError(where + ": two " + kind + " are called '" + name + "'; give one another name");
+    named.emplace_back(name, where);
+  };
+  for (const ClothEntry& cloth : scene.cloths) add(cloth.name, cloth.where, "cloths");
+  for (const SoftEntry& soft : scene.softs)
+    add(soft.name, soft.where, scene.cloths.empty() ? "soft bodies" : "cloths or soft bodies");
 }
 
 // A pin follows an obstacle of the scene, of which there is one.
@@ -183,17 +198,21 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path
   Scene scene;
   scene.label = std::move(label);
   const std::vector<Table> simulation = table.tables("simulation");
-  std::vector<Table> cloths = table.tables("cloth"), obstacles = table.tables("obstacle");
+  std::vector<Table> cloths = table.tables("cloth"), softs = table.tables("soft"),
+                     obstacles = table.tables("obstacle");
   table.finish();  // before anything is missed: it may be there with its name mistyped
   if (simulation.size() > 1) table.fail("simulation", "there may be only one");
   scene.simulation = read_simulation(simulation.empty() ? nullptr : simulation.data());
-  table.require("cloth");
+  if (!table.has("soft")) table.require("cloth");
   for (Table& cloth : cloths) scene.cloths.push_back(read_cloth(cloth, folder));
+  for (Table& soft : softs) scene.softs.push_back(read_whole_soft(soft, folder));
   for (Table& obstacle : obstacles) scene.obstacles.push_back(read_obstacle(obstacle, folder));
-  if (scene.cloths.empty()) table.fail("cloth", "there is no cloth");
-  check_names(scene.cloths);
+  if (scene.cloths.empty() && scene.softs.empty()) table.fail("cloth", "there is no cloth");
+  check_names(scene);
   for (const ClothEntry& cloth : scene.cloths)
     for (const PinEntry& pin : cloth.pins) check_follow(pin, scene.obstacles);
+  for (const SoftEntry& soft : scene.softs)
+    for (const PinEntry& pin : soft.pins) check_follow(pin, scene.obstacles);
   return scene;
 }
 

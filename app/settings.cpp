@@ -68,7 +68,8 @@ void apply(const Setting& setting, Node& root) {
     if (node->kind == Node::Kind::array) {
       node = &entry(*node, parts[i], setting.where);
     } else if (node->kind == Node::Kind::table) {
-      const bool is_list = i == 0 && !last && (parts[0] == "cloth" || parts[0] == "obstacle");
+      const bool is_list =
+          i == 0 && !last && (parts[0] == "cloth" || parts[0] == "soft" || parts[0] == "obstacle");
       if (is_list && !node->members.contains(parts[0]))
         throw InputError(setting.where + ": there is no [[" + parts[0] + "]]");
       node = &node->members.try_emplace(parts[i], Node::of_table(setting.where)).first->second;

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,11 @@ struct RestEdge {
   double L;  // m
 };
 
+// Springs of a soft body.
+struct LatticeCounts {
+  int structural, shear, bend;
+};
+
 // What is simulated as particles and written as a mesh.
 struct Cloth {
   std::string name;
@@ -29,6 +35,7 @@ struct Cloth {
   Embedding embedding;                       // of the mesh in the particles
   TriangleMesh rest;                         // its triangle k is the mesh's (solver/noh_jung.h)
   std::vector<RestEdge> edges;
+  std::optional<LatticeCounts> soft;  // a soft body, and no cloth
 
   struct Stitched {
     OpenSeam seam;
@@ -48,7 +55,7 @@ struct Body {
 };
 
 struct Simulation {
-  std::vector<Cloth> cloths;
+  std::vector<Cloth> cloths;  // those of the scene, then its soft bodies
   std::vector<Body> bodies;
   std::unique_ptr<System> system;
   std::unique_ptr<Constraints> constraints;
@@ -70,6 +77,12 @@ struct Simulation {
 // Throws InputError when a mesh cannot be read or simulated, or a pin selects nothing. Level sets that are
 // made are kept beside their meshes (app/level_set_cache.h), or not.
 Simulation make_simulation(const Scene& scene, bool keep_level_sets = true);
+
+void require_file(const std::filesystem::path& path, const std::string& where);
+
+// Read, placed, looked over. where: stands before a file that is missing.
+TriangleMesh load_mesh(const std::filesystem::path& path, const std::string& where,
+                       const Placement& placement, MeshReport& report, Names& messages);
 
 TriangleMesh placed(TriangleMesh mesh, const Placement& placement, const std::string& name);
 

@@ -7,7 +7,7 @@ namespace {
 
 std::string hints(const RunRecord& record) {
   std::string text;
-  if (record.max_edge_strain > 0.1)
+  if (record.max_edge_strain > 0.1 && record.softs.empty())
     text += "hint: an edge is stretched by " + rounded(100 * record.max_edge_strain, 2) +
             " %, more than woven cloth does: raise stretch, or check the units of the mesh\n";
   if (record.max_penetration > 1e-4)
@@ -33,6 +33,10 @@ std::string summary(const RunRecord& record, const Output& output) {
                      rounded(record.wall_seconds, 3) + " s of wall time\n";
   for (const ClothCounts& c : record.cloths)
     text += c.name + ": " + counted(c.particles, "particle") + ", " + counted(c.triangles, "triangle") + "\n";
+  for (const SoftCounts& s : record.softs)
+    text += s.name + ": " + counted(s.particles, "particle") + ", " +
+            counted(s.springs.structural + s.springs.shear + s.springs.bend, "spring") + ", " +
+            counted(s.triangles, "triangle") + "\n";
   text += record.integrator + ", " + record.linear_solver + ", " + counted(record.threads, "thread") + ": " +
           rounded(ms.median, 3) + " ms a step (95 % below " + rounded(ms.p95, 3) + "), " +
           rounded(iterations.mean, 3) + " linear iterations a step\n";

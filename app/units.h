@@ -25,6 +25,8 @@ inline constexpr Dimension angle{"rad", "an angle", "90 deg"};
 inline constexpr Dimension angular_rate{"rad/s", "a rate of turning", "90 deg/s"};  // or rpm
 inline constexpr Dimension mass{"kg", "a mass", "500 g"};
 inline constexpr Dimension moment_of_inertia{"kg.m^2", "a moment of inertia", "2e-3 kg.m^2"};
+inline constexpr Dimension density{"kg/m^3", "a density", "300 kg/m^3"};
+inline constexpr Dimension pressure{"Pa", "a modulus", "20 kPa"};
 inline constexpr Dimension area_density{"kg/m^2", "a mass per area", "150 g/m^2"};
 inline constexpr Dimension stretch{"N/m", "a membrane stiffness", "500 N/m"};
 inline constexpr Dimension spring{"N/m", "a spring constant", "200 N/m"};

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "mesh/triangle_mesh.h"
@@ -26,6 +27,10 @@ class Embedding {
   void add_vertex(const std::vector<Share>& shares);
 
   int vertices() const { return static_cast<int>(start_.size()) - 1; }
+  std::span<const Share> shares(int vertex) const {
+    const std::size_t begin = start_[static_cast<std::size_t>(vertex)];
+    return {shares_.data() + begin, start_[static_cast<std::size_t>(vertex) + 1] - begin};
+  }
   // The particle that the vertex is; -1: it lies between several.
   int particle(int vertex) const;
   // The first vertex that is this particle, or moves with it; -1: none does.

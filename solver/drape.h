@@ -6,6 +6,7 @@
 #include "mesh/examine.h"
 #include "mesh/flat_pattern.h"
 #include "mesh/generate.h"
+#include "mesh/lattice.h"
 #include "mesh/mesh_frames.h"
 #include "mesh/obj.h"
 #include "mesh/threads.h"
@@ -13,4 +14,5 @@
 #include "solver/bdf.h"
 #include "solver/choi_ko.h"
 #include "solver/noh_jung.h"
+#include "solver/soft.h"
 #include "solver/system.h"

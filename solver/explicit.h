@@ -1,9 +1,13 @@
-// Explicit Runge-Kutta methods as their tableaux: "explicit-euler", "symplectic-euler", "midpoint", "rk4".
+// Explicit Runge-Kutta methods as their tableaux: "explicit-euler", "symplectic-euler", "midpoint",
+// "sb-implicit", "rk4".
 //   X_i = x + h sum_j a_ij V_j,  V_i = v + h sum_j a_ij A_j,  A_i = M^-1 f(X_i, V_i)
 //   x' = x + h sum_i b_i V_i,    v' = v + h sum_i b_i A_i
 // Symplectic Euler is a pair of tableaux, of which the second is implicit in form only: x' = x + h v'.
-//   Stable on an undamped vibration of frequency w [1/s] for h < 2/w (symplectic Euler), 2.8284/w (rk4);
-//   explicit Euler and midpoint for no h.                    [Hairer, Norsett & Wanner, II.1; Hairer,
+// What SB call implicit Euler evaluates the forces once more, where explicit Euler ends: "sb-implicit", which
+// is explicit: 1 + z + z^2 is what a vibration grows by in a step.
+//   Stable on an undamped vibration of frequency w [1/s] for h < 2/w (symplectic Euler), 2.8284/w (rk4), 1/w
+//   (sb-implicit); explicit Euler and midpoint for no h.                    [Hairer, Norsett & Wanner, II.1;
+//   Hairer,
 //                                                             Lubich & Wanner, I.1]
 // Pins, contact and friction: solver/held_motion.h. A state that is not finite is a failure, and so is one
 // with a kinetic energy a thousand times all the energy that the motion was ever given: what it had at its

@@ -103,7 +103,9 @@ class PairForce final : public Force {
     PairSlots slots = {};
   };
 
-  explicit PairForce(std::vector<Element> elements) : elements_(std::move(elements)) {}
+  // k_d [N s/m]: damping along every pair, f_i = -k_d ((v_i - v_j) . n) n, in the same loop.
+  explicit PairForce(std::vector<Element> elements, double k_d = 0)
+      : elements_(std::move(elements)), k_d_(k_d) {}
 
   const std::vector<Element>& elements() const { return elements_; }
   // Between steps: change(rest) for every element, such as a rest length that goes with time.
@@ -130,20 +132,36 @@ class PairForce final : public Force {
     });
   }
 
-  void add_force(const VecX& x, const VecX&, VecX& f) const override {
+  double dissipation(const VecX& x, const VecX& v) const override {
+    if (k_d_ == 0) return 0;
+    return sum_chunks(static_cast<int>(elements_.size()), [&](int begin, int end) {
+      double sum = 0;
+      for (int k = begin; k < end; ++k) {
+        const Element& e = elements_[static_cast<std::size_t>(k)];
+        const Vec3 d = x.segment<3>(3 * e.i) - x.segment<3>(3 * e.j);
+        const double l2 = d.squaredNorm(), along = d.dot(v.segment<3>(3 * e.i) - v.segment<3>(3 * e.j));
+        if (l2 > 0) sum += 0.5 * k_d_ * along * along / l2;
+      }
+      return sum;
+    });
+  }
+
+  void add_force(const VecX& x, const VecX& v, VecX& f) const override {
     schedule_.run(static_cast<int>(elements_.size()), [&](int k) {
       const Element& e = elements_[static_cast<std::size_t>(k)];
       const Vec3 d = x.segment<3>(3 * e.i) - x.segment<3>(3 * e.j);
       const double l = d.norm();
-      const Tension law = Law::tension(e.rest, l);
-      if (law.t == 0 || l == 0) return;
-      const Vec3 pull = law.t / l * d;
+      if (l == 0) return;
+      double t = Law::tension(e.rest, l).t;
+      if (k_d_ > 0) t += k_d_ / l * d.dot(v.segment<3>(3 * e.i) - v.segment<3>(3 * e.j));
+      if (t == 0) return;
+      const Vec3 pull = t / l * d;
       f.segment<3>(3 * e.i) -= pull;
       f.segment<3>(3 * e.j) += pull;
     });
   }
 
-  void add_linearised(const VecX& x, const VecX&, const VecX& y, double c, Stiffness stiffness,
+  void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,
                       BlockMatrix& A, VecX& b) const override {
     schedule_.run(static_cast<int>(elements_.size()), [&](int k) {
       const Element& e = elements_[static_cast<std::size_t>(k)];
@@ -152,16 +170,19 @@ class PairForce final : public Force {
       Tension law = Law::tension(e.rest, l);
       if (stiffness == Stiffness::chord) law.dt = std::max(law.dt, Law::chord(e.rest, l));
       if (stiffness == Stiffness::majorant) law.dt = std::max(law.dt, Law::stiffest(e.rest, l));
-      if ((law.t == 0 && law.dt == 0) || (l == 0 && law.t != 0)) return;
+      const double k_d = l == 0 ? 0 : k_d_;
+      if ((law.t == 0 && law.dt == 0 && k_d == 0) || (l == 0 && law.t != 0)) return;
       const double pull = l == 0 ? 0 : law.t / l;
       const double across = l == 0 ? law.dt : std::max(pull, 0.0);
       const double along = std::max(law.dt, 0.0);
       const Vec3 n = l == 0 ? Vec3::Zero() : Vec3(d / l);
       const Vec3 dy = y.segment<3>(3 * e.i) - y.segment<3>(3 * e.j);
-      const Vec3 impulse = c * (pull * d + (along - across) * n.dot(dy) * n + across * dy);
+      Vec3 impulse = c * (pull * d + (along - across) * n.dot(dy) * n + across * dy);
+      if (k_d > 0) impulse += c * k_d * n.dot(v.segment<3>(3 * e.i) - v.segment<3>(3 * e.j)) * n;
       b.segment<3>(3 * e.i) -= impulse;
       b.segment<3>(3 * e.j) += impulse;
-      Mat3 K = c * c * (along - across) * (n * n.transpose()).eval();  // symmetric to the last bit
+      // symmetric to the last bit
+      Mat3 K = (c * c * (along - across) + c * k_d) * (n * n.transpose()).eval();
       K.diagonal().array() += c * c * across;
       add_pair_block(A, e.slots, K);
     });
@@ -169,6 +190,7 @@ class PairForce final : public Force {
 
  private:
   std::vector<Element> elements_;
+  double k_d_;
   ChunkSchedule schedule_;
 };
 

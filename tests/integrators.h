@@ -17,7 +17,8 @@ inline int order_of(std::string_view name) {
 }
 
 inline bool is_explicit(std::string_view name) {
-  return name == "explicit-euler" || name == "symplectic-euler" || name == "midpoint" || name == "rk4";
+  return name == "explicit-euler" || name == "symplectic-euler" || name == "midpoint" ||
+         name == "sb-implicit" || name == "rk4";
 }
 
 inline std::vector<std::string> integrator_names() {

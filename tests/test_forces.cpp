@@ -6,6 +6,7 @@
 
 #include "solver/buckling_spring.h"
 #include "solver/damping.h"
+#include "solver/linear_spring.h"
 #include "tests/tables.h"
 
 using namespace drape;
@@ -24,6 +25,11 @@ struct Weld {
   static Law::Rest rest() { return {0, 50}; }
   static std::vector<double> kinks() { return {}; }
 };
+struct Linear {
+  using Law = LinearSpring;
+  static Law::Rest rest() { return {0.7, 120}; }
+  static std::vector<double> kinks() { return {}; }
+};
 struct Bend {
   using Law = BucklingSpring;
   static Law::Rest rest() { return BucklingSpring::rest(0.7, 0.3, 200); }
@@ -34,7 +40,7 @@ struct BendAlwaysClamped {
   static Law::Rest rest() { return BucklingSpring::rest(0.7, 3, 200); }
   static std::vector<double> kinks() { return {0.7}; }
 };
-using Laws = std::tuple<Stretch, Weld, Bend, BendAlwaysClamped>;
+using Laws = std::tuple<Stretch, Weld, Linear, Bend, BendAlwaysClamped>;
 
 bool near_kink(const std::vector<double>& kinks, double l) {
   for (double k : kinks)
@@ -227,6 +233,45 @@ TEST_CASE("coincident particles: no direction, no force, and nothing that is not
   CHECK(A.at(pattern.diagonal(0)).norm() == 0);
   weld.add_linearised(x, x, x, 1, Stiffness::tangent, A, b);
   CHECK((A.at(pattern.diagonal(0)) - 30 * Mat3::Identity()).norm() == 0);
+}
+
+TEST_CASE("a spring that is damped is a spring and a damper along it, to round-off", "[forces]") {
+  std::vector<PairForce<LinearSpring>::Element> springs;
+  std::vector<PairDamping::Element> pairs;
+  for (const auto& [i, j] : {std::pair{0, 1}, {1, 2}, {0, 2}, {2, 3}}) {
+    springs.push_back({i, j, {0.7, 30}});
+    pairs.push_back({i, j});
+  }
+  PairForce<LinearSpring> both(springs, 0.4), spring(springs);
+  PairDamping damper(pairs, 0.4, DampingKind::axial);
+  const auto pattern = std::make_shared<const BlockPattern>(4, [&] {
+    std::vector<ParticlePair> all;
+    both.list_pairs(all);
+    return all;
+  }());
+  const VecX x = random_vector(12, 1, 3), v = random_vector(12, 1, 4), y = random_vector(12, 0.1, 5);
+  VecX f = VecX::Zero(12), g = f, b = f, c = f, product(12), other(12);
+  both.bind(*pattern);
+  both.add_force(x, v, f);
+  BlockMatrix A(pattern), B(pattern);
+  A.set_to_mass({0, 0, 0, 0});
+  B.set_to_mass({0, 0, 0, 0});
+  both.add_linearised(x, v, y, 0.1, Stiffness::tangent, A, b);
+  for (Force* part : {static_cast<Force*>(&spring), static_cast<Force*>(&damper)}) {
+    part->bind(*pattern);
+    part->add_force(x, v, g);
+    part->add_linearised(x, v, y, 0.1, Stiffness::tangent, B, c);
+  }
+  CHECK((f - g).norm() < 1e-13 * f.norm());
+  CHECK((b - c).norm() < 1e-13 * b.norm());
+  A.multiply(v, product);
+  B.multiply(v, other);
+  CHECK((product - other).norm() < 1e-13 * product.norm());
+  CHECK(both.dissipation(x, v) == Approx(damper.dissipation(x, v)).epsilon(1e-13));
+  CHECK(spring.dissipation(x, v) == 0);
+  f.setZero();
+  PairForce<LinearSpring>({{0, 1, {0.7, 30}}}, 0.4).add_force(VecX::Zero(6), VecX::Ones(6), f);
+  CHECK(f.norm() == 0);  // coincident: no direction
 }
 
 TEST_CASE("damping resists relative motion only, and never drives", "[forces]") {

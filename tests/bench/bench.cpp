@@ -153,6 +153,50 @@ void bench_ball() {
       median(ms), ms[ms.size() * 95 / 100], median(collide));
 }
 
+// SB's cube of 10 x 10 x 10 particles and 12876 springs falls on a plane and lies on it.
+void bench_cube() {
+  set_threads(1);
+  std::printf("\n1000 particles, 12876 springs with damping, fall on a plane, one thread\n");
+  std::printf("%18s %8s %10s %10s %12s %10s %11s\n", "", "step ms", "median ms", "95 %", "assemble ms",
+              "solve ms", "iterations");
+  struct Case {
+    const char* integrator;
+    double h;
+    const char* solver = "mpcg";
+  };
+  for (const auto& [name, h, solver] :
+       {Case{"implicit-euler", 0.01}, Case{"implicit-euler", 0.01, "mpcg+block-ic0"}, Case{"bdf2", 0.01},
+        Case{"explicit-euler", 5e-4}, Case{"symplectic-euler", 5e-4}, Case{"midpoint", 5e-4},
+        Case{"rk4", 5e-4}}) {
+    const Lattice cube = box_lattice({10, 10, 10}, Vec3::Constant(0.1));
+    const SoftMaterial material{
+        .mass = 100, .young = {}, .structural = 5000, .shear = 5000, .bend = 5000, .damping = 10};
+    System system(masses(cube, material));
+    system.add(soft_body(cube, material));
+    system.add(Gravity{});
+    Constraints constraints;
+    constraints.add(Obstacle{.shape = Plane{{0, 0, 0}, {0, 1, 0}}, .friction = 0.3});
+    State state{0, stacked(cube.positions), VecX::Zero(3000)};
+    for (int i = 0; i < 1000; ++i) state.x[3 * i + 1] += 0.55;
+    auto stepper = make_integrator(name, system, constraints, make_linear_solver(solver));
+    std::vector<double> ms, assemble, solve_ms, iterations;
+    const int steps = static_cast<int>(1.5 / h);
+    for (int k = 0; k < steps; ++k) {
+      const StepReport r = stepper->advance(state, h);
+      if (!r.done) std::printf("%18s failed at step %d: %s\n", name, k, r.failure.what.c_str());
+      if (!r.done) break;
+      ms.push_back(r.step_ms);
+      assemble.push_back(r.assemble_ms);
+      solve_ms.push_back(r.solve_ms);
+      iterations.push_back(r.linear_iterations);
+    }
+    std::vector<double> sorted = ms;
+    std::sort(sorted.begin(), sorted.end());
+    std::printf("%18s %8g %10.3f %10.3f %12.3f %10.3f %11.0f\n", name, 1000 * h, median(ms),
+                sorted[sorted.size() * 95 / 100], median(assemble), median(solve_ms), median(iterations));
+  }
+}
+
 void bench_obj() {
   const TriangleMesh mesh = grid(708, 708, 1, 1);
   const std::filesystem::path path = std::filesystem::temp_directory_path() / "drape-bench.obj";
@@ -165,16 +209,22 @@ void bench_obj() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::strcmp(argv[1], "--cube") == 0) {
+    bench_cube();
+    return 0;
+  }
   const bool quick = argc > 1 && std::strcmp(argv[1], "--quick") == 0;
   std::printf("drape benchmarks; %d threads at most\n", threads());
   if (quick) {
     bench_sheets({{32, 30}, {100, 30}});
     bench_ball();
+    bench_cube();
     return 0;
   }
   bench_sheets({{32, 60}, {100, 30}, {200, 18}, {400, 12, 1e-3}});
   set_threads(1);
   bench_ball();
+  bench_cube();
   bench_obj();
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
