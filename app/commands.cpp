@@ -100,6 +100,8 @@ int list_parts() {
                               : "a closed OBJ file, as a grid of distances (.vdb files: not in this build)");
   std::printf("forces:\n");
   print_line("noh-jung", "edges that pull, diagonals that buckle, damping along both");
+  print_line("choi-ko",
+             "of a regular grid of quads: neighbours that pull, next but one that buckle, damping");
   print_line("soft", "springs of a lattice that resist both ways, damping along them");
   print_line("gravity", "mass times gravity");
   std::printf("integrators:\n");

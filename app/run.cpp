@@ -9,6 +9,7 @@
 #include "app/interrupt.h"
 #include "app/measure.h"
 #include "app/progress.h"
+#include "app/soft_body.h"
 #include "app/summary.h"
 #include "mesh/threads.h"
 
@@ -117,7 +118,8 @@ Run::Run(const Scene& scene, Simulation& simulation, Output& output, const RunOp
   for (const Cloth& c : simulation.cloths)
     if (c.soft)
       record_.softs.push_back({c.name, c.end_particle - c.first_particle, c.mesh.vertex_count(),
-                               c.mesh.triangle_count(), *c.soft});
+                               c.mesh.triangle_count(), static_cast<int>(c.soft->lattice.structural.size()),
+                               static_cast<int>(c.soft->lattice.shear.size()), static_cast<int>(c.soft->lattice.bend.size())});
     else
       record_.cloths.push_back(
           {c.name, c.mesh.vertex_count(), c.mesh.triangle_count(), c.report.edges, c.report.diagonals});
@@ -138,7 +140,7 @@ bool Run::step() {
   before_ = state;
   StepRow row;
   row.step = next_step_;
-  row.report = simulation_.integrator->advance(state, at_last_step() ? last_step_ : wanted_.time_step);
+  row.report = simulation_.advance(at_last_step() ? last_step_ : wanted_.time_step);
   if (const int bad = first_not_finite(state); bad >= 0) {  // out of the range of numbers
     if (row.report.done) row.report.failure = {"a position or velocity is not a finite number", bad, {}};
     row.report.done = false;

@@ -38,10 +38,33 @@ struct PinEntry {
   MotionSource source;
 };
 
+// Where a panel of a pattern starts: the middle of its box is brought to the origin, what lies flat in the
+// plane z = 0 is wrapped round the y axis, and it is placed.
+struct PanelEntry {
+  std::string group;           // of the OBJ file
+  std::optional<double> wrap;  // m, the radius of the cylinder
+  Placement placement;         // without a scale
+  std::string where;
+};
+
+// Two curves that are sewn together: pulled from where they are to each other, vertex by vertex.
+struct SeamEntry {
+  Names curves;                     // two lines of the OBJ file; none: every seam that the file declares
+  bool same_direction = false;      // the first vertices of both belong together; else the first and the last
+  double close = 1;                 // s
+  std::optional<double> stiffness;  // N/m, of a stitch; none: chosen
+  bool merge = true;                // once closed the particles of a pair become one
+  std::string where;
+};
+
 struct ClothEntry {
   std::string name;            // of the output files
   std::filesystem::path mesh;  // OBJ
   Placement placement;         // of the rest shape and of the start
+  bool rest_is_flat = false;   // the texture coordinates are the rest shape
+  double uv_scale = 1;         // m
+  std::vector<PanelEntry> panels;
+  std::vector<SeamEntry> seams;
   std::string model = "noh-jung";
   std::string fabric_name;  // empty: none was named
   Fabric fabric;

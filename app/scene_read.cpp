@@ -5,6 +5,7 @@
 #include "app/motion_read.h"
 #include "app/obstacle_read.h"
 #include "app/scene.h"
+#include "app/sewing_read.h"
 #include "app/soft_read.h"
 #include "app/table.h"
 #include "mesh/obj.h"
@@ -133,9 +134,16 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
   cloth.mesh = read_path(table, "mesh", folder);
   cloth.name = read_name(table, cloth.mesh);
   cloth.placement = read_placement(table);
-  if (const Node* model = table.take("model"); model && model->text == "choi-ko")
-    table.fail("model", "is not in this build; it has: " + listed(model_names()));
+  std::string rest = "mesh";
+  table.read("rest", rest, Names{"mesh", "uv"});
+  cloth.rest_is_flat = rest == "uv";
+  table.read("uv_scale", cloth.uv_scale, dimension::length, Range::positive);
+  if (table.has("uv_scale") && !cloth.rest_is_flat) table.fail("uv_scale", "goes with rest = \"uv\"");
+  cloth.panels = read_panels(table);
+  cloth.seams = read_seams(table);
   table.read("model", cloth.model, model_names());
+  if (!cloth.seams.empty() && cloth.model != "noh-jung")
+    table.fail("model", "a cloth with seams is no regular grid; expected \"noh-jung\"");
   table.read("fabric", cloth.fabric_name, fabric_names());
   if (!cloth.fabric_name.empty()) cloth.fabric = load_fabric(cloth.fabric_name).fabric;
   read_fabric(table, cloth.fabric);
@@ -182,7 +190,7 @@ void check_follow(const PinEntry& pin, const std::vector<ObstacleEntry>& obstacl
 
 }  // namespace
 
-Names model_names() { return {"noh-jung"}; }
+Names model_names() { return {"noh-jung", "choi-ko"}; }
 
 Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path& folder, std::string label) {
   for (const Setting& setting : settings) apply(setting, root);

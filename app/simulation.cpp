@@ -1,15 +1,17 @@
 #include "app/simulation.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "app/body_frames.h"
+#include "app/cloth_model.h"
 #include "app/level_set_cache.h"
 #include "app/soft_body.h"
 #include "app/warnings.h"
+#include "mesh/flat_pattern.h"
 #include "mesh/obj.h"
 #include "mesh/solid.h"
 #include "solver/face_contact_force.h"
-#include "solver/noh_jung.h"
 
 namespace drape {
 namespace {
@@ -30,45 +32,89 @@ TriangleMesh load(const std::filesystem::path& path, const std::string& where, c
   return mesh;
 }
 
-void add_cloths(const Scene& scene, std::vector<SoftBody>& softs, Simulation& simulation) {
-  std::vector<double> all_masses;
+// As the file has it, its panels placed; the rest shape is the flat pattern, or what the file has.
+Cloth load_cloth(const ClothEntry& entry, Names& messages) {
+  require_file(entry.mesh, entry.where);
+  Cloth cloth;
+  cloth.name = entry.name;
+  cloth.mesh = placed(read_obj(entry.mesh), {.scale = entry.placement.scale}, entry.mesh.string());
+  try {
+    cloth.rest = entry.rest_is_flat ? flat_pattern(cloth.mesh, entry.uv_scale) : cloth.mesh;
+  } catch (const InputError& error) {
+    throw InputError(entry.where + ": " + entry.mesh.string() + ": " + error.what());
+  }
+  place_panels(entry, cloth.mesh);
+  const Placement rest_of_it{.rotation = entry.placement.rotation, .translate = entry.placement.translate};
+  cloth.mesh = placed(std::move(cloth.mesh), rest_of_it, entry.mesh.string());
+  cloth.report = examine(cloth.mesh);
+  add_messages(cloth.report, entry.mesh.string(), messages);
+  for (OpenSeam& seam : open_seams(entry, cloth.mesh, cloth.rest, messages))
+    cloth.seams.push_back({std::move(seam), nullptr});
+  return cloth;
+}
+
+void load_cloths(const Scene& scene, Simulation& simulation) {
+  int particles = 0;
   for (const ClothEntry& entry : scene.cloths) {
-    Cloth cloth;
-    cloth.name = entry.name;
-    cloth.first_particle = static_cast<int>(all_masses.size());
-    cloth.mesh = load(entry.mesh, entry.where, entry.placement, cloth.report, simulation.messages);
-    const std::vector<double> own = masses(cloth.mesh, entry.fabric);
-    all_masses.insert(all_masses.end(), own.begin(), own.end());
-    cloth.end_particle = static_cast<int>(all_masses.size());
-    cloth.embedding = Embedding::each(cloth.first_particle, cloth.mesh.vertex_count());
+    Cloth cloth = load_cloth(entry, simulation.messages);
+    cloth.first_particle = particles;
+    cloth.embedding = Embedding::each(particles, cloth.mesh.vertex_count());
+    cloth.end_particle = particles += cloth.mesh.vertex_count();
     simulation.cloths.push_back(std::move(cloth));
   }
   for (const SoftEntry& entry : scene.softs) {
-    softs.push_back(make_soft_body(entry, static_cast<int>(all_masses.size()), simulation.messages));
-    const SoftBody& soft = softs.back();
-    all_masses.insert(all_masses.end(), soft.masses.begin(), soft.masses.end());
-    simulation.cloths.push_back(soft.cloth);
+    simulation.cloths.push_back(make_soft_body(entry, particles, simulation.messages));
+    particles = simulation.cloths.back().end_particle;
   }
-  simulation.system = std::make_unique<System>(std::move(all_masses));
-  simulation.system->add(Gravity{scene.simulation.gravity});
-  simulation.state.x.resize(3 * simulation.system->particles());
-  simulation.state.v = VecX::Zero(3 * simulation.system->particles());
+  simulation.state.x.resize(3 * particles);
+  simulation.state.v = VecX::Zero(3 * particles);
+  for (const Cloth& cloth : simulation.cloths)
+    simulation.state.x.segment(3 * cloth.first_particle, 3 * (cloth.end_particle - cloth.first_particle)) =
+        stacked(cloth.soft ? cloth.soft->positions : cloth.mesh.positions);
+}
+
+// The cloth's triangles between its particles, numbered from its first.
+TriangleMesh between_particles(const Cloth& cloth) {
+  TriangleMesh mesh = cloth.mesh;
+  for (Triangle& t : mesh.triangles)
+    for (int& v : t) v = cloth.embedding.particle(v) - cloth.first_particle;
+  mesh.positions.resize(static_cast<std::size_t>(cloth.end_particle - cloth.first_particle));
+  return mesh;
+}
+
+// The system of all that is simulated, as it is sewn by now.
+void assemble(Simulation& simulation, Names& messages) {
+  const Scene& scene = *simulation.scene;
+  std::vector<double> all_masses;
+  std::vector<std::unique_ptr<Force>> forces;
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
     Cloth& cloth = simulation.cloths[k];
     const ClothEntry& entry = scene.cloths[k];
-    const Connections connections = noh_jung_connections(cloth.mesh, cloth.mesh, entry.fabric);
-    for (const StretchConnection& s : connections.stretch)
+    const ClothModel model = cloth_model(entry, between_particles(cloth), cloth.rest, messages);
+    all_masses.insert(all_masses.end(), model.masses.begin(), model.masses.end());
+    cloth.edges.clear();
+    for (const StretchConnection& s : model.connections.stretch)
       if (s.L > 0) cloth.edges.push_back({cloth.first_particle + s.i, cloth.first_particle + s.j, s.L});
-    warn_if_limp(entry, limp_below(connections, entry.fabric), simulation.messages);
-    simulation.system->add(forces_of(connections, entry.fabric, cloth.first_particle));
-    simulation.state.x.segment(3 * cloth.first_particle, 3 * cloth.mesh.vertex_count()) =
-        stacked(cloth.mesh.positions);
+    for (auto& force : forces_of(model.connections, entry.fabric, cloth.first_particle))
+      forces.push_back(std::move(force));
+    for (Cloth::Stitched& open : cloth.seams) {
+      std::unique_ptr<Force> force = stitches(open.seam, cloth.embedding, simulation.state.time);
+      open.force = force.get();
+      if (force) forces.push_back(std::move(force));
+    }
   }
-  for (SoftBody& soft : softs) {
-    simulation.system->add(std::move(soft.forces));
-    const VecX x = stacked(soft.positions);
-    simulation.state.x.segment(3 * soft.cloth.first_particle, x.size()) = x;
+  for (std::size_t k = 0; k < scene.softs.size(); ++k) {
+    const Cloth& body = simulation.cloths[scene.cloths.size() + k];
+    const std::vector<double> own = masses_of(scene.softs[k], *body.soft);
+    all_masses.insert(all_masses.end(), own.begin(), own.end());
+    for (auto& force : soft_body(body.soft->lattice, scene.softs[k].material, body.first_particle))
+      forces.push_back(std::move(force));
   }
+  simulation.system = std::make_unique<System>(std::move(all_masses));
+  simulation.system->add(Gravity{scene.simulation.gravity});
+  simulation.system->add(std::move(forces));
+  if (!simulation.constraints->faces().all().empty())
+    simulation.system->add(face_contact_force(*simulation.constraints));
 }
 
 void pin_down(const PinEntry& pin, const Cloth& cloth, const Scene& scene, Simulation& simulation) {
@@ -171,7 +217,7 @@ void add_obstacles(const Scene& scene, bool keep_level_sets, Simulation& simulat
 }
 
 // Corners and rims of bodies are kept off the inside of triangles, too.
-void add_faces(const Scene& scene, const std::vector<SoftBody>& softs, Simulation& simulation) {
+void add_faces(const Scene& scene, Simulation& simulation) {
   if (scene.obstacles.empty()) return;
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
     const Cloth& cloth = simulation.cloths[k];
@@ -183,11 +229,81 @@ void add_faces(const Scene& scene, const std::vector<SoftBody>& softs, Simulatio
            fabric.stretch_spring.value_or(fabric.stretch)});
     simulation.constraints->add_faces(faces);
   }
-  for (const SoftBody& soft : softs) simulation.constraints->add_faces(soft.faces);
-  simulation.system->add(face_contact_force(*simulation.constraints));
+  for (std::size_t k = 0; k < scene.softs.size(); ++k)
+    simulation.constraints->add_faces(faces_of(scene.softs[k], simulation.cloths[scene.cloths.size() + k]));
+}
+
+// Mass and momentum of the particles that become one, number[i] being what particle i becomes.
+State merged_state(const State& state, const std::vector<double>& masses, const std::vector<int>& number) {
+  const int count = 1 + *std::max_element(number.begin(), number.end());
+  State merged{state.time, VecX::Zero(3 * count), VecX::Zero(3 * count)};
+  std::vector<double> weight(static_cast<std::size_t>(count), 0.0);
+  for (std::size_t i = 0; i < number.size(); ++i) weight[static_cast<std::size_t>(number[i])] += masses[i];
+  std::vector<int> parts(weight.size(), 0);
+  for (int n : number) ++parts[static_cast<std::size_t>(n)];
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    const auto n = static_cast<std::size_t>(number[i]);
+    const double share = parts[n] == 1 ? 1 : weight[n] > 0 ? masses[i] / weight[n] : 1.0 / parts[n];
+    merged.x.segment<3>(3 * number[i]) += share * state.x.segment<3>(3 * static_cast<Eigen::Index>(i));
+    merged.v.segment<3>(3 * number[i]) += share * state.v.segment<3>(3 * static_cast<Eigen::Index>(i));
+  }
+  return merged;
+}
+
+// Seams that have closed: their particles become one, and the cloth one piece. False: there were none.
+bool merge_closed_seams(Simulation& simulation) {
+  std::vector<int> number(static_cast<std::size_t>(simulation.state.particles()));
+  std::iota(number.begin(), number.end(), 0);
+  bool any = false;
+  for (Cloth& cloth : simulation.cloths) {
+    std::vector<const OpenSeam*> closed;
+    for (const Cloth::Stitched& open : cloth.seams)
+      if (open.seam.closed(cloth.embedding, simulation.state)) closed.push_back(&open.seam);
+    if (closed.empty()) continue;
+    any = true;
+    number = merged(number, closed, cloth.embedding);
+    std::erase_if(cloth.seams, [&](const Cloth::Stitched& open) {
+      return open.seam.closed(cloth.embedding, simulation.state);
+    });
+  }
+  if (!any) return false;
+  simulation.state = merged_state(simulation.state, simulation.system->masses(), number);
+  for (Cloth& cloth : simulation.cloths) cloth.renumber(number);
+  simulation.constraints->merge(number);
+  Names said_before;
+  assemble(simulation, said_before);
+  return true;
 }
 
 }  // namespace
+
+void Cloth::renumber(const std::vector<int>& number) {
+  embedding.renumber(number);
+  int low = number[static_cast<std::size_t>(first_particle)], high = low;
+  for (int i = first_particle; i < end_particle; ++i) {
+    low = std::min(low, number[static_cast<std::size_t>(i)]);
+    high = std::max(high, number[static_cast<std::size_t>(i)]);
+  }
+  first_particle = low;
+  end_particle = high + 1;
+}
+
+StepReport Simulation::advance(double h) {
+  bool open = false;
+  for (Cloth& cloth : cloths)
+    for (Cloth::Stitched& stitched : cloth.seams) {
+      if (stitched.force) close_until(*stitched.force, stitched.seam, state.time + h);
+      open = true;
+    }
+  const StepReport report = integrator->advance(state, h);
+  if (open && report.done && merge_closed_seams(*this)) integrator = make_integrator(*system, *constraints);
+  return report;
+}
+
+void Simulation::use(std::function<std::unique_ptr<Integrator>(System&, Constraints&)> make) {
+  make_integrator = std::move(make);
+  integrator = make_integrator(*system, *constraints);
+}
 
 const Cloth& Simulation::cloth_of(int particle) const {
   const auto after =
@@ -221,16 +337,18 @@ void add_messages(const MeshReport& report, const std::string& name, Names& mess
 
 Simulation make_simulation(const Scene& scene, bool keep_level_sets) {
   Simulation simulation;
+  simulation.scene = std::make_shared<const Scene>(scene);
   simulation.constraints = std::make_unique<Constraints>(scene.simulation.contact);
-  std::vector<SoftBody> softs;
-  add_cloths(scene, softs, simulation);
+  load_cloths(scene, simulation);
   add_obstacles(scene, keep_level_sets, simulation);
-  add_faces(scene, softs, simulation);
+  add_faces(scene, simulation);
   add_pins(scene, simulation);  // some of them to bodies
+  assemble(simulation, simulation.messages);
   add_warnings(scene, simulation);
-  simulation.integrator =
-      make_integrator(scene.simulation.integrator, *simulation.system, *simulation.constraints,
-                      make_linear_solver(scene.simulation.linear_solver), scene.simulation.step);
+  simulation.use([options = scene.simulation](System& system, Constraints& constraints) {
+    return make_integrator(options.integrator, system, constraints, make_linear_solver(options.linear_solver),
+                           options.step);
+  });
   return simulation;
 }
 

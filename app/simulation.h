@@ -2,12 +2,13 @@
 // obstacles.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "app/scene.h"
+#include "app/sewing.h"
 #include "mesh/embedding.h"
 #include "mesh/examine.h"
 #include "solver/integrator.h"
@@ -20,10 +21,7 @@ struct RestEdge {
   double L;  // m
 };
 
-// Springs of a soft body.
-struct LatticeCounts {
-  int structural, shear, bend;
-};
+struct SoftLattice;  // app/soft_body.h
 
 // What is simulated as particles and written as a mesh.
 struct Cloth {
@@ -32,8 +30,19 @@ struct Cloth {
   MeshReport report;
   int first_particle = 0, end_particle = 0;  // of the system
   Embedding embedding;                       // of the mesh in the particles
+  TriangleMesh rest;                         // its triangle k is the mesh's (solver/noh_jung.h)
   std::vector<RestEdge> edges;
-  std::optional<LatticeCounts> soft;  // a soft body, and no cloth
+
+  struct Stitched {
+    OpenSeam seam;
+    Force* force;  // of the system; null: there is nothing left to close
+  };
+  std::vector<Stitched> seams;  // that are open
+
+  // Particle i is number[i] from now on.
+  void renumber(const std::vector<int>& number);
+
+  std::shared_ptr<const SoftLattice> soft;  // of a soft body; null: a cloth
 };
 
 // A mesh or an obstacle as it was loaded, for `drape check`.
@@ -50,7 +59,15 @@ struct Simulation {
   std::unique_ptr<Constraints> constraints;
   std::unique_ptr<Integrator> integrator;  // refers to the two above
   State state;
-  Names messages;  // "warning: ..." and "note: ...", one line each
+  Names messages;                      // "warning: ..." and "note: ...", one line each
+  std::shared_ptr<const Scene> scene;  // what it was made from
+  // Makes the integrator, now and again when particles have become one.
+  std::function<std::unique_ptr<Integrator>(System&, Constraints&)> make_integrator;
+
+  // One step, h [s]. Seams go on closing; those that have closed are merged.
+  StepReport advance(double h);
+  // Takes another integrator from now on.
+  void use(std::function<std::unique_ptr<Integrator>(System&, Constraints&)> make);
 
   const Cloth& cloth_of(int particle) const;
 };

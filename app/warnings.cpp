@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "solver/connections.h"
-
 namespace drape {
 namespace {
 
@@ -98,14 +96,6 @@ void warn_of_time(const SimulationOptions& options, Names& messages) {
 }
 
 }  // namespace
-
-void warn_if_limp(const ClothEntry& cloth, double curvature, Names& messages) {
-  if (!(curvature > 2 * limp_curvature(cloth.fabric.bend, cloth.fabric.area_density))) return;
-  messages.push_back("warning: cloth " + cloth.name +
-                     ": the buckling clamp makes it limp below a curvature of " + rounded(curvature, 2) +
-                     " 1/m (a radius of " + rounded(100 / curvature, 2) +
-                     " cm): gentler folds have no bending stiffness; raise buckling_clamp, or leave it out");
-}
 
 void add_warnings(const Scene& scene, Simulation& simulation) {
   for (const ClothEntry& cloth : scene.cloths) warn_if_heavy(cloth, simulation.messages);

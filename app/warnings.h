@@ -6,7 +6,6 @@
 namespace drape {
 
 // Adds "warning: ..." lines to simulation.messages.
-void warn_if_limp(const ClothEntry& cloth, double curvature, Names& messages);  // 1/m, see limp_below
 void add_warnings(const Scene& scene, Simulation& simulation);
 
 }  // namespace drape

@@ -63,6 +63,24 @@ void Constraints::move_pins() {
   }
 }
 
+void Constraints::merge(const std::vector<int>& particle_of) {
+  const auto number = [&](int i) { return particle_of[static_cast<std::size_t>(i)]; };
+  for (int& i : pinned_) i = number(i);
+  std::sort(pinned_.begin(), pinned_.end());
+  pinned_.erase(std::unique(pinned_.begin(), pinned_.end()), pinned_.end());
+  std::vector<MovingPin> pins;
+  for (MovingPin pin : moving_pins_) {
+    pin.particle = number(pin.particle);
+    const bool again = std::any_of(pins.begin(), pins.end(),
+                                   [&](const MovingPin& other) { return other.particle == pin.particle; });
+    if (!again) pins.push_back(pin);
+  }
+  moving_pins_ = std::move(pins);
+  faces_.renumber(particle_of);
+  held_.clear();  // all that is known of particles is prepared anew
+  x_end_.resize(0);
+}
+
 void Constraints::prepare(int particles, const std::vector<double>& masses) {
   const auto n = static_cast<std::size_t>(particles);
   if (held_.size() == n && masses_ == masses && clearance_.size() == n * bodies_.size()) return;
@@ -93,7 +111,8 @@ void Constraints::open_step(const VecX& x, const VecX& v, const std::vector<doub
   prepare(static_cast<int>(x.size() / 3), masses);
   t_ = t;
   h_ = h;
-  if (x != x_end_) {  // a state from elsewhere: what was known of distances says nothing
+  if (x.size() != x_end_.size() ||
+      x != x_end_) {  // a state from elsewhere: what was known of distances says nothing
     std::fill(clearance_.begin(), clearance_.end(), 0.0);
     faces_.look_again();
   }

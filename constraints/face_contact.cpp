@@ -87,6 +87,18 @@ void FaceContacts::add(const std::vector<ClothFace>& faces) {
   room_.clear();
 }
 
+void FaceContacts::renumber(const std::vector<int>& particle_of) {
+  for (ClothFace& face : faces_)
+    for (int& i : face.particles) i = particle_of[static_cast<std::size_t>(i)];
+  std::erase_if(faces_, [](const ClothFace& face) {
+    const auto& [a, b, c] = face.particles;
+    return a == b || b == c || c == a;
+  });
+  room_.clear();
+  touching_.clear();
+  last_.clear();
+}
+
 void FaceContacts::measure_travel(const MovingBody& body, const VecX& x, const VecX& x_new) {
   travel_.resize(static_cast<std::size_t>(x.size() / 3));
   for_chunks(static_cast<int>(travel_.size()), [&](int begin, int end) {

@@ -71,6 +71,8 @@ struct FaceContact {
 class FaceContacts {
  public:
   void add(const std::vector<ClothFace>& faces);
+  // Particle i is number particle_of[i] from now on; a triangle of which two corners have become one is gone.
+  void renumber(const std::vector<int>& particle_of);
   const std::vector<ClothFace>& all() const { return faces_; }
 
   // x -> x_new is the motion that is foreseen. recovery: how far what starts inside is brought out in this

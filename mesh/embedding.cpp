@@ -34,6 +34,10 @@ int Embedding::vertex(int particle) const {
   return static_cast<int>(std::upper_bound(start_.begin(), start_.end(), at) - start_.begin()) - 1;
 }
 
+void Embedding::renumber(const std::vector<int>& number) {
+  for (Share& share : shares_) share.particle = number[static_cast<std::size_t>(share.particle)];
+}
+
 std::vector<Vec3> Embedding::positions(const VecX& x) const {
   std::vector<Vec3> all(start_.size() - 1, Vec3::Zero());
   for (std::size_t v = 0; v < all.size(); ++v) {

@@ -35,6 +35,8 @@ class Embedding {
   int particle(int vertex) const;
   // The first vertex that is this particle, or moves with it; -1: none does.
   int vertex(int particle) const;
+  // Particle i is number[i] from now on.
+  void renumber(const std::vector<int>& number);
   std::vector<Vec3> positions(const VecX& x) const;
 
  private:

@@ -75,6 +75,15 @@ TriangleMesh read_obj(const std::filesystem::path& path);
 // The same from memory; `name` stands in error messages.
 TriangleMesh parse_obj(std::string_view text, const std::string& name);
 
+// A line of vertices with the name of the 'g' (its first word) or else of the 'o' before it.
+struct Polyline {
+  std::string name;           // empty: neither was named
+  std::vector<int> vertices;  // in order; a closed line ends with its first vertex again
+};
+// The 'l' lines of the mesh's document, in the file's order; one that goes on where the one before it ended,
+// under the same name, is part of it. What broken lines named was left out when the file was read.
+std::vector<Polyline> polylines(const TriangleMesh& mesh);
+
 // The mesh's document (or its triangles when it has none) with these positions [m], normals recomputed where
 // the file had them. Written to a temporary file beside `path`, then renamed. Throws InputError when it
 // cannot be written.

@@ -55,23 +55,30 @@ void Groups::read(std::string_view keyword, std::string_view names, std::size_t 
   spans_.push_back(std::move(span));
 }
 
-std::vector<VertexGroup> Groups::collect(const ObjDocument& document, int vertices) const {
+std::vector<VertexGroup> Groups::collect(const ObjDocument& document, const std::vector<Polyline>& lines,
+                                         int vertices) const {
   std::vector<std::vector<std::size_t>> spans_of(names_.size());
   for (std::size_t s = 0; s < spans_.size(); ++s)
     for (const int group : spans_[s].groups) spans_of[static_cast<std::size_t>(group)].push_back(s);
+  std::map<std::string_view, std::vector<const Polyline*>> lines_of;
+  for (const Polyline& line : lines) lines_of[line.name].push_back(&line);
   std::vector<VertexGroup> collected;
   std::vector<std::size_t> last_group(static_cast<std::size_t>(vertices), names_.size());
   for (std::size_t group = 0; group < names_.size(); ++group) {
     std::vector<int> members;
+    const auto add = [&](int v) {
+      if (last_group[static_cast<std::size_t>(v)] != group) members.push_back(v);
+      last_group[static_cast<std::size_t>(v)] = group;
+    };
     for (const std::size_t s : spans_of[group]) {
       const std::size_t end_face = s + 1 < spans_.size() ? spans_[s + 1].first_face : document.face_count();
       const std::size_t end = document.face_start[end_face];
-      for (std::size_t k = document.face_start[spans_[s].first_face]; k < end; ++k) {
-        const int v = document.corners[k].v;
-        if (last_group[static_cast<std::size_t>(v)] != group) members.push_back(v);
-        last_group[static_cast<std::size_t>(v)] = group;
-      }
+      for (std::size_t k = document.face_start[spans_[s].first_face]; k < end; ++k)
+        add(document.corners[k].v);
     }
+    if (const auto found = lines_of.find(names_[group]); found != lines_of.end())
+      for (const Polyline* line : found->second)
+        for (const int v : line->vertices) add(v);
     std::sort(members.begin(), members.end());
     if (!members.empty()) collected.push_back({names_[group], std::move(members)});
   }

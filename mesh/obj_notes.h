@@ -35,8 +35,9 @@ class Groups {
  public:
   // A line 'g' or 'o' after so many faces.
   void read(std::string_view keyword, std::string_view names, std::size_t faces);
-  // The vertices of each group that has any, ascending.
-  std::vector<VertexGroup> collect(const ObjDocument& document, int vertices) const;
+  // The vertices of each group that has any, ascending; those of lines are of the group that names the line.
+  std::vector<VertexGroup> collect(const ObjDocument& document, const std::vector<Polyline>& lines,
+                                   int vertices) const;
 
  private:
   struct Span {  // from this face on, these groups

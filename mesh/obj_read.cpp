@@ -89,9 +89,9 @@ TriangleMesh ObjReader::read() {
   }
   drop_broken_elements();
   cut_faces();
-  mesh_.groups = groups_.collect(document_, mesh_.vertex_count());
   document_.warnings = warnings_.lines(name_);
   mesh_.document = std::make_shared<const ObjDocument>(std::move(document_));
+  mesh_.groups = groups_.collect(*mesh_.document, polylines(mesh_), mesh_.vertex_count());
   return std::move(mesh_);
 }
 

@@ -42,6 +42,23 @@ std::vector<std::unique_ptr<Force>> forces_of(const Connections& connections, co
   return forces;
 }
 
+std::vector<double> neighbour_weighted(std::vector<double> masses, const Connections& connections) {
+  std::vector<std::pair<int, int>> connected;
+  for (const StretchConnection& s : connections.stretch) connected.push_back(std::minmax(s.i, s.j));
+  for (const BendConnection& b : connections.bend) connected.push_back(std::minmax(b.i, b.j));
+  std::sort(connected.begin(), connected.end());
+  connected.erase(std::unique(connected.begin(), connected.end()), connected.end());
+  std::vector<int> neighbours(masses.size(), 0);
+  for (const auto& [i, j] : connected) {
+    ++neighbours[static_cast<std::size_t>(i)];
+    ++neighbours[static_cast<std::size_t>(j)];
+  }
+  const int most = neighbours.empty() ? 0 : *std::max_element(neighbours.begin(), neighbours.end());
+  for (std::size_t i = 0; i < masses.size(); ++i)
+    if (neighbours[i] > 0) masses[i] *= static_cast<double>(neighbours[i]) / most;
+  return masses;
+}
+
 double limp_curvature(double bend, double area_density) {
   return 0.1 * std::cbrt(area_density * 9.81 / bend);
 }

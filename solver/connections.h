@@ -39,6 +39,10 @@ struct Connections {
   std::vector<BendConnection> bend;
 };
 
+// m_i / w_i with w_i = max_k N_k / N_i, N_i the number of particles that i is connected to: exactly Noh &
+// Jung's weighted forces (eq. 1-3), as a symmetric system.
+std::vector<double> neighbour_weighted(std::vector<double> masses, const Connections& connections);
+
 // 0.1 / c [1/m], of a bending rigidity B [N m] and an area density [kg/m^2] under g = 9.81 m/s^2.
 double limp_curvature(double bend, double area_density);
 

@@ -35,50 +35,27 @@ void check(const Fabric& f) {
   require(f.damping >= 0, "damping", f.damping, "N.s/m", "a damping coefficient is not negative");
 }
 
-std::vector<double> lumped_mass(const TriangleMesh& mesh, const TriangleMesh& rest, double area_density) {
-  std::vector<double> mass = vertex_areas(mesh, rest);
-  std::vector<char> used(mass.size(), 0);
+std::vector<double> mass_of_areas(std::vector<double> areas, const TriangleMesh& mesh, double area_density) {
+  std::vector<char> used(areas.size(), 0);
   for (const Triangle& t : mesh.triangles)
     for (int i : t) used[static_cast<std::size_t>(i)] = 1;
   double total = 0;
   int count = 0;
-  for (std::size_t i = 0; i < mass.size(); ++i) {
-    total += mass[i];
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    total += areas[i];
     count += used[i];
   }
-  for (std::size_t i = 0; i < mass.size(); ++i)
-    mass[i] = area_density * (used[i] ? std::max(mass[i], 1e-3 * total / count) : 0.0);
-  return mass;
+  for (std::size_t i = 0; i < areas.size(); ++i)
+    areas[i] = area_density * (used[i] ? std::max(areas[i], 1e-3 * total / count) : 0.0);
+  return areas;
+}
+
+std::vector<double> lumped_mass(const TriangleMesh& mesh, const TriangleMesh& rest, double area_density) {
+  return mass_of_areas(vertex_areas(mesh, rest), mesh, area_density);
 }
 
 std::vector<double> lumped_mass(const TriangleMesh& mesh, double area_density) {
   return lumped_mass(mesh, mesh, area_density);
-}
-
-std::vector<double> neighbour_weighted(std::vector<double> masses, const TriangleMesh& mesh) {
-  std::vector<std::pair<int, int>> connected;
-  for (const Edge& e : edges(mesh)) connected.emplace_back(e.a, e.b);
-  for (const Diagonal& d : diagonals(mesh)) connected.emplace_back(d.c, d.d);
-  std::sort(connected.begin(), connected.end());
-  connected.erase(std::unique(connected.begin(), connected.end()), connected.end());
-  std::vector<int> neighbours(masses.size(), 0);
-  for (const auto& [i, j] : connected) {
-    ++neighbours[static_cast<std::size_t>(i)];
-    ++neighbours[static_cast<std::size_t>(j)];
-  }
-  const int most = neighbours.empty() ? 0 : *std::max_element(neighbours.begin(), neighbours.end());
-  for (std::size_t i = 0; i < masses.size(); ++i)
-    if (neighbours[i] > 0) masses[i] *= static_cast<double>(neighbours[i]) / most;
-  return masses;
-}
-
-std::vector<double> masses(const TriangleMesh& mesh, const Fabric& fabric) {
-  return masses(mesh, mesh, fabric);
-}
-
-std::vector<double> masses(const TriangleMesh& mesh, const TriangleMesh& rest, const Fabric& fabric) {
-  std::vector<double> lumped = lumped_mass(mesh, rest, fabric.area_density);
-  return fabric.neighbour_weighting ? neighbour_weighted(std::move(lumped), mesh) : lumped;
 }
 
 }  // namespace drape

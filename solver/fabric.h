@@ -26,18 +26,13 @@ struct Fabric {
 // Throws InputError naming the field when a value is negative, not finite, or zero where it may not be.
 void check(const Fabric& fabric);
 
-// kg: a third of every triangle's mass to each of its vertices. A vertex of triangles without area gets a
-// thousandth of the mean, so that it can move; a vertex without triangles gets 0 and stays.
+// kg, of the area around every vertex [m^2]. A vertex of faces without area gets a thousandth of the mean, so
+// that it can move; a vertex without faces gets 0 and stays.
+std::vector<double> mass_of_areas(std::vector<double> areas, const TriangleMesh& mesh, double area_density);
+
+// kg: a third of every triangle's mass to each of its vertices.
 std::vector<double> lumped_mass(const TriangleMesh& mesh, double area_density);
 // The same of a cloth that rests otherwise: triangle k of the mesh has the area of the rest's triangle k.
 std::vector<double> lumped_mass(const TriangleMesh& mesh, const TriangleMesh& rest, double area_density);
-
-// m_i / w_i with w_i = max_k N_k / N_i, N_i the number of vertices connected to i by an edge or a diagonal:
-// exactly Noh & Jung's weighted forces, as a symmetric system.
-std::vector<double> neighbour_weighted(std::vector<double> masses, const TriangleMesh& mesh);
-
-// Masses of the fabric: lumped, weighted if the fabric says so.
-std::vector<double> masses(const TriangleMesh& mesh, const Fabric& fabric);
-std::vector<double> masses(const TriangleMesh& mesh, const TriangleMesh& rest, const Fabric& fabric);
 
 }  // namespace drape

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "mesh/topology.h"
 
@@ -136,6 +137,12 @@ std::vector<BendConnection> bend_connections(const TriangleMesh& mesh, const Tri
 Connections noh_jung_connections(const TriangleMesh& mesh, const TriangleMesh& rest, const Fabric& fabric) {
   check(fabric);
   return {stretch_connections(mesh, rest, fabric), bend_connections(mesh, rest, fabric)};
+}
+
+std::vector<double> masses(const TriangleMesh& mesh, const Fabric& fabric) {
+  std::vector<double> lumped = lumped_mass(mesh, fabric.area_density);
+  if (!fabric.neighbour_weighting) return lumped;
+  return neighbour_weighted(std::move(lumped), noh_jung_connections(mesh, mesh, fabric));
 }
 
 std::vector<std::unique_ptr<Force>> noh_jung(const TriangleMesh& mesh, const Fabric& fabric,

@@ -22,6 +22,9 @@ namespace drape {
 // Throws InputError (solver/fabric.h) when the fabric is none.
 Connections noh_jung_connections(const TriangleMesh& mesh, const TriangleMesh& rest, const Fabric& fabric);
 
+// Masses of the fabric: lumped, weighted by neighbours if it says so.                                    [kg]
+std::vector<double> masses(const TriangleMesh& mesh, const Fabric& fabric);
+
 // Stretch, bend and damping of a cloth that rests as the mesh is, vertex 0 being the particle
 // `first_particle` of the system.
 std::vector<std::unique_ptr<Force>> noh_jung(const TriangleMesh& mesh, const Fabric& fabric,

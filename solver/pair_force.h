@@ -108,6 +108,11 @@ class PairForce final : public Force {
       : elements_(std::move(elements)), k_d_(k_d) {}
 
   const std::vector<Element>& elements() const { return elements_; }
+  // Between steps: change(rest) for every element, such as a rest length that goes with time.
+  template <class F>
+  void change_rest(const F& change) {
+    for (Element& e : elements_) change(e.rest);
+  }
   std::string_view name() const override { return Law::name; }
 
   void list_pairs(std::vector<ParticlePair>& pairs) const override {

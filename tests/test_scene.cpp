@@ -101,7 +101,6 @@ TEST_CASE("a mistake in a scene is told with its line", "[scene]") {
       {cloth + "area_density = 0\n", "scene.toml:3:", "greater than zero"},
       {cloth + "fabric = \"coton-poplin\"\n", "scene.toml:3:", "did you mean 'cotton-poplin'?"},
       {cloth + "fabric = 3\n", "scene.toml:3:", "expected a text in quotes"},
-      {cloth + "model = \"choi-ko\"\n", "scene.toml:3:", "not in this build"},
       {cloth + "damping_kind = \"both\"\n", "scene.toml:3:", "relative, axial"},
       {cloth + "scale = -1\n", "scene.toml:3:", "greater than zero"},
       {cloth + "name = \"a/b\"\n", "scene.toml:3:", "slash"},

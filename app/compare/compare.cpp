@@ -47,9 +47,12 @@ class Path {
   Path(const Scene& scene, Simulation& simulation, const CommonOptions& common)
       : scene_(scene), simulation_(simulation), common_(common) {
     const SimulationOptions& wanted = scene.simulation;
-    simulation.integrator = make_integrator(
-        wanted.integrator, *simulation.system, *simulation.constraints,
-        std::make_unique<RecordingSolver>(make_linear_solver(wanted.linear_solver), recording_), wanted.step);
+    simulation.use([this, &wanted](System& system, Constraints& constraints) {
+      return make_integrator(
+          wanted.integrator, system, constraints,
+          std::make_unique<RecordingSolver>(make_linear_solver(wanted.linear_solver), recording_),
+          wanted.step);
+    });
   }
 
   bool follow(const CompareOptions& options, SolverBench& bench, Comparison& comparison) {
@@ -75,7 +78,7 @@ class Path {
  private:
   bool advance(int k, Comparison& comparison) {
     const double h = scene_.simulation.time_step;
-    const StepReport report = simulation_.integrator->advance(simulation_.state, h);
+    const StepReport report = simulation_.advance(h);
     simulation_.state.time = k * h;
     if (report.done && simulation_.state.x.allFinite()) return true;
     comparison.failure =

@@ -27,7 +27,7 @@ bool step(Simulation& simulation, IntegratorRow& row, double h) {
   StepReport report;
   {
     const Stopwatch watch(row.wall_ms);
-    report = simulation.integrator->advance(simulation.state, h);
+    report = simulation.advance(h);
   }
   if (report.done && !(simulation.state.x.allFinite() && simulation.state.v.allFinite())) {
     report.done = false;
@@ -56,8 +56,9 @@ Run run_one(const Scene& scene, const std::string& integrator, double h, const S
     Simulation simulation = make_simulation(scene);
     StepOptions options = scene.simulation.step;
     if (solver.tolerance) options.tolerance = *solver.tolerance;
-    simulation.integrator = make_integrator(integrator, *simulation.system, *simulation.constraints,
-                                            make_linear_solver(solver.name), options);
+    simulation.use([&](System& system, Constraints& constraints) {
+      return make_integrator(integrator, system, constraints, make_linear_solver(solver.name), options);
+    });
     const double start = total_energy(simulation);
     const auto count = static_cast<long>(std::ceil(duration / h * (1 - 1e-9)));
     for (long k = 0; k < count && !interrupted(); ++k) {

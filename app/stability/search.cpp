@@ -66,7 +66,7 @@ Trial run_at(const Scene& scene, double h, const StabilityOptions& options) {
   EnergyWatch watch(simulation, h);
   const auto steps = static_cast<long>(std::ceil(options.time / h * (1 - 1e-9)));
   for (long k = 1; k <= steps && !interrupted(); ++k) {
-    const StepReport report = simulation.integrator->advance(simulation.state, h);
+    const StepReport report = simulation.advance(h);
     const std::string at =
         "step " + std::to_string(k) + " (" + rounded(static_cast<double>(k) * h, 3) + " s): ";
     trial.steps_cut += report.substeps > 1 ? 1 : 0;

@@ -1,0 +1,54 @@
+#include "app/cloth_model.h"
+
+#include <cmath>
+
+#include "mesh/obj.h"
+#include "solver/choi_ko.h"
+#include "solver/noh_jung.h"
+
+namespace drape {
+namespace {
+
+void warn_if_limp(const ClothEntry& cloth, const Connections& connections, Names& messages) {
+  const double curvature = limp_below(connections, cloth.fabric);
+  if (!(curvature > 2 * limp_curvature(cloth.fabric.bend, cloth.fabric.area_density))) return;
+  messages.push_back("warning: cloth " + cloth.name +
+                     ": the buckling clamp makes it limp below a curvature of " + rounded(curvature, 2) +
+                     " 1/m (a radius of " + rounded(100 / curvature, 2) +
+                     " cm): gentler folds have no bending stiffness; raise buckling_clamp, or leave it out");
+}
+
+void warn_if_long(const ClothEntry& cloth, const TriangleMesh& mesh, const TriangleMesh& rest,
+                  Names& messages) {
+  const bool of_fabric = !cloth.fabric.stretch_spring || !cloth.fabric.bend_spring;
+  const double longest = longest_cell(mesh, rest);
+  if (!of_fabric || longest <= std::sqrt(3.0)) return;
+  messages.push_back("warning: cloth " + cloth.name + ": has cells " + rounded(longest, 3) +
+                     " times as long as wide; beyond 1.73 the grid's springs make it stiffer across than "
+                     "along; use a grid of squares, or model = \"noh-jung\"");
+}
+
+}  // namespace
+
+ClothModel cloth_model(const ClothEntry& entry, const TriangleMesh& mesh, const TriangleMesh& rest,
+                       Names& messages) {
+  const bool grid = entry.model == "choi-ko";
+  ClothModel model;
+  try {
+    model.connections =
+        grid ? choi_ko_connections(mesh, rest, entry.fabric) : noh_jung_connections(mesh, rest, entry.fabric);
+  } catch (const InputError& error) {
+    if (!grid) throw;
+    throw InputError(entry.where + ": model = \"choi-ko\": " + entry.mesh.string() + ": " + error.what() +
+                     "; use model = \"noh-jung\" for any other mesh");
+  }
+  model.masses = grid ? choi_ko_mass(mesh, rest, entry.fabric.area_density)
+                      : lumped_mass(mesh, rest, entry.fabric.area_density);
+  if (entry.fabric.neighbour_weighting)
+    model.masses = neighbour_weighted(std::move(model.masses), model.connections);
+  if (grid) warn_if_long(entry, mesh, rest, messages);
+  warn_if_limp(entry, model.connections, messages);
+  return model;
+}
+
+}  // namespace drape
