@@ -119,7 +119,8 @@ Run::Run(const Scene& scene, Simulation& simulation, Output& output, const RunOp
     if (c.soft)
       record_.softs.push_back({c.name, c.end_particle - c.first_particle, c.mesh.vertex_count(),
                                c.mesh.triangle_count(), static_cast<int>(c.soft->lattice.structural.size()),
-                               static_cast<int>(c.soft->lattice.shear.size()), static_cast<int>(c.soft->lattice.bend.size())});
+                               static_cast<int>(c.soft->lattice.shear.size()),
+                               static_cast<int>(c.soft->lattice.bend.size())});
     else
       record_.cloths.push_back(
           {c.name, c.mesh.vertex_count(), c.mesh.triangle_count(), c.report.edges, c.report.diagonals});

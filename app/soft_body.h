@@ -17,8 +17,8 @@ struct SoftLattice {
 // Throws InputError: a mesh that cannot be read or is not closed, a lattice beyond the memory that is free.
 Cloth make_soft_body(const SoftEntry& entry, int first_particle, Names& messages);
 
-std::vector<double> masses_of(const SoftEntry& entry, const SoftLattice& soft);        // kg
-std::vector<ClothFace> faces_of(const SoftEntry& entry, const Cloth& body);  // of the outer cells
+std::vector<double> masses_of(const SoftEntry& entry, const SoftLattice& soft);  // kg
+std::vector<ClothFace> faces_of(const SoftEntry& entry, const Cloth& body);      // of the outer cells
 
 // The particles that a pin holds: those in its box; of vertices, all that carry them.
 std::vector<int> pinned_particles(const PinRule& rule, const Cloth& cloth, const VecX& x);
