@@ -62,11 +62,9 @@ void print_soft(const SoftEntry& entry, const Cloth& cloth, const System& system
   for (int i = cloth.first_particle; i < cloth.end_particle; ++i)
     mass += system.masses()[static_cast<std::size_t>(i)];
   const SoftMaterial& m = entry.material;
-  const Lattice& l = cloth.soft->lattice;
   std::printf("  %s, springs: %d structural, %d shear, %d bend; %s kg, %s\n",
-              counted(cloth.end_particle - cloth.first_particle, "particle").c_str(),
-              static_cast<int>(l.structural.size()), static_cast<int>(l.shear.size()),
-              static_cast<int>(l.bend.size()), rounded(mass, 4).c_str(),
+              counted(cloth.end_particle - cloth.first_particle, "particle").c_str(), cloth.soft->structural,
+              cloth.soft->shear, cloth.soft->bend, rounded(mass, 4).c_str(),
               m.young ? (rounded(*m.young, 4) + " Pa").c_str()
                       : (rounded(m.structural, 4) + " / " + rounded(m.shear, 4) + " / " + rounded(m.bend, 4) +
                          " N/m each")

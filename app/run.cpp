@@ -9,7 +9,6 @@
 #include "app/interrupt.h"
 #include "app/measure.h"
 #include "app/progress.h"
-#include "app/soft_body.h"
 #include "app/summary.h"
 #include "mesh/threads.h"
 
@@ -74,6 +73,7 @@ class Run {
   void conclude();
   void note_failure(const StepFailure& failure);
   void tell_once(bool& told, const std::string& line);
+  void tell_of_open_seams();
   int exit_code() const { return record_.failure ? 1 : record_.interrupted ? 130 : 0; }
 
   const SimulationOptions& wanted_;
@@ -118,9 +118,7 @@ Run::Run(const Scene& scene, Simulation& simulation, Output& output, const RunOp
   for (const Cloth& c : simulation.cloths)
     if (c.soft)
       record_.softs.push_back({c.name, c.end_particle - c.first_particle, c.mesh.vertex_count(),
-                               c.mesh.triangle_count(), static_cast<int>(c.soft->lattice.structural.size()),
-                               static_cast<int>(c.soft->lattice.shear.size()),
-                               static_cast<int>(c.soft->lattice.bend.size())});
+                               c.mesh.triangle_count(), *c.soft});
     else
       record_.cloths.push_back(
           {c.name, c.mesh.vertex_count(), c.mesh.triangle_count(), c.report.edges, c.report.diagonals});
@@ -264,12 +262,26 @@ void Run::note_failure(const StepFailure& failure) {
   record_.failure = noted;
 }
 
+// Those that should have closed by now.
+void Run::tell_of_open_seams() {
+  for (const Cloth& cloth : simulation_.cloths)
+    for (const Cloth::Stitched& open : cloth.seams) {
+      if (!open.seam.merge || simulation_.state.time < open.seam.close) continue;
+      bool told = false;
+      tell_once(told, "warning: seam " + one_line(open.seam.name) + " of " + cloth.name +
+                          " has not closed: it is " +
+                          rounded(1000 * open.seam.gap(cloth.embedding, simulation_.state.x), 3) +
+                          " mm open; what is between its panels, or is it the wrong pair?");
+    }
+}
+
 void Run::conclude() {
   if (!(wanted_.frame_rate > 0)) write_frame();
   record_.simulated_seconds = simulation_.state.time;
   record_.settled = record_.steps > 0 && slow(record_.max_speed);
   for (double depth : simulation_.constraints->penetration(simulation_.state.x))
     record_.max_penetration = std::max(record_.max_penetration, depth);
+  tell_of_open_seams();
   record_.bodies = body_records(simulation_);
   record_.state_hash = state_hash(simulation_.state);
   record_.wall_seconds = seconds_since(start_);

@@ -24,9 +24,9 @@ Json softs_json(const std::vector<SoftCounts>& softs) {
                                  {"particles", s.particles},
                                  {"vertices", s.vertices},
                                  {"triangles", s.triangles},
-                                 {"structural", s.structural},
-                                 {"shear", s.shear},
-                                 {"bend", s.bend}});
+                                 {"structural", s.springs.structural},
+                                 {"shear", s.springs.shear},
+                                 {"bend", s.springs.bend}});
   return list;
 }
 

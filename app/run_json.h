@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/simulation.h"
 #include "app/words.h"
 #include "mesh/triangle_mesh.h"
 
@@ -18,7 +19,7 @@ struct ClothCounts {
 struct SoftCounts {
   std::string name;
   int particles = 0, vertices = 0, triangles = 0;  // the latter two of the mesh that it carries
-  int structural = 0, shear = 0, bend = 0;         // springs
+  LatticeCounts springs = {};
 };
 
 struct BodyRecord {

@@ -21,7 +21,10 @@ struct RestEdge {
   double L;  // m
 };
 
-struct SoftLattice;  // app/soft_body.h
+// Springs of a soft body.
+struct LatticeCounts {
+  int structural, shear, bend;
+};
 
 // What is simulated as particles and written as a mesh.
 struct Cloth {
@@ -32,6 +35,7 @@ struct Cloth {
   Embedding embedding;                       // of the mesh in the particles
   TriangleMesh rest;                         // its triangle k is the mesh's (solver/noh_jung.h)
   std::vector<RestEdge> edges;
+  std::optional<LatticeCounts> soft;  // a soft body, and no cloth
 
   struct Stitched {
     OpenSeam seam;
@@ -41,8 +45,6 @@ struct Cloth {
 
   // Particle i is number[i] from now on.
   void renumber(const std::vector<int>& number);
-
-  std::shared_ptr<const SoftLattice> soft;  // of a soft body; null: a cloth
 };
 
 // A mesh or an obstacle as it was loaded, for `drape check`.
@@ -75,6 +77,8 @@ struct Simulation {
 // Throws InputError when a mesh cannot be read or simulated, or a pin selects nothing. Level sets that are
 // made are kept beside their meshes (app/level_set_cache.h), or not.
 Simulation make_simulation(const Scene& scene, bool keep_level_sets = true);
+
+void require_file(const std::filesystem::path& path, const std::string& where);
 
 // Read, placed, looked over. where: stands before a file that is missing.
 TriangleMesh load_mesh(const std::filesystem::path& path, const std::string& where,

@@ -49,57 +49,48 @@ void add_edges(const std::vector<LatticePair>& pairs, const std::vector<Vec3>& p
 
 }  // namespace
 
-Cloth make_soft_body(const SoftEntry& entry, int first_particle, Names& messages) {
-  Cloth body;
-  body.name = entry.name;
-  const auto soft = std::make_shared<SoftLattice>();
-  soft->lattice = lattice_of(entry, body.mesh, messages);
-  const Lattice& lattice = soft->lattice;
+SoftBody make_soft_body(const SoftEntry& entry, int first_particle, Names& messages) {
+  SoftBody body;
+  Cloth& cloth = body.cloth;
+  cloth.name = entry.name;
+  const Lattice lattice = lattice_of(entry, cloth.mesh, messages);
+  std::vector<int> on_surface;
+  const TriangleMesh surface = surface_of(lattice, on_surface);
+  std::optional<double> volume;
   if (entry.mesh.empty()) {
-    std::vector<int> on_surface;
-    body.mesh = surface_of(lattice, on_surface);
-    for (int p : on_surface) body.embedding.add_vertex(first_particle + p);
+    cloth.mesh = surface;
+    for (int p : on_surface) cloth.embedding.add_vertex(first_particle + p);
   } else {
-    body.embedding = embedding_in(lattice, body.mesh.positions, first_particle);
-    soft->volume = solid_of(body.mesh).volume;
+    cloth.embedding = embedding_in(lattice, cloth.mesh.positions, first_particle);
+    volume = solid_of(cloth.mesh).volume;
   }
   try {
-    soft_body(lattice, entry.material);  // is it one? As early as can be
+    body.masses = masses(lattice, entry.material, volume);
+    body.forces = soft_body(lattice, entry.material, first_particle);
   } catch (const InputError& error) {
     throw InputError(entry.where + ": " + error.what());
   }
   const Placement placement{.rotation = entry.placement.rotation, .translate = entry.placement.translate};
-  body.mesh = placed(std::move(body.mesh), placement, entry.name);
-  body.rest = body.mesh;
-  body.report = examine(body.mesh);
+  cloth.mesh = placed(std::move(cloth.mesh), placement, entry.name);
+  cloth.report = examine(cloth.mesh);
   TriangleMesh points;  // the particles alone
   points.positions = lattice.positions;
-  soft->positions = placed(std::move(points), placement, entry.name).positions;
-  body.first_particle = first_particle;
-  body.end_particle = first_particle + lattice.particle_count();
+  body.positions = placed(std::move(points), placement, entry.name).positions;
+  cloth.first_particle = first_particle;
+  cloth.end_particle = first_particle + lattice.particle_count();
+  cloth.soft = LatticeCounts{static_cast<int>(lattice.structural.size()),
+                             static_cast<int>(lattice.shear.size()), static_cast<int>(lattice.bend.size())};
   for (const auto* pairs : {&lattice.structural, &lattice.shear, &lattice.bend})
-    add_edges(*pairs, lattice.positions, body);
-  body.soft = soft;
-  return body;
-}
-
-std::vector<double> masses_of(const SoftEntry& entry, const SoftLattice& soft) {
-  return masses(soft.lattice, entry.material, soft.volume);
-}
-
-std::vector<ClothFace> faces_of(const SoftEntry& entry, const Cloth& body) {
-  const Lattice& lattice = body.soft->lattice;
+    add_edges(*pairs, lattice.positions, cloth);
   const double stiffness =
       entry.material.young ? *entry.material.young * lattice.spacing[0] : entry.material.structural;
-  std::vector<int> on_surface;
-  std::vector<ClothFace> faces;
-  for (const Triangle& t : surface_of(lattice, on_surface).triangles) {
+  for (const Triangle& t : surface.triangles) {
     const auto particle = [&](std::size_t k) {
-      return body.first_particle + on_surface[static_cast<std::size_t>(t[k])];
+      return first_particle + on_surface[static_cast<std::size_t>(t[k])];
     };
-    faces.push_back({{particle(0), particle(1), particle(2)}, stiffness});
+    body.faces.push_back({{particle(0), particle(1), particle(2)}, stiffness});
   }
-  return faces;
+  return body;
 }
 
 std::vector<int> pinned_particles(const PinRule& rule, const Cloth& cloth, const VecX& x) {

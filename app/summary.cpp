@@ -35,8 +35,8 @@ std::string summary(const RunRecord& record, const Output& output) {
     text += c.name + ": " + counted(c.particles, "particle") + ", " + counted(c.triangles, "triangle") + "\n";
   for (const SoftCounts& s : record.softs)
     text += s.name + ": " + counted(s.particles, "particle") + ", " +
-            counted(s.structural + s.shear + s.bend, "spring") + ", " + counted(s.triangles, "triangle") +
-            "\n";
+            counted(s.springs.structural + s.springs.shear + s.springs.bend, "spring") + ", " +
+            counted(s.triangles, "triangle") + "\n";
   text += record.integrator + ", " + record.linear_solver + ", " + counted(record.threads, "thread") + ": " +
           rounded(ms.median, 3) + " ms a step (95 % below " + rounded(ms.p95, 3) + "), " +
           rounded(iterations.mean, 3) + " linear iterations a step\n";

@@ -42,6 +42,7 @@ class Explicit final : public Integrator {
 
   std::string_view name() const override { return tableau_.name; }
   StepReport advance(State& state, double h) override;
+  void count_given(double energy) override { given_ += energy; }
 
  private:
   void count_given(const State& state);

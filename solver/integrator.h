@@ -61,6 +61,9 @@ class Integrator {
   virtual ~Integrator() = default;
   virtual std::string_view name() const = 0;
   virtual StepReport advance(State& state, double h) = 0;  // h [s]
+  // Energy [J] that came from outside since the last step, other than by a changed state: a force was
+  // changed.
+  virtual void count_given(double /*energy*/) {}
 };
 
 // Throws InputError unless h is a time step and the state is one of the system.

@@ -1,0 +1,171 @@
+#include "app/assembly.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "app/cloth_model.h"
+#include "mesh/flat_pattern.h"
+#include "mesh/obj.h"
+#include "solver/face_contact_force.h"
+
+namespace drape {
+namespace {
+
+// As the file has it, its panels placed; the rest shape is the flat pattern, or what the file has.
+Cloth load_cloth(const ClothEntry& entry, Names& messages) {
+  require_file(entry.mesh, entry.where);
+  Cloth cloth;
+  cloth.name = entry.name;
+  cloth.mesh = placed(read_obj(entry.mesh), {.scale = entry.placement.scale}, entry.mesh.string());
+  try {
+    cloth.rest = entry.rest_is_flat ? flat_pattern(cloth.mesh, entry.uv_scale) : cloth.mesh;
+  } catch (const InputError& error) {
+    throw InputError(entry.where + ": " + entry.mesh.string() + ": " + error.what());
+  }
+  place_panels(entry, cloth.mesh);
+  const Placement rest_of_it{.rotation = entry.placement.rotation, .translate = entry.placement.translate};
+  cloth.mesh = placed(std::move(cloth.mesh), rest_of_it, entry.mesh.string());
+  cloth.report = examine(cloth.mesh);
+  add_messages(cloth.report, entry.mesh.string(), messages);
+  for (OpenSeam& seam : open_seams(entry, cloth.mesh, cloth.rest, messages))
+    cloth.seams.push_back({std::move(seam), nullptr});
+  return cloth;
+}
+
+// The cloth's triangles between its particles, numbered from its first.
+TriangleMesh between_particles(const Cloth& cloth) {
+  TriangleMesh mesh = cloth.mesh;
+  for (Triangle& t : mesh.triangles)
+    for (int& v : t) v = cloth.embedding.particle(v) - cloth.first_particle;
+  mesh.positions.resize(static_cast<std::size_t>(cloth.end_particle - cloth.first_particle));
+  return mesh;
+}
+
+// Mass and momentum of the particles that become one, number[i] being what particle i becomes.
+State merged_state(const State& state, const std::vector<double>& masses, const std::vector<int>& number) {
+  const int count = 1 + *std::max_element(number.begin(), number.end());
+  State merged{state.time, VecX::Zero(3 * count), VecX::Zero(3 * count)};
+  std::vector<double> weight(static_cast<std::size_t>(count), 0.0);
+  for (std::size_t i = 0; i < number.size(); ++i) weight[static_cast<std::size_t>(number[i])] += masses[i];
+  std::vector<int> parts(weight.size(), 0);
+  for (int n : number) ++parts[static_cast<std::size_t>(n)];
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    const auto n = static_cast<std::size_t>(number[i]);
+    const double share = parts[n] == 1 ? 1 : weight[n] > 0 ? masses[i] / weight[n] : 1.0 / parts[n];
+    merged.x.segment<3>(3 * number[i]) += share * state.x.segment<3>(3 * static_cast<Eigen::Index>(i));
+    merged.v.segment<3>(3 * number[i]) += share * state.v.segment<3>(3 * static_cast<Eigen::Index>(i));
+  }
+  return merged;
+}
+
+}  // namespace
+
+std::vector<SoftBody> load_particles(const Scene& scene, Simulation& simulation) {
+  std::vector<SoftBody> softs;
+  std::vector<Vec3> positions;
+  for (const ClothEntry& entry : scene.cloths) {
+    Cloth cloth = load_cloth(entry, simulation.messages);
+    cloth.first_particle = static_cast<int>(positions.size());
+    cloth.embedding = Embedding::each(cloth.first_particle, cloth.mesh.vertex_count());
+    positions.insert(positions.end(), cloth.mesh.positions.begin(), cloth.mesh.positions.end());
+    cloth.end_particle = static_cast<int>(positions.size());
+    simulation.cloths.push_back(std::move(cloth));
+  }
+  for (const SoftEntry& entry : scene.softs) {
+    softs.push_back(make_soft_body(entry, static_cast<int>(positions.size()), simulation.messages));
+    const SoftBody& soft = softs.back();
+    positions.insert(positions.end(), soft.positions.begin(), soft.positions.end());
+    simulation.cloths.push_back(soft.cloth);
+  }
+  simulation.state.x = stacked(positions);
+  simulation.state.v = VecX::Zero(simulation.state.x.size());
+  return softs;
+}
+
+void add_faces(const Scene& scene, const std::vector<SoftBody>& softs, Simulation& simulation) {
+  if (scene.obstacles.empty()) return;
+  for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
+    const Cloth& cloth = simulation.cloths[k];
+    const Fabric& fabric = scene.cloths[k].fabric;
+    std::vector<ClothFace> faces;
+    for (const Triangle& t : cloth.mesh.triangles)
+      faces.push_back(
+          {{cloth.embedding.particle(t[0]), cloth.embedding.particle(t[1]), cloth.embedding.particle(t[2])},
+           fabric.stretch_spring.value_or(fabric.stretch)});
+    simulation.constraints->add_faces(faces);
+  }
+  for (const SoftBody& soft : softs) simulation.constraints->add_faces(soft.faces);
+}
+
+void assemble(Simulation& simulation, std::vector<SoftBody> softs, Names& messages) {
+  const Scene& scene = *simulation.scene;
+  std::vector<double> all_masses;
+  std::vector<std::unique_ptr<Force>> forces;
+  for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
+    Cloth& cloth = simulation.cloths[k];
+    const ClothEntry& entry = scene.cloths[k];
+    const ClothModel model = cloth_model(entry, between_particles(cloth), cloth.rest, messages);
+    all_masses.insert(all_masses.end(), model.masses.begin(), model.masses.end());
+    cloth.edges.clear();
+    for (const StretchConnection& s : model.connections.stretch)
+      if (s.L > 0) cloth.edges.push_back({cloth.first_particle + s.i, cloth.first_particle + s.j, s.L});
+    for (auto& force : forces_of(model.connections, entry.fabric, cloth.first_particle))
+      forces.push_back(std::move(force));
+    for (Cloth::Stitched& open : cloth.seams) {
+      std::unique_ptr<Force> force = stitches(open.seam, cloth.embedding, simulation.state.time);
+      open.force = force.get();
+      if (force) forces.push_back(std::move(force));
+    }
+  }
+  for (SoftBody& soft : softs) {
+    all_masses.insert(all_masses.end(), soft.masses.begin(), soft.masses.end());
+    for (auto& force : soft.forces) forces.push_back(std::move(force));
+  }
+  simulation.system = std::make_unique<System>(std::move(all_masses));
+  simulation.system->add(Gravity{scene.simulation.gravity});
+  simulation.system->add(std::move(forces));
+  if (!simulation.constraints->faces().all().empty())
+    simulation.system->add(face_contact_force(*simulation.constraints));
+}
+
+bool merge_closed_seams(Simulation& simulation) {
+  std::vector<int> number(static_cast<std::size_t>(simulation.state.particles()));
+  std::iota(number.begin(), number.end(), 0);
+  bool any = false;
+  for (Cloth& cloth : simulation.cloths) {
+    std::vector<const OpenSeam*> closed;
+    for (const Cloth::Stitched& open : cloth.seams)
+      if (open.seam.closed(cloth.embedding, simulation.state)) closed.push_back(&open.seam);
+    if (closed.empty()) continue;
+    any = true;
+    number = merged(number, closed, cloth.embedding);
+    std::erase_if(cloth.seams, [&](const Cloth::Stitched& open) {
+      return open.seam.closed(cloth.embedding, simulation.state);
+    });
+  }
+  if (!any) return false;
+  simulation.state = merged_state(simulation.state, simulation.system->masses(), number);
+  for (Cloth& cloth : simulation.cloths) cloth.renumber(number);
+  simulation.constraints->merge(number);
+  Names said_before;
+  const Scene& scene = *simulation.scene;
+  std::vector<SoftBody> softs;
+  for (std::size_t k = 0; k < scene.softs.size(); ++k)
+    softs.push_back(make_soft_body(scene.softs[k], simulation.cloths[scene.cloths.size() + k].first_particle,
+                                   said_before));
+  assemble(simulation, std::move(softs), said_before);
+  return true;
+}
+
+void Cloth::renumber(const std::vector<int>& number) {
+  embedding.renumber(number);
+  int low = number[static_cast<std::size_t>(first_particle)], high = low;
+  for (int i = first_particle; i < end_particle; ++i) {
+    low = std::min(low, number[static_cast<std::size_t>(i)]);
+    high = std::max(high, number[static_cast<std::size_t>(i)]);
+  }
+  first_particle = low;
+  end_particle = high + 1;
+}
+
+}  // namespace drape

@@ -1,0 +1,22 @@
+// The particles of a scene: cloths and soft bodies are loaded, and one system is made of them, again whenever
+// a seam has closed.
+#pragma once
+
+#include "app/simulation.h"
+#include "app/soft_body.h"
+
+namespace drape {
+
+// Fills in the cloths, and the state at the start.
+std::vector<SoftBody> load_particles(const Scene& scene, Simulation& simulation);
+
+// Corners and rims of bodies are kept off the inside of triangles, too.
+void add_faces(const Scene& scene, const std::vector<SoftBody>& softs, Simulation& simulation);
+
+// The system of all that is simulated, as it is sewn by now.
+void assemble(Simulation& simulation, std::vector<SoftBody> softs, Names& messages);
+
+// Seams that have closed: their particles become one, and the cloth one piece. False: there were none.
+bool merge_closed_seams(Simulation& simulation);
+
+}  // namespace drape
