@@ -43,6 +43,10 @@ const Part gallery[] = {
     {"rotating-ball", 4.8, 1},    // the ball turns from 3 s on, the fastest at 4.5 s
     {"sheet-in-bowl", 0.6, 1},
     {"sheet-on-ball", 0.6, 1},
+    {"soft-bowl", 0.8, 10},
+    {"soft-plane", 0.5, 10},
+    {"soft-sphere", 0.8, 10},     // turns over the ball
+    {"soft-tilted", 0.8, 10},
     {"tablecloth", 0.6, 1},       // hangs over the rims
     {"tablecloth-pull", 1.6, 1},  // and is pulled from 1 s on
     {"tee", 0.3, 2},
