@@ -183,7 +183,7 @@ void add_triangulate(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("-o,--out", words->out, "the OBJ file")->type_name("FILE")->required();
   command
-      ->add_option("--edge", words->edge, "no edge is longer, such as \"1 cm\" (1/60 of the pattern's size)")
+      ->add_option("--edge", words->edge, "no edge is longer, such as \"1 cm\" (1/40 of the pattern's size)")
       ->type_name("LENGTH");
   command->add_option("--min-angle", words->min_angle, "no angle is smaller, in degrees, up to 33 (28)")
       ->type_name("ANGLE");

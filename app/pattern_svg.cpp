@@ -134,12 +134,12 @@ class SvgReader {
   void walk(const pugi::xml_node& node, const Affine& outer) {
     const std::string kind = local(node);
     static const std::set<std::string> silent = {
-        "defs",     "metadata", "namedview", "title",  "desc",           "style",          "symbol", "marker",
-        "clipPath", "pattern",  "mask",      "filter", "linearGradient", "radialGradient", "text"};
+        "defs",   "metadata", "namedview", "title", "desc",   "style",          "symbol",
+        "marker", "clipPath", "pattern",   "mask",  "filter", "linearGradient", "radialGradient"};
     if (std::string(node.attribute("display").value()) == "none") return;
     if (silent.contains(kind)) return;
-    if (kind == "script" || kind == "use" || kind == "image" || kind == "switch" || kind == "foreignObject" ||
-        kind == "svg") {
+    if (kind == "script" || kind == "text" || kind == "use" || kind == "image" || kind == "switch" ||
+        kind == "foreignObject" || kind == "svg") {
       notes_.push_back(at(node) + ": <" + kind + "> is passed over" +
                        (kind == "use" ? "; unlink the clone to have its paths" : ""));
       return;

@@ -40,7 +40,7 @@ struct Pattern {
 };
 
 struct TriangulateOptions {
-  double edge = 0;  // m, no edge is longer; 0: 1/60 of the square root of the area
+  double edge = 0;  // m, no edge is longer; 0: 1/40 of the square root of the area
   double min_angle = 28 * 3.14159265358979323846 / 180;  // rad
   double tolerance = 0;                                  // m, of curves; 0: edge / 50
 };

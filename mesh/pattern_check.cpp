@@ -34,7 +34,7 @@ void check_chain(const Chain& chain, bool loop) {
   }
   if (length <= 0) throw InputError(chain.where + ": has no length");
   if (loop && std::abs(enclosed_area(chain)) <= 1e-9 * length * length)
-    throw InputError(chain.where + ": the outline has no area");
+    throw InputError(chain.where + ": the outline has no area, or crosses itself so that nothing is left");
 }
 
 struct Box {

@@ -193,7 +193,7 @@ PatternMesh triangulate(const Pattern& pattern, const TriangulateOptions& asked)
   TriangulateOptions options = asked;
   const double area = total_area(pattern), degrees = options.min_angle * 180 / std::numbers::pi;
   if (!(area > 0)) throw InputError(pattern.where + ": the holes are as large as the panels");
-  if (options.edge <= 0) options.edge = two_digits(std::sqrt(area) / 60);
+  if (options.edge <= 0) options.edge = two_digits(std::sqrt(area) / 40);
   if (options.tolerance <= 0) options.tolerance = options.edge / 50;
   if (!(degrees >= 0 && degrees <= kSharpestBound)) {
     char text[160];
