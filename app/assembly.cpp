@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "app/cloth_model.h"
+#include "app/pattern_read.h"
 #include "mesh/flat_pattern.h"
 #include "mesh/obj.h"
 #include "solver/face_contact_force.h"
@@ -11,12 +12,20 @@
 namespace drape {
 namespace {
 
+// As drape triangulate writes it and reads it again.
+TriangleMesh cut_pattern(const ClothEntry& entry, Names& messages) {
+  Names notes;
+  PatternMesh cut = triangulate(read_pattern(entry.mesh, notes), entry.pattern);
+  for (const std::string& note : notes) messages.push_back("note: " + note);
+  return std::move(cut.mesh);
+}
+
 // As the file has it, its panels placed; the rest shape is the flat pattern, or what the file has.
 Cloth load_cloth(const ClothEntry& entry, Names& messages) {
   require_file(entry.mesh, entry.where);
   Cloth cloth;
   cloth.name = entry.name;
-  cloth.mesh = placed(read_obj(entry.mesh), {.scale = entry.placement.scale}, entry.mesh.string());
+  cloth.mesh = placed(is_pattern(entry.mesh) ? cut_pattern(entry, messages) : read_obj(entry.mesh), {.scale = entry.placement.scale}, entry.mesh.string());
   try {
     cloth.rest = entry.rest_is_flat ? flat_pattern(cloth.mesh, entry.uv_scale) : cloth.mesh;
   } catch (const InputError& error) {

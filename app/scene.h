@@ -10,6 +10,7 @@
 #include "app/settings.h"
 #include "app/words.h"
 #include "constraints/constraints.h"
+#include "mesh/pattern.h"
 #include "solver/fabric.h"
 #include "solver/integrator.h"
 #include "solver/soft.h"
@@ -59,7 +60,8 @@ struct SeamEntry {
 
 struct ClothEntry {
   std::string name;            // of the output files
-  std::filesystem::path mesh;  // OBJ
+  std::filesystem::path mesh;  // OBJ, or a pattern (SVG, TOML)
+  TriangulateOptions pattern;  // how a pattern is made a mesh
   Placement placement;         // of the rest shape and of the start
   bool rest_is_flat = false;   // the texture coordinates are the rest shape
   double uv_scale = 1;         // m
@@ -154,6 +156,7 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const std::fil
 
 Names shape_names();
 Names model_names();
-bool is_vdb(const std::filesystem::path& path);  // by its extension
+bool is_vdb(const std::filesystem::path& path);      // by its extension
+bool is_pattern(const std::filesystem::path& path);  // by its extension: .svg, .toml
 
 }  // namespace drape

@@ -134,7 +134,12 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
   cloth.mesh = read_path(table, "mesh", folder);
   cloth.name = read_name(table, cloth.mesh);
   cloth.placement = read_placement(table);
-  std::string rest = "mesh";
+  for (const char* key : {"edge", "min_angle"})
+    if (table.has(key) && !is_pattern(cloth.mesh))
+      table.fail(key, "is of a pattern (.svg or .toml) as mesh; an OBJ file has its edges");
+  table.read("edge", cloth.pattern.edge, dimension::length, Range::positive);
+  table.read("min_angle", cloth.pattern.min_angle, dimension::angle, Range::not_negative);
+  std::string rest = is_pattern(cloth.mesh) ? "uv" : "mesh";
   table.read("rest", rest, Names{"mesh", "uv"});
   cloth.rest_is_flat = rest == "uv";
   table.read("uv_scale", cloth.uv_scale, dimension::length, Range::positive);
@@ -189,6 +194,8 @@ void check_follow(const PinEntry& pin, const std::vector<ObstacleEntry>& obstacl
 }
 
 }  // namespace
+
+bool is_pattern(const fs::path& path) { return path.extension() == ".svg" || path.extension() == ".toml"; }
 
 Names model_names() { return {"noh-jung", "choi-ko"}; }
 

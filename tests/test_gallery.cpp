@@ -32,6 +32,7 @@ struct Part {
 
 // clang-format off
 const Part gallery[] = {
+    {"choi-ko-200", 0.5, 1},
     {"dressed-turn", 1.7, 4},     // the first step and half of the turn
     {"flag", 1.1, 1, false},      // passes the pole at a distance of 8 mm
     {"ls-ball-0", 0.7, 10},       // slides over the ball and comes to the floor
@@ -40,6 +41,7 @@ const Part gallery[] = {
     {"noh-jung-100", 0.5, 1},
     {"noh-jung-200", 0.5, 1},
     {"poncho", 0.6, 2},           // has come to the shoulders
+    {"poncho-sewn", 0.5, 4},      // is sewn after 0.2 s
     {"rotating-ball", 4.8, 1},    // the ball turns from 3 s on, the fastest at 4.5 s
     {"sheet-in-bowl", 0.6, 1},
     {"sheet-on-ball", 0.6, 1},
