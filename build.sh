@@ -32,7 +32,8 @@ die() {
 
 # --- packages ---------------------------------------------------------------------------------------------------------------
 
-required=(g++ cmake ninja-build libeigen3-dev libspectra-dev libembree-dev libtoml11-dev libcli11-dev nlohmann-json3-dev libudunits2-dev libcsv-dev)
+required=(g++ cmake ninja-build libeigen3-dev libspectra-dev libembree-dev libtoml11-dev libcli11-dev nlohmann-json3-dev libudunits2-dev libcsv-dev
+  libboost-dev libsvgpp-dev libpugixml-dev)
 optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev)
 for_tests=(catch2 libtinyobjloader-dev)
 for_format=(clang-format)
@@ -189,10 +190,11 @@ sanitize() {
 bench() {
   get_for_build
   configure_program
-  compile release drape_bench drape_bench_contact drape_bench_solvers
+  compile release drape_bench drape_bench_contact drape_bench_pattern drape_bench_solvers
   build/release/drape_bench "$@"
   [[ $# -eq 0 ]] || return 0
   build/release/drape_bench_contact
+  build/release/drape_bench_pattern
   build/release/drape_bench_solvers 32 100
 }
 

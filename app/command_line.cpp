@@ -11,6 +11,7 @@
 #include "app/commands.h"
 #include "app/compare/compare.h"
 #include "app/stability/stability.h"
+#include "app/triangulate_command.h"
 #include "app/words.h"
 #include "mesh/obj.h"
 
@@ -205,6 +206,27 @@ void add_level_set(CLI::App& app, int& exit_code) {
   command->callback([=, &exit_code] { exit_code = make_level_set(*words); });
 }
 
+void add_triangulate(CLI::App& app, int& exit_code) {
+  CLI::App* const command =
+      app.add_subcommand("triangulate", "makes a mesh of a sewing pattern, an OBJ file");
+  auto words = std::make_shared<TriangulateWords>();
+  command
+      ->add_option("PATTERN", words->pattern, "a drawing (SVG, with the size of its page) or polygons (TOML)")
+      ->required();
+  command->add_option("-o,--out", words->out, "the OBJ file")->type_name("FILE")->required();
+  command
+      ->add_option("--edge", words->edge, "no edge is longer, such as \"1 cm\" (1/40 of the pattern's size)")
+      ->type_name("LENGTH");
+  command->add_option("--min-angle", words->min_angle, "no angle is smaller, in degrees, up to 33 (28)")
+      ->type_name("ANGLE");
+  command
+      ->add_option("--tolerance", words->tolerance,
+                   "how far from a curved side the mesh may be (1/50 of the edge)")
+      ->type_name("LENGTH");
+  command->add_flag("--quiet", words->quiet, "nothing but errors");
+  command->callback([=, &exit_code] { exit_code = triangulate_file(*words); });
+}
+
 void add_check_and_list(CLI::App& app, int& exit_code) {
   CLI::App* const check =
       app.add_subcommand("check", "validates a scene or examines a mesh; changes nothing");
@@ -245,6 +267,7 @@ int parse_and_run(int argc, char** argv) {
   add_compare(app, exit_code);
   add_stability(app, exit_code);
   add_level_set(app, exit_code);
+  add_triangulate(app, exit_code);
   add_check_and_list(app, exit_code);
   if (argc > 1 && argv[1][0] != '-') check_command(app, argv[1]);
   try {

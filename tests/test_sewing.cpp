@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 #include <sstream>
+#include <utility>
 
 #include "app/simulation.h"
 #include "app/toml_file.h"
@@ -81,7 +82,7 @@ TEST_CASE("a cloth laid out as its pattern has no energy, and elsewhere what the
     REQUIRE(flat.triangles.size() == mesh.triangles.size());
     TriangleMesh wide = mesh;
     for (Vec3& x : wide.positions) x[0] *= 1.1;
-    for (const TriangleMesh* shape : {&mesh, &wide}) {
+    for (const TriangleMesh* shape : {&std::as_const(mesh), &std::as_const(wide)}) {
       System system(lumped_mass(*shape, flat, 0.2));
       CHECK(std::accumulate(system.masses().begin(), system.masses().end(), 0.0) == Approx(0.2 * 0.4));
       system.add(forces_of(noh_jung_connections(*shape, flat, {}), {}));

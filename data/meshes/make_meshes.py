@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes the meshes of this folder again: sheet-958.obj, tablecloth.obj, poncho.obj, flag.obj, net.obj. Not run by the build.
+"""Makes the meshes of this folder again: sheet-958.obj, tablecloth.obj, poncho.obj, flag.obj, net.obj, sheet-625.obj. Not run by the build.
 
-    python3 make_meshes.py                       the five generated meshes
+    python3 make_meshes.py                       the six generated meshes
     python3 make_meshes.py BODY.obj TEE.obj      body.obj and tee.obj, too, from files in metres (see ../README.md)
 
 Needs numpy and scipy (Debian: python3-scipy). The seeds are fixed: it makes the same files every time.
@@ -162,6 +162,9 @@ def main():
     points, faces, uv = flag(30, 30, 1.0, 1.0)  # laid flat, its upper edge at the back
     write("net.obj", ["Net, 1 m x 1 m, 30 x 30 quads in the plane y = 0, normals up. Corners: vertices 0, 30, 930, 960.",
                       "Metres, y up. Made by make_meshes.py; CC0 1.0."], np.c_[points[:, 0] - 0.5, points[:, 2], -0.5 - points[:, 1]], faces, uv)
+    points, faces, uv = flag(24, 24, 1.0, 1.0)
+    write("sheet-625.obj", ["Square sheet, 1 m x 1 m, 25 x 25 vertices, quads, in the plane y = 0, normals up.",
+                            "Metres, y up. Made by make_meshes.py; CC0 1.0."], np.c_[points[:, 0] - 0.5, points[:, 2], -0.5 - points[:, 1]], faces, uv)
     if len(sys.argv) == 3:
         points, faces = read(sys.argv[1])
         write("body.obj", ["CC0 1.0. The base mesh hm08 of MakeHuman (makehumancommunity/makehuman, makehuman/data/3dobjs/base.obj), group",
