@@ -11,33 +11,38 @@ namespace drape {
 namespace {
 
 // What a particle takes, with its springs, its blocks of the matrix and of a preconditioner, and what a
-// corner of the box of cells takes while it is filled. Measured: app/README.md.
+// corner of the box of cells takes while it is filled. Measured: 4.5 kB of 216 000 particles, 6.2 of 27 000.
 constexpr double bytes_per_particle = 6000, bytes_per_corner = 6;
 
-void require_memory(double particles, double corners, const std::string& where) {
+void require_memory(double particles, double corners) {
   const double needed = particles * bytes_per_particle + corners * bytes_per_corner;
   const std::optional<double> there = free_memory();
   constexpr double most = 1e8;  // particle numbers, three coordinates each, and springs are counted in int
   if (particles < most && !(there && needed > *there)) return;
-  throw InputError(where + ": a lattice of about " + rounded(particles, 2) + " particles needs some " +
-                   rounded(needed / 1e9, 2) + " GB" +
-                   (there ? ", and " + rounded(*there / 1e9, 2) + " GB are free" : "") +
-                   "; take a wider spacing");
+  throw InputError(
+      "a lattice of about " + rounded(particles, 2) + " particles needs some " + rounded(needed / 1e9, 2) +
+      " GB" + (there ? ", and " + rounded(*there / 1e9, 2) + " GB are free" : "") + "; take a wider spacing");
+}
+
+Lattice box_of(const SoftEntry& entry) {
+  double count = 1;
+  for (int n : entry.particles) count *= n;
+  require_memory(count, count);
+  return box_lattice(entry.particles, entry.placement.scale * entry.spacing);
 }
 
 Lattice lattice_of(const SoftEntry& entry, TriangleMesh& mesh, Names& messages) {
   MeshReport report;
-  if (entry.mesh.empty()) {
-    double count = 1;
-    for (int n : entry.particles) count *= n;
-    require_memory(count, count, entry.where);
-    return box_lattice(entry.particles, entry.placement.scale * entry.spacing);
+  if (!entry.mesh.empty())
+    mesh = load_mesh(entry.mesh, entry.where, {.scale = entry.placement.scale}, report, messages);
+  try {
+    if (entry.mesh.empty()) return box_of(entry);
+    const LatticeSize size = lattice_size(mesh, entry.spacing[0]);
+    require_memory(size.particles, size.corners);
+    return filled_lattice(mesh, entry.spacing[0], entry.mesh.string());
+  } catch (const InputError& error) {
+    throw InputError(entry.where + ": " + error.what());
   }
-  const std::string name = entry.mesh.string();
-  mesh = load_mesh(entry.mesh, entry.where, {.scale = entry.placement.scale}, report, messages);
-  const LatticeSize size = lattice_size(mesh, entry.spacing[0]);
-  require_memory(size.particles, size.corners, entry.where);
-  return filled_lattice(mesh, entry.spacing[0], name);
 }
 
 void add_edges(const std::vector<LatticePair>& pairs, const std::vector<Vec3>& positions, Cloth& cloth) {

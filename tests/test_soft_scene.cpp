@@ -11,7 +11,7 @@ using namespace drape::test;
 
 namespace {
 
-const std::string box = "[[soft]]\nparticles = [4, 3, 5]\nspacing = \"10 cm\"\n";  // three lines
+const std::string box_text = "[[soft]]\nparticles = [4, 3, 5]\nspacing = \"10 cm\"\n";  // three lines
 
 Scene read(const std::string& text, const std::filesystem::path& folder = "") {
   return read_scene(parse_toml(text, "scene.toml"), {}, folder, "scene.toml");
@@ -21,7 +21,7 @@ Scene read(const std::string& text, const std::filesystem::path& folder = "") {
 
 TEST_CASE("a soft body's keys, their units, and what stands where none is given", "[soft]") {
   const Scene scene = read(
-      box +
+      box_text +
           "name = \"jelly\"\nmass = \"300 g\"\nequal_masses = true\nstructural = \"2 kN/m\"\nshear = 3\n"
           "bend = 4\ndamping = \"0.1 N.s/m\"\ntranslate = [0, \"50 cm\", 0]\n"
           "[[soft]]\nmesh = \"bunny.obj\"\nspacing = 0.05\nyoung = \"15 kPa\"\ndensity = \"0.4 g/cm^3\"\n"
@@ -57,19 +57,19 @@ TEST_CASE("a mistake in a soft body is told with its line", "[soft]") {
       {"[[soft]]\nparticles = [3, 1, 3]\nspacing = 1\n", "scene.toml:2:", "at least 2"},
       {"[[soft]]\nparticles = [3, -1, 3]\nspacing = 1\n", "scene.toml:2:", "from 0 up"},
       {"[[soft]]\nparticles = [3, 3, 3]\n", "scene.toml:1:", "either spacing or size"},
-      {box + "size = [1, 1, 1]\n", "scene.toml:4:", "either spacing or size"},
+      {box_text + "size = [1, 1, 1]\n", "scene.toml:4:", "either spacing or size"},
       {"[[soft]]\nparticles = [3, 3, 3]\nspacing = \"1 kg\"\n", "scene.toml:3:", "expected a length"},
       {"[[soft]]\nparticles = [3, 3, 3]\nsize = [1, 0, 1]\n", "scene.toml:3:", "greater than zero"},
-      {box + "structural = 1\nshear = 1\n", "scene.toml:1:", "'bend' is missing"},
-      {box + "structural = 1\nshear = 1\nbend = 1\nyoung = 1\n", "scene.toml:7:", "either young"},
-      {box + "young = \"3 N/m\"\n", "scene.toml:4:", "expected a modulus"},
-      {box + "young = -1\n", "scene.toml:4:", "greater than zero"},
-      {box + "structural = -1\nshear = 1\nbend = 1\n", "scene.toml:4:", "not negative"},
-      {box + "density = \"3 g/m^2\"\n", "scene.toml:4:", "expected a density"},
-      {box + "density = 1\nmass = 1\n", "scene.toml:5:", "not both"},
-      {box + "stretch = 1\n", "scene.toml:4:", "unknown key 'stretch'"},
-      {box + "damping_kind = \"both\"\n", "scene.toml:4:", "relative, axial"},
-      {box + box, "scene.toml:4:", "two soft bodies are called 'soft'"},
+      {box_text + "structural = 1\nshear = 1\n", "scene.toml:1:", "'bend' is missing"},
+      {box_text + "structural = 1\nshear = 1\nbend = 1\nyoung = 1\n", "scene.toml:7:", "either young"},
+      {box_text + "young = \"3 N/m\"\n", "scene.toml:4:", "expected a modulus"},
+      {box_text + "young = -1\n", "scene.toml:4:", "greater than zero"},
+      {box_text + "structural = -1\nshear = 1\nbend = 1\n", "scene.toml:4:", "not negative"},
+      {box_text + "density = \"3 g/m^2\"\n", "scene.toml:4:", "expected a density"},
+      {box_text + "density = 1\nmass = 1\n", "scene.toml:5:", "not both"},
+      {box_text + "stretch = 1\n", "scene.toml:4:", "unknown key 'stretch'"},
+      {box_text + "damping_kind = \"both\"\n", "scene.toml:4:", "relative, axial"},
+      {box_text + box_text, "scene.toml:4:", "two soft bodies are called 'soft'"},
       {"[[sotf]]\n", "scene.toml:1:", "did you mean 'soft'?"},
   };
   check_mistakes(table, [](const std::string& text) { return read(text); });
