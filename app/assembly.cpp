@@ -25,7 +25,8 @@ Cloth load_cloth(const ClothEntry& entry, Names& messages) {
   require_file(entry.mesh, entry.where);
   Cloth cloth;
   cloth.name = entry.name;
-  cloth.mesh = placed(is_pattern(entry.mesh) ? cut_pattern(entry, messages) : read_obj(entry.mesh), {.scale = entry.placement.scale}, entry.mesh.string());
+  cloth.mesh = placed(is_pattern(entry.mesh) ? cut_pattern(entry, messages) : read_obj(entry.mesh),
+                      {.scale = entry.placement.scale}, entry.mesh.string());
   try {
     cloth.rest = entry.rest_is_flat ? flat_pattern(cloth.mesh, entry.uv_scale) : cloth.mesh;
   } catch (const InputError& error) {

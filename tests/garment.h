@@ -59,7 +59,7 @@ struct TwoPanels {
 inline const std::string tube_cloth =
     "[[cloth]]\nmesh = \"tube.obj\"\nrest = \"uv\"\nfabric = \"cotton-poplin\"\n"
     "panels = [{ group = \"front\", wrap = \"16 cm\", translate = [0, 0, 0.02] },\n"
-    "  { group = \"back\", wrap = \"16 cm\", rotate = { axis = [0, 1, 0], angle = \"180 deg\" },\n"
-    "    translate = [0, 0, -0.02] }]\n";
+    "  { group = \"back\", wrap = \"16 cm\", rotate = { axis = [0, 1, 0], angle = \"180 deg\" }, "
+    "translate = [0, 0, -0.02] }]\n";
 
 }  // namespace drape::test

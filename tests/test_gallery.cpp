@@ -45,6 +45,7 @@ const Part gallery[] = {
     {"rotating-ball", 4.8, 1},    // the ball turns from 3 s on, the fastest at 4.5 s
     {"sheet-in-bowl", 0.6, 1},
     {"sheet-on-ball", 0.6, 1},
+    {"skirt-sewn", 0.6, 4},
     {"soft-bowl", 0.8, 10},
     {"soft-plane", 0.5, 10},
     {"soft-sphere", 0.8, 10},     // turns over the ball
