@@ -66,13 +66,14 @@ std::vector<Terrain> terrains() {
 }  // namespace
 
 TEST_CASE("a soft cube falls on SB's terrains by every integrator and makes no energy", "[soft]") {
-  const double h = 1e-3;
   for (const Terrain& terrain : terrains())
     for (const Method& method : methods()) {
       for (const bool rebounds : {false, true}) {
         if (rebounds && (method.contact || !is_explicit(method.name))) continue;
+        // Of damped vibrations sb-implicit bears the shortest steps.
+        const double h = method.name == "sb-implicit" ? 5e-4 : 1e-3;
         INFO(method.label << " on the " << terrain.name << (rebounds ? ", restitution 0" : ""));
-        Cube cube(4, 0.35);
+        Cube cube(4, 0.35, 1.8);  // within the limits of explicit-euler (damping / stiffness) and sb-implicit
         cube.constraints.add(
             Obstacle{.shape = terrain.shape, .friction = 0.3, .margin = 0.004, .restitution = 0});
         StepOptions options = method.options();
@@ -82,7 +83,7 @@ TEST_CASE("a soft cube falls on SB's terrains by every integrator and makes no e
         const double start = cube.energy(), weight = cube.mass() * 9.81;
         double most = -1e300, lowest = start;
         int contacts = 0;
-        for (int k = 1; k <= 400; ++k) {
+        for (int k = 1; k * h <= 0.4; ++k) {
           const StepReport report = stepper->advance(cube.state, h);
           INFO("step " << k << ": " << report.failure.what);
           REQUIRE(report.done);
@@ -130,9 +131,12 @@ TEST_CASE("a soft body's step allocates nothing after the first", "[soft]") {
       stepper->advance(cube.state, h);
       stepper->advance(cube.state, h);
       const long before = allocations();
-      for (int n = 0; n < 8; ++n) REQUIRE(stepper->advance(cube.state, h).done);
+      bool done = true;
+      for (int n = 0; n < 8; ++n) done = stepper->advance(cube.state, h).done && done;
+      const long used = allocations() - before;
+      CHECK(done);
       INFO(name << ", " << t << " threads");
-      CHECK(allocations() - before == 0);
+      CHECK(used == 0);
     }
 }
 

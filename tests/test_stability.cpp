@@ -167,7 +167,7 @@ TEST_CASE("runs bear the step that theory says, to 2 %", "[stability]") {
           continue;
         }
         CHECK(c.net.stays_calm(t.name, 0.98 * limit, 2000));
-        CHECK_FALSE(c.net.stays_calm(t.name, 1.02 * limit, 2000));
+        CHECK_FALSE(c.net.stays_calm(t.name, 1.02 * limit, 40000));  // explicit Euler grows slowly
       }
       CHECK(c.net.stays_calm("implicit-euler", 50 / spectrum.omega(), 50));  // has none
     }
@@ -177,11 +177,12 @@ TEST_CASE("runs bear the step that theory says, to 2 %", "[stability]") {
 TEST_CASE("drape stability: table, JSON and CSV of one search", "[stability]") {
   Desk desk;
   desk.write("s.toml",
-             "[simulation]\nduration = 0.5\ntime_step = 0.001\ngravity = [0, 0, 0]\n[[soft]]\n"
+             "[simulation]\nduration = 4\ntime_step = 0.001\ngravity = [0, 0, 0]\n[[soft]]\n"
              "particles = [3, 3, 3]\nspacing = 0.1\nmass = 0.27\nequal_masses = true\n"
-             "structural = 40\nshear = 40\nbend = 40\ndamping = 0.02\n");
-  CHECK(desk.said(desk.drape("stability s.toml --out o --integrators "
-                             "symplectic-euler,explicit-euler,rk4,sb-implicit,implicit-euler --quiet")) == 0);
+             "structural = 40\nshear = 40\nbend = 40\ndamping = 0.2\n");
+  CHECK(desk.said(desk.drape(
+            "stability s.toml --out o --integrators "
+            "symplectic-euler,explicit-euler,rk4,sb-implicit,implicit-euler --growth 1000 --quiet")) == 0);
   const JsonValue found = JsonValue::parse(content(desk.path / "o/stability.json"));
   CHECK(found["proportional_damping"] == true);
   REQUIRE(found["rows"].size() == 5);
@@ -189,7 +190,7 @@ TEST_CASE("drape stability: table, JSON and CSV of one search", "[stability]") {
     INFO(row.dump());
     if (row["integrator"] == "implicit-euler") {
       CHECK(row["limited"] == false);
-      CHECK(row["largest_stable_step"] == Approx(0.05));
+      CHECK(row["largest_stable_step"] == Approx(0.4));
       CHECK(row["theory"].is_null());
       continue;
     }
