@@ -7,6 +7,7 @@
 #include <queue>
 
 #include "mesh/obj.h"
+#include "mesh/sharp_corners.h"
 
 namespace drape {
 namespace {
@@ -14,7 +15,6 @@ namespace {
 std::size_t z(int i) { return static_cast<std::size_t>(i); }
 
 constexpr int kBox = Delaunay::kBoxCorners;
-constexpr double kSameDistance = 0.1;  // how far from equal two distances from a sharp corner may be
 
 struct Shape {  // of a triangle: squared edges opposite its corners, twice its area
   double edge[3], twice_area;
@@ -39,44 +39,6 @@ Vec2 circumcentre(const Delaunay& mesh, const Delaunay::Face& f) {
   const Vec2 b = mesh.points()[z(f.v[1])] - a, c = mesh.points()[z(f.v[2])] - a;
   const double d = 2 * (b.x() * c.y() - b.y() * c.x()), b2 = b.squaredNorm(), c2 = c.squaredNorm();
   return a + Vec2(c.y() * b2 - b.y() * c2, b.x() * c2 - c.x() * b2) / d;
-}
-
-bool is_on_leg(const Sides& sides, int panel, int vertex, int leg) {
-  const std::vector<int>& leg_of = sides.leg_of[z(panel)];
-  if (z(vertex) >= leg_of.size()) return false;
-  if (leg_of[z(vertex)] != Sides::kCorner) return leg_of[z(vertex)] == leg;
-  const std::vector<int>& legs = sides.corner_legs[z(panel)][z(vertex)];
-  return std::find(legs.begin(), legs.end(), leg) != legs.end();
-}
-
-// The corner (a vertex) at an end of a leg.
-int corner_of(const Sides& sides, int leg, bool at_end) {
-  const Run& run = sides.runs[z(sides.legs[z(leg)].run)];
-  return run.corners[z(leg - run.first_leg + (at_end ? 1 : 0))];
-}
-
-// Whether u and w are on different legs of a sharp corner, equally far from it.
-bool span_sharp_corner(const Sides& sides, const Delaunay& mesh, int panel, int u, int w) {
-  const auto try_leg = [&](int leg) {
-    for (const bool at_end : {false, true}) {
-      const int cluster = sides.legs[z(leg)].sharp[at_end];
-      if (cluster < 0) continue;
-      const Vec2& apex = mesh.points()[z(corner_of(sides, leg, at_end) + kBox)];
-      const double du = (mesh.points()[z(u + kBox)] - apex).norm(),
-                   dw = (mesh.points()[z(w + kBox)] - apex).norm();
-      if (std::abs(du - dw) > kSameDistance * std::max(du, dw)) continue;
-      for (const auto& [other, other_end] : sides.clusters[z(cluster)])
-        if ((other != leg || other_end != at_end) && is_on_leg(sides, panel, w, other)) return true;
-    }
-    return false;
-  };
-  const std::vector<int>& leg_of = sides.leg_of[z(panel)];
-  for (const int v : {u, w})
-    if (z(v) >= leg_of.size() || leg_of[z(v)] == Sides::kFree) return false;
-  if (leg_of[z(u)] >= 0) return try_leg(leg_of[z(u)]);
-  for (const int leg : sides.corner_legs[z(panel)][z(u)])
-    if (try_leg(leg)) return true;
-  return false;
 }
 
 class Refinement {

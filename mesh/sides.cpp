@@ -4,16 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <numeric>
 
 #include "mesh/obj.h"
+#include "mesh/sharp_corners.h"
 
 namespace drape {
 namespace {
-
-constexpr double kSame = 1e-7;                   // fractions of a run that count as one
-constexpr double kSharp = std::numbers::pi / 3;  // rad
 
 std::size_t z(int i) { return static_cast<std::size_t>(i); }
 
@@ -27,7 +24,7 @@ class SideCutter {
     sides_.points.resize(panels), sides_.corner_legs.resize(panels), sides_.leg_of.resize(panels);
     for (std::size_t p = 0; p < panels; ++p) add_panel(static_cast<int>(p));
     sew();
-    find_sharp_corners();
+    find_sharp_corners(pattern_, min_angle_, sides_);
     place_knots();
     for (std::size_t c = 0; c < knots_.size(); ++c) cut_class(static_cast<int>(c));
     return std::move(sides_);
@@ -177,98 +174,6 @@ class SideCutter {
     knots_.resize(numbers.size());
   }
 
-  // Fraction of the class for one of the run, and back.
-  static double common(const Run& run, double f) { return run.turned ? 1 - f : f; }
-
-  void find_sharp_corners() {
-    for (std::size_t panel = 0; panel < sides_.points.size(); ++panel)
-      for (std::size_t v = 0; v < sides_.corner_legs[panel].size(); ++v)
-        look_at_corner(static_cast<int>(panel), static_cast<int>(v));
-  }
-
-  struct Spoke {  // a leg as seen from a corner
-    double angle;
-    int leg;
-    bool at_end, inside_next;  // inside_next: the panel is on its counter-clockwise side
-    bool operator<(const Spoke& o) const { return angle != o.angle ? angle < o.angle : leg < o.leg; }
-  };
-
-  void look_at_corner(int panel, int v) {
-    std::vector<Spoke> spokes;
-    std::vector<int> legs = sides_.corner_legs[z(panel)][z(v)];
-    legs.erase(std::unique(legs.begin(), legs.end()), legs.end());
-    for (const int leg : legs) {
-      const Run& run = sides_.runs[z(sides_.legs[z(leg)].run)];
-      const std::size_t i = z(leg - run.first_leg);
-      for (const bool at_end : {false, true}) {
-        if (run.corners[i + (at_end ? 1 : 0)] != v) continue;
-        const Vec2 d = direction(run.curve.segments()[i], at_end) * (at_end ? -1 : 1);
-        spokes.push_back({std::atan2(d.y(), d.x()), leg, at_end, !run.boundary || !at_end});
-      }
-    }
-    std::sort(spokes.begin(), spokes.end());
-    for (std::size_t i = 0; i < spokes.size() && spokes.size() > 1; ++i) {
-      const Spoke &s = spokes[i], &t = spokes[(i + 1) % spokes.size()];
-      double angle = t.angle - s.angle;
-      if (i + 1 == spokes.size()) angle += 2 * std::numbers::pi;
-      if (!s.inside_next || angle >= kSharp) continue;
-      if (angle < min_angle_)
-        sides_.sharp.push_back({pattern_.panels[z(panel)].name, sides_.points[z(panel)][z(v)], angle});
-      int& a = sides_.legs[z(s.leg)].sharp[s.at_end];
-      int& b = sides_.legs[z(t.leg)].sharp[t.at_end];
-      if (a < 0 && b < 0) a = static_cast<int>(sides_.clusters.size()), sides_.clusters.emplace_back();
-      const int cluster = a >= 0 ? a : b;
-      add_to_cluster(cluster, s), add_to_cluster(cluster, t);
-    }
-  }
-
-  void add_to_cluster(int cluster, const Spoke& s) {
-    auto& members = sides_.clusters[z(cluster)];
-    const std::pair<int, bool> member(s.leg, s.at_end);
-    sides_.legs[z(s.leg)].sharp[s.at_end] = cluster;
-    if (std::find(members.begin(), members.end(), member) == members.end()) members.push_back(member);
-  }
-
-  // Fraction of a run at an end of one of its legs.
-  static double fraction_at(const Run& run, int leg, bool at_end) {
-    const int i = leg - run.first_leg + (at_end ? 1 : 0);
-    return i == 0 ? 0 : run.curve.end_of(z(i - 1));
-  }
-
-  // How long the first pieces at sharp corners are: the same at all legs of a corner, and at the same
-  // fractions of curves that are sewn.
-  std::vector<double> collars() const {
-    std::vector<double> length(sides_.clusters.size(), 0.6 * edge_);
-    for (std::size_t c = 0; c < length.size(); ++c)
-      for (const auto& [leg, at_end] : sides_.clusters[c]) {
-        const Run& run = sides_.runs[z(sides_.legs[z(leg)].run)];
-        const double f0 = fraction_at(run, leg, false), f1 = fraction_at(run, leg, true);
-        length[c] = std::min(length[c], (f1 - f0) * run.curve.length() / 3);
-      }
-    for (int round = 0; round < 50; ++round) {
-      std::map<std::tuple<int, long, bool>, double> ratio;  // class, place, way: the shortest
-      const auto for_each = [&](const auto& f) {
-        for (std::size_t c = 0; c < length.size(); ++c)
-          for (const auto& [leg, at_end] : sides_.clusters[c]) {
-            const Run& run = sides_.runs[z(sides_.legs[z(leg)].run)];
-            const long place = std::lround(common(run, fraction_at(run, leg, at_end)) / (10 * kSame));
-            f(c, run.curve.length(), std::tuple(run.seam_class, place, at_end != run.turned));
-          }
-      };
-      for_each([&](std::size_t c, double whole, const auto& key) {
-        const auto [found, fresh] = ratio.try_emplace(key, length[c] / whole);
-        found->second = std::min(found->second, length[c] / whole);
-      });
-      bool changed = false;
-      for_each([&](std::size_t c, double whole, const auto& key) {
-        const double shortest = ratio.at(key) * whole;
-        if (shortest < length[c] * (1 - 1e-12)) length[c] = shortest, changed = true;
-      });
-      if (!changed) break;
-    }
-    return length;
-  }
-
   // Where every run of a class must have a vertex, in fractions of the class.
   void place_knots() {
     for (std::size_t r = 0; r < sides_.runs.size(); ++r) {
@@ -276,44 +181,55 @@ class SideCutter {
       std::vector<double>& knots = knots_[z(run.seam_class)];
       knots.insert(knots.end(), {0, 1});
       for (std::size_t i = 0; i + 1 < run.curve.segments().size(); ++i)
-        knots.push_back(common(run, run.curve.end_of(i)));
-      for (const Attached& a : attached_[static_cast<int>(r)]) knots.push_back(common(run, a.fraction));
+        knots.push_back(class_fraction(run, run.curve.end_of(i)));
+      for (const Attached& a : attached_[static_cast<int>(r)])
+        knots.push_back(class_fraction(run, a.fraction));
     }
-    const std::vector<double> collar = collars();
+    const std::vector<double> collar = collars(sides_, edge_);
     for (std::size_t c = 0; c < collar.size(); ++c)
       for (const auto& [leg, at_end] : sides_.clusters[c]) {
         const Run& run = sides_.runs[z(sides_.legs[z(leg)].run)];
         const double part = collar[c] / run.curve.length();
         knots_[z(run.seam_class)].push_back(
-            common(run, fraction_at(run, leg, at_end) + (at_end ? -part : part)));
+            class_fraction(run, leg_fraction(run, leg, at_end) + (at_end ? -part : part)));
       }
     for (std::vector<double>& knots : knots_) {
       std::sort(knots.begin(), knots.end());
-      knots.erase(std::unique(knots.begin(), knots.end(), [](double a, double b) { return b - a < kSame; }),
-                  knots.end());
+      knots.erase(
+          std::unique(knots.begin(), knots.end(), [](double a, double b) { return b - a < kSameFraction; }),
+          knots.end());
       knots.back() = 1;
     }
   }
 
-  // Into how many pieces a part of a curve must be cut: none longer than the edge, none farther from the
-  // curve than the tolerance, none that turns by more than about a radian.
-  int pieces_needed(const ArcLength& curve, double f0, double f1) const {
-    int n = std::max(1, static_cast<int>(std::ceil((f1 - f0) * curve.length() / (kSpacing * edge_) - 1e-9)));
-    for (; n < (1 << 24); n += 1 + n / 4) {
-      bool good = true;
-      for (int i = 0; good && i < n; ++i) {
-        const double a = f0 + (f1 - f0) * i / n, b = f0 + (f1 - f0) * (i + 1) / n;
-        const Vec2 start = curve.at(a), chord = curve.at(b) - start;
-        const double length = chord.norm(), allowed = std::min(tolerance_, length / 8);
-        for (int k = 1; good && k < 8; ++k) {
-          const Vec2 d = curve.at(a + (b - a) * k / 8) - start;
-          good = std::abs(chord.x() * d.y() - chord.y() * d.x()) <= allowed * length &&
-                 d.norm() < 1.1 * length + 1e-300;
-        }
-      }
-      if (good) break;
+  // Whether one piece will do for a part of a curve: it is not farther from it than the tolerance, and the
+  // curve turns by no more than about a radian.
+  bool close_enough(const ArcLength& curve, double f0, double f1) const {
+    const Vec2 start = curve.at(f0), chord = curve.at(f1) - start;
+    const double length = chord.norm(), allowed = std::min(tolerance_, length / 8);
+    for (int k = 1; k < 8; ++k) {
+      const Vec2 d = curve.at(f0 + (f1 - f0) * k / 8) - start;
+      if (std::abs(chord.x() * d.y() - chord.y() * d.x()) > allowed * length || d.norm() > 1.1 * length)
+        return false;
     }
-    return n;
+    return true;
+  }
+
+  // Halves a part, in fractions of the class, until each half will do on every run of it.
+  void cut_part(const std::vector<int>& members, double a, double b, int depth,
+                std::vector<double>& cuts) const {
+    bool good = true;
+    for (const int r : members) {
+      const Run& run = sides_.runs[z(r)];
+      const double f = class_fraction(run, a), g = class_fraction(run, b);
+      good = good && close_enough(run.curve, std::min(f, g), std::max(f, g));
+    }
+    if (good || depth == 0) {
+      cuts.push_back(b);
+      return;
+    }
+    cut_part(members, a, (a + b) / 2, depth - 1, cuts);
+    cut_part(members, (a + b) / 2, b, depth - 1, cuts);
   }
 
   void cut_class(int seam_class) {
@@ -321,16 +237,15 @@ class SideCutter {
     for (std::size_t r = 0; r < sides_.runs.size(); ++r)
       if (sides_.runs[r].seam_class == seam_class) members.push_back(static_cast<int>(r));
     const std::vector<double>& knots = knots_[z(seam_class)];
+    double longest = 0;
+    for (const int r : members) longest = std::max(longest, sides_.runs[z(r)].curve.length());
     std::vector<double> cuts = {0};
     for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
-      int n = 1;
-      for (const int r : members) {
-        const Run& run = sides_.runs[z(r)];
-        const double a = common(run, knots[k]), b = common(run, knots[k + 1]);
-        n = std::max(n, pieces_needed(run.curve, std::min(a, b), std::max(a, b)));
-      }
-      for (int i = 1; i <= n; ++i)
-        cuts.push_back(i == n ? knots[k + 1] : knots[k] + (knots[k + 1] - knots[k]) * i / n);
+      const double part = knots[k + 1] - knots[k];
+      const int n = std::max(1, static_cast<int>(std::ceil(part * longest / edge_ - 1e-9)));
+      for (int i = 0; i < n; ++i)
+        cut_part(members, knots[k] + part * i / n, i + 1 == n ? knots[k + 1] : knots[k] + part * (i + 1) / n,
+                 kDeepest, cuts);
     }
     const std::size_t count = cuts.size() - 1, first = sides_.pieces.size();
     for (std::size_t m = 0; m < members.size(); ++m) {
@@ -349,10 +264,10 @@ class SideCutter {
       fixed.push_back({i == 0 ? 0 : run.curve.end_of(i - 1), run.corners[i]});
     std::vector<int> vertices;
     for (const double cut : cuts) {
-      const double f = common(run, cut);
+      const double f = class_fraction(run, cut);
       int vertex = -1;
       for (const Attached& a : fixed)
-        if (std::abs(a.fraction - f) < 2 * kSame) vertex = a.vertex;
+        if (std::abs(a.fraction - f) < 2 * kSameFraction) vertex = a.vertex;
       if (vertex < 0) {
         vertex = static_cast<int>(sides_.points[z(run.panel)].size());
         sides_.points[z(run.panel)].push_back(run.curve.at(f));
@@ -361,7 +276,7 @@ class SideCutter {
       vertices.push_back(vertex);
     }
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-      const double f = common(run, cuts[i]), g = common(run, cuts[i + 1]);
+      const double f = class_fraction(run, cuts[i]), g = class_fraction(run, cuts[i + 1]);
       Piece piece{r, vertices[i], vertices[i + 1], f, g, leg_at(run, (f + g) / 2), 0};
       if (run.turned) std::swap(piece.a, piece.b), std::swap(piece.f0, piece.f1);
       sides_.pieces.push_back(piece);
@@ -374,7 +289,7 @@ class SideCutter {
     return run.first_leg + i;
   }
 
-  static constexpr double kSpacing = 1;  // of the edge: how far apart vertices on a boundary are at most
+  static constexpr int kDeepest = 20;  // halvings of a part that is no longer than the edge
 
   const Pattern& pattern_;
   const double edge_, tolerance_, min_angle_;

@@ -32,6 +32,7 @@ struct Part {
 
 // clang-format off
 const Part gallery[] = {
+    {"choi-ko-100", 0.5, 1},
     {"choi-ko-200", 0.5, 1},
     {"dressed-turn", 1.7, 4},     // the first step and half of the turn
     {"flag", 1.1, 1, false},      // passes the pole at a distance of 8 mm
