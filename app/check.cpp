@@ -4,6 +4,7 @@
 
 #include "app/motion_extent.h"
 #include "app/obstacle_read.h"
+#include "app/pattern_read.h"
 #include "app/simulation.h"
 #include "app/soft_body.h"
 #include "mesh/obj.h"
@@ -34,10 +35,12 @@ void print_report(const std::string& name, const MeshReport& report) {
 
 namespace {
 
+// An OBJ file, or a drawing as it is cut with the default edge.
 void check_mesh(const std::filesystem::path& file) {
-  const TriangleMesh mesh = read_obj(file);
-  const MeshReport report = examine(mesh);
   Names messages;
+  const bool drawing = file.extension() == ".svg";
+  const TriangleMesh mesh = drawing ? triangulate(read_pattern(file, messages), {}).mesh : read_obj(file);
+  const MeshReport report = examine(mesh);
   add_messages(report, file.string(), messages);
   print_report(file.string(), report);
   for (const VertexGroup& group : mesh.groups)
@@ -54,6 +57,15 @@ void print_cloth(const ClothEntry& entry, const Cloth& cloth) {
                                : (rounded(f.stretch, 4) + " N/m").c_str(),
               f.bend_spring ? (rounded(*f.bend_spring, 4) + " N.m^2 each diagonal").c_str()
                             : (rounded(f.bend, 4) + " N.m").c_str());
+}
+
+void print_seams(const Cloth& cloth, const VecX& x) {
+  for (const Cloth::Stitched& open : cloth.seams)
+    std::printf("  seam %s: %s, up to %s m apart, closes in %s s and is %s\n",
+                one_line(open.seam.name).c_str(),
+                counted(static_cast<long>(open.seam.pairs.size()), "pair").c_str(),
+                rounded(open.seam.gap(cloth.embedding, x), 3).c_str(), rounded(open.seam.close, 3).c_str(),
+                open.seam.merge ? "merged" : "kept");
 }
 
 void print_soft(const SoftEntry& entry, const Cloth& cloth, const System& system) {
@@ -136,7 +148,10 @@ void check_scene(const std::filesystem::path& file) {
   std::printf("%s: %s s in steps of %s s, %s, %s, tolerance %s\n", file.c_str(),
               rounded(s.duration, 4).c_str(), rounded(s.time_step, 4).c_str(), s.integrator.c_str(),
               s.linear_solver.c_str(), rounded(s.step.tolerance, 3).c_str());
-  for (std::size_t k = 0; k < scene.cloths.size(); ++k) print_cloth(scene.cloths[k], simulation.cloths[k]);
+  for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
+    print_cloth(scene.cloths[k], simulation.cloths[k]);
+    print_seams(simulation.cloths[k], simulation.state.x);
+  }
   for (std::size_t k = 0; k < scene.softs.size(); ++k)
     print_soft(scene.softs[k], simulation.cloths[scene.cloths.size() + k], *simulation.system);
   print_pins(scene, simulation);

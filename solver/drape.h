@@ -9,6 +9,7 @@
 #include "mesh/lattice.h"
 #include "mesh/mesh_frames.h"
 #include "mesh/obj.h"
+#include "mesh/quad_grid.h"
 #include "mesh/threads.h"
 #include "mesh/topology.h"
 #include "solver/bdf.h"

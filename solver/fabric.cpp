@@ -1,24 +1,11 @@
 #include "solver/fabric.h"
 
 #include <algorithm>
-#include <cmath>
-#include <sstream>
 
-#include "mesh/obj.h"
 #include "mesh/topology.h"
+#include "solver/require.h"
 
 namespace drape {
-namespace {
-
-void require(bool good, const char* field, double value, const char* unit, const char* what) {
-  if (good && std::isfinite(value)) return;
-  std::ostringstream message;
-  message << field << " = " << value << " " << unit << ": " << what;
-  throw InputError(message.str());
-}
-
-}  // namespace
-
 void check(const Fabric& f) {
   require(f.area_density > 0, "area_density", f.area_density, "kg/m^2",
           "an area density is greater than zero");

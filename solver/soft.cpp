@@ -2,21 +2,14 @@
 
 #include <cmath>
 #include <numeric>
-#include <sstream>
 
 #include "mesh/obj.h"
 #include "solver/damping.h"
 #include "solver/linear_spring.h"
+#include "solver/require.h"
 
 namespace drape {
 namespace {
-
-void require(bool good, const char* field, double value, const char* unit, const char* what) {
-  if (good && std::isfinite(value)) return;
-  std::ostringstream message;
-  message << field << " = " << value << " " << unit << ": " << what;
-  throw InputError(message.str());
-}
 
 using Springs = std::vector<PairForce<LinearSpring>::Element>;
 

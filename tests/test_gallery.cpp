@@ -99,7 +99,6 @@ void look(const MovingBody& body, const std::vector<RestEdge>& edges, const Stat
 
 void check_part(const Part& part, const Scene& scene) {
   Simulation simulation = make_simulation(scene);
-  const std::vector<RestEdge> edges = edges_of(simulation.cloths);
   const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
   std::vector<Depths> depths(bodies.size());
   const double h = scene.simulation.time_step;
@@ -108,7 +107,7 @@ void check_part(const Part& part, const Scene& scene) {
     INFO(part.scene << ", step " << n);
     REQUIRE(simulation.advance(h).done);
     for (std::size_t k = 0; k < bodies.size() && n % part.every == 0; ++k)
-      look(bodies[k], edges, simulation.state, depths[k]);
+      look(bodies[k], edges_of(simulation.cloths), simulation.state, depths[k]);
   }
   bool met = false;
   for (std::size_t k = 0; k < bodies.size(); ++k) {

@@ -198,6 +198,47 @@ TEST_CASE("seams close, become one, and the garment is a tube without a cut", "[
   }
 }
 
+TEST_CASE("seams that meet in a corner close one after the other", "[sewing]") {
+  const Tailor tailor;
+  Simulation s = tailor.simulation(
+      "seams = [{ close = 0.2 }, { curves = [\"front.top\", \"back.top\"], close = 0.5 }]\n",
+      light + "gravity = [0, 0, 0]\n");
+  const int particles = s.state.particles();
+  const double weight = mass(s);
+  advance(s, 0.4);
+  CHECK(s.cloths[0].seams.size() == 1);
+  CHECK(s.state.particles() == particles - 2 * tailor.panels.ny);
+  advance(s, 2);
+  CHECK(s.cloths[0].seams.empty());
+  CHECK(s.state.particles() == particles - 2 * tailor.panels.ny - (tailor.panels.nx - 2));
+  CHECK(mass(s) == Approx(weight).epsilon(1e-12));
+  TriangleMesh bag = s.cloths[0].mesh;
+  for (Triangle& t : bag.triangles)
+    for (int& v : t) v = s.cloths[0].embedding.particle(v);
+  CHECK(boundary_loops(bag).size() == 1);  // the lower edge
+}
+
+TEST_CASE("a pattern named by the scene is the mesh that triangulate writes", "[sewing]") {
+  const Folder folder;
+  folder.write(
+      "p.toml",
+      "unit = \"1 cm\"\n[[panel]]\nname = \"a\"\noutline = [[0, 0], [30, 0], { bezier = [[33, 20]] }, "
+      "[28, 40], [2, 40]]\nsides = [\"hem\", \"right\", \"waist\", \"left\"]\n");
+  REQUIRE(folder.drape("triangulate p.toml -o p.obj --edge 3cm --quiet").exit_code == 0);
+  const auto made = [&](const std::string& text) {
+    return make_simulation(
+        read_scene(parse_toml("[[cloth]]\nname = \"c\"\n" + text, "s.toml"), {}, folder.path, "s.toml"));
+  };
+  const Simulation drawn = made("mesh = \"p.toml\"\nedge = \"3 cm\"\npins = [{ group = \"a.waist\" }]\n");
+  const Simulation cut = made("mesh = \"p.obj\"\nrest = \"uv\"\npins = [{ group = \"a.waist\" }]\n");
+  CHECK(drawn.state.x == cut.state.x);
+  CHECK(drawn.cloths[0].mesh.triangles == cut.cloths[0].mesh.triangles);
+  CHECK(drawn.constraints->pinned() == cut.constraints->pinned());
+  CHECK(drawn.system->masses() == cut.system->masses());
+  CHECK(drawn.system->elastic_energy(drawn.state.x) < 1e-20);
+  CHECK_THROWS_WITH(made("mesh = \"p.obj\"\nedge = \"3 cm\"\n"), Contains("s.toml:4") && Contains("pattern"));
+}
+
 TEST_CASE("a seam that is kept holds to a micrometre", "[sewing]") {
   const Tailor tailor;
   Simulation s = tailor.simulation("seams = [{ close = 0.3, then = \"keep\" }]\n" + pinned, light);
