@@ -28,7 +28,8 @@ Cloth load_cloth(const ClothEntry& entry, Names& messages) {
   cloth.mesh = placed(is_pattern(entry.mesh) ? cut_pattern(entry, messages) : read_obj(entry.mesh),
                       {.scale = entry.placement.scale}, entry.mesh.string());
   try {
-    cloth.rest = entry.rest_is_flat ? flat_pattern(cloth.mesh, entry.uv_scale) : cloth.mesh;
+    cloth.rest =
+        entry.rest_is_flat ? flat_pattern(cloth.mesh, entry.uv_scale * entry.placement.scale) : cloth.mesh;
   } catch (const InputError& error) {
     throw InputError(entry.where + ": " + entry.mesh.string() + ": " + error.what());
   }
@@ -51,30 +52,44 @@ TriangleMesh between_particles(const Cloth& cloth) {
   return mesh;
 }
 
-// Mass and momentum of the particles that become one, number[i] being what particle i becomes.
-State merged_state(const State& state, const std::vector<double>& masses, const std::vector<int>& number) {
-  const int count = 1 + *std::max_element(number.begin(), number.end());
+// Momentum of the particles that become one, number[i] being what particle i becomes and masses [kg] those
+// that they have then. What is pinned stays where its first pin holds it.
+State merged_state(const Simulation& simulation, const std::vector<double>& masses,
+                   const std::vector<int>& number) {
+  const State& state = simulation.state;
+  const auto count = static_cast<Eigen::Index>(masses.size());
   State merged{state.time, VecX::Zero(3 * count), VecX::Zero(3 * count)};
-  std::vector<double> weight(static_cast<std::size_t>(count), 0.0);
-  for (std::size_t i = 0; i < number.size(); ++i) weight[static_cast<std::size_t>(number[i])] += masses[i];
-  std::vector<int> parts(weight.size(), 0);
+  std::vector<int> parts(masses.size(), 0), pinned(masses.size(), -1);
   for (int n : number) ++parts[static_cast<std::size_t>(n)];
-  for (std::size_t i = 0; i < number.size(); ++i) {
-    const auto n = static_cast<std::size_t>(number[i]);
-    const double share = parts[n] == 1 ? 1 : weight[n] > 0 ? masses[i] / weight[n] : 1.0 / parts[n];
-    merged.x.segment<3>(3 * number[i]) += share * state.x.segment<3>(3 * static_cast<Eigen::Index>(i));
-    merged.v.segment<3>(3 * number[i]) += share * state.v.segment<3>(3 * static_cast<Eigen::Index>(i));
+  for (int i : simulation.constraints->pinned()) {
+    int& first = pinned[static_cast<std::size_t>(number[static_cast<std::size_t>(i)])];
+    if (first < 0) first = i;
+  }
+  for (int i = 0; i < state.particles(); ++i) {
+    const int to = number[static_cast<std::size_t>(i)];
+    const auto n = static_cast<std::size_t>(to);
+    double share = 1;
+    if (pinned[n] >= 0)
+      share = pinned[n] == i ? 1 : 0;
+    else if (parts[n] > 1)
+      share = masses[n] > 0 ? simulation.system->masses()[static_cast<std::size_t>(i)] / masses[n]
+                            : 1.0 / parts[n];
+    merged.x.segment<3>(3 * to) += share * state.x.segment<3>(3 * i);
+    merged.v.segment<3>(3 * to) += share * state.v.segment<3>(3 * i);
   }
   return merged;
 }
 
 }  // namespace
 
-std::vector<SoftBody> load_particles(const Scene& scene, Simulation& simulation) {
-  std::vector<SoftBody> softs;
+Particles load_particles(const Scene& scene, Simulation& simulation) {
+  Particles particles;
+  std::vector<double>& masses = particles.masses;
   std::vector<Vec3> positions;
   for (const ClothEntry& entry : scene.cloths) {
     Cloth cloth = load_cloth(entry, simulation.messages);
+    const std::vector<double> own = cloth_masses(entry, cloth.mesh, cloth.rest);
+    masses.insert(masses.end(), own.begin(), own.end());
     cloth.first_particle = static_cast<int>(positions.size());
     cloth.embedding = Embedding::each(cloth.first_particle, cloth.mesh.vertex_count());
     positions.insert(positions.end(), cloth.mesh.positions.begin(), cloth.mesh.positions.end());
@@ -82,17 +97,18 @@ std::vector<SoftBody> load_particles(const Scene& scene, Simulation& simulation)
     simulation.cloths.push_back(std::move(cloth));
   }
   for (const SoftEntry& entry : scene.softs) {
-    softs.push_back(make_soft_body(entry, static_cast<int>(positions.size()), simulation.messages));
-    const SoftBody& soft = softs.back();
+    SoftBody soft = make_soft_body(entry, static_cast<int>(positions.size()), simulation.messages);
+    masses.insert(masses.end(), soft.masses.begin(), soft.masses.end());
     positions.insert(positions.end(), soft.positions.begin(), soft.positions.end());
-    simulation.cloths.push_back(soft.cloth);
+    particles.soft_faces.insert(particles.soft_faces.end(), soft.faces.begin(), soft.faces.end());
+    simulation.cloths.push_back(std::move(soft.cloth));
   }
   simulation.state.x = stacked(positions);
   simulation.state.v = VecX::Zero(simulation.state.x.size());
-  return softs;
+  return particles;
 }
 
-void add_faces(const Scene& scene, const std::vector<SoftBody>& softs, Simulation& simulation) {
+void add_faces(const Scene& scene, const Particles& particles, Simulation& simulation) {
   if (scene.obstacles.empty()) return;
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
     const Cloth& cloth = simulation.cloths[k];
@@ -104,22 +120,20 @@ void add_faces(const Scene& scene, const std::vector<SoftBody>& softs, Simulatio
            fabric.stretch_spring.value_or(fabric.stretch)});
     simulation.constraints->add_faces(faces);
   }
-  for (const SoftBody& soft : softs) simulation.constraints->add_faces(soft.faces);
+  simulation.constraints->add_faces(particles.soft_faces);
 }
 
-void assemble(Simulation& simulation, std::vector<SoftBody> softs, Names& messages) {
+void assemble(Simulation& simulation, std::vector<double> masses, Names& messages) {
   const Scene& scene = *simulation.scene;
-  std::vector<double> all_masses;
   std::vector<std::unique_ptr<Force>> forces;
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
     Cloth& cloth = simulation.cloths[k];
     const ClothEntry& entry = scene.cloths[k];
-    const ClothModel model = cloth_model(entry, between_particles(cloth), cloth.rest, messages);
-    all_masses.insert(all_masses.end(), model.masses.begin(), model.masses.end());
+    const Connections connections = cloth_connections(entry, between_particles(cloth), cloth.rest, messages);
     cloth.edges.clear();
-    for (const StretchConnection& s : model.connections.stretch)
+    for (const StretchConnection& s : connections.stretch)
       if (s.L > 0) cloth.edges.push_back({cloth.first_particle + s.i, cloth.first_particle + s.j, s.L});
-    for (auto& force : forces_of(model.connections, entry.fabric, cloth.first_particle))
+    for (auto& force : forces_of(connections, entry.fabric, cloth.first_particle))
       forces.push_back(std::move(force));
     for (Cloth::Stitched& open : cloth.seams) {
       std::unique_ptr<Force> force = stitches(open.seam, cloth.embedding, simulation.state.time);
@@ -127,11 +141,10 @@ void assemble(Simulation& simulation, std::vector<SoftBody> softs, Names& messag
       if (force) forces.push_back(std::move(force));
     }
   }
-  for (SoftBody& soft : softs) {
-    all_masses.insert(all_masses.end(), soft.masses.begin(), soft.masses.end());
-    for (auto& force : soft.forces) forces.push_back(std::move(force));
-  }
-  simulation.system = std::make_unique<System>(std::move(all_masses));
+  for (std::size_t k = scene.cloths.size(); k < simulation.cloths.size(); ++k)
+    for (auto& force : simulation.cloths[k].springs(simulation.cloths[k].first_particle))
+      forces.push_back(std::move(force));
+  simulation.system = std::make_unique<System>(std::move(masses));
   simulation.system->add(Gravity{scene.simulation.gravity});
   simulation.system->add(std::move(forces));
   if (!simulation.constraints->faces().all().empty())
@@ -154,21 +167,24 @@ bool merge_closed_seams(Simulation& simulation) {
     });
   }
   if (!any) return false;
-  simulation.state = merged_state(simulation.state, simulation.system->masses(), number);
+  std::vector<double> masses(1 + static_cast<std::size_t>(*std::max_element(number.begin(), number.end())),
+                             0.0);
+  for (std::size_t i = 0; i < number.size(); ++i)
+    masses[static_cast<std::size_t>(number[i])] += simulation.system->masses()[i];
+  simulation.state = merged_state(simulation, masses, number);
   for (Cloth& cloth : simulation.cloths) cloth.renumber(number);
   simulation.constraints->merge(number);
   Names said_before;
-  const Scene& scene = *simulation.scene;
-  std::vector<SoftBody> softs;
-  for (std::size_t k = 0; k < scene.softs.size(); ++k)
-    softs.push_back(make_soft_body(scene.softs[k], simulation.cloths[scene.cloths.size() + k].first_particle,
-                                   said_before));
-  assemble(simulation, std::move(softs), said_before);
+  assemble(simulation, std::move(masses), said_before);
   return true;
 }
 
 void Cloth::renumber(const std::vector<int>& number) {
   embedding.renumber(number);
+  for (RestEdge& e : edges) {
+    e.i = number[static_cast<std::size_t>(e.i)];
+    e.j = number[static_cast<std::size_t>(e.j)];
+  }
   int low = number[static_cast<std::size_t>(first_particle)], high = low;
   for (int i = first_particle; i < end_particle; ++i) {
     low = std::min(low, number[static_cast<std::size_t>(i)]);

@@ -28,27 +28,33 @@ void warn_if_long(const ClothEntry& cloth, const TriangleMesh& mesh, const Trian
                      "along; use a grid of squares, or model = \"noh-jung\"");
 }
 
-}  // namespace
-
-ClothModel cloth_model(const ClothEntry& entry, const TriangleMesh& mesh, const TriangleMesh& rest,
-                       Names& messages) {
-  const bool grid = entry.model == "choi-ko";
-  ClothModel model;
+Connections connections_of(const ClothEntry& entry, const TriangleMesh& mesh, const TriangleMesh& rest) {
+  if (entry.model != "choi-ko") return noh_jung_connections(mesh, rest, entry.fabric);
   try {
-    model.connections =
-        grid ? choi_ko_connections(mesh, rest, entry.fabric) : noh_jung_connections(mesh, rest, entry.fabric);
+    return choi_ko_connections(mesh, rest, entry.fabric);
   } catch (const InputError& error) {
-    if (!grid) throw;
     throw InputError(entry.where + ": model = \"choi-ko\": " + entry.mesh.string() + ": " + error.what() +
                      "; use model = \"noh-jung\" for any other mesh");
   }
-  model.masses = grid ? choi_ko_mass(mesh, rest, entry.fabric.area_density)
-                      : lumped_mass(mesh, rest, entry.fabric.area_density);
-  if (entry.fabric.neighbour_weighting)
-    model.masses = neighbour_weighted(std::move(model.masses), model.connections);
-  if (grid) warn_if_long(entry, mesh, rest, messages);
-  warn_if_limp(entry, model.connections, messages);
-  return model;
+}
+
+}  // namespace
+
+std::vector<double> cloth_masses(const ClothEntry& entry, const TriangleMesh& mesh,
+                                 const TriangleMesh& rest) {
+  const Connections connections = connections_of(entry, mesh, rest);  // of a mesh that is one for the model
+  const double density = entry.fabric.area_density;
+  std::vector<double> masses =
+      entry.model == "choi-ko" ? choi_ko_mass(mesh, rest, density) : lumped_mass(mesh, rest, density);
+  return entry.fabric.neighbour_weighting ? neighbour_weighted(std::move(masses), connections) : masses;
+}
+
+Connections cloth_connections(const ClothEntry& entry, const TriangleMesh& mesh, const TriangleMesh& rest,
+                              Names& messages) {
+  Connections connections = connections_of(entry, mesh, rest);
+  if (entry.model == "choi-ko") warn_if_long(entry, mesh, rest, messages);
+  warn_if_limp(entry, connections, messages);
+  return connections;
 }
 
 }  // namespace drape

@@ -6,14 +6,12 @@
 
 namespace drape {
 
-struct ClothModel {
-  std::vector<double> masses;  // kg, of the mesh's vertices
-  Connections connections;
-};
+// kg, of the mesh's vertices. `rest` as in solver/noh_jung.h. Throws InputError when the mesh is not one for
+// the model.
+std::vector<double> cloth_masses(const ClothEntry& entry, const TriangleMesh& mesh, const TriangleMesh& rest);
 
-// `rest` as in solver/noh_jung.h. Adds to the messages what the user should know. Throws InputError when the
-// mesh is not one for the model.
-ClothModel cloth_model(const ClothEntry& entry, const TriangleMesh& mesh, const TriangleMesh& rest,
-                       Names& messages);
+// Adds to the messages what the user should know. Throws InputError as above.
+Connections cloth_connections(const ClothEntry& entry, const TriangleMesh& mesh, const TriangleMesh& rest,
+                              Names& messages);
 
 }  // namespace drape

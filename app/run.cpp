@@ -41,9 +41,12 @@ std::string strongest_term(const System& system, const State& state, int particl
   return strongest;
 }
 
-// s, until when bodies or pins are moved: cloth that rests before may still be set going.
-double last_motion(const Scene& scene, const Constraints& constraints) {
+// s, until when bodies or pins are moved, or seams close: cloth that rests before may still be set going.
+double last_motion(const Scene& scene, const Simulation& simulation) {
+  const Constraints& constraints = *simulation.constraints;
   double last = 0;
+  for (const Cloth& cloth : simulation.cloths)
+    for (const Cloth::Stitched& open : cloth.seams) last = std::max(last, open.seam.close);
   for (std::size_t k = 0; k < scene.cloths.size() + scene.softs.size(); ++k)
     for (const PinEntry& pin : scene.pins_of(k))
       if (pin.motion) last = std::max(last, pin.motion->last_time());
@@ -98,7 +101,7 @@ Run::Run(const Scene& scene, Simulation& simulation, Output& output, const RunOp
       output_(output),
       quiet_(options.quiet),
       progress_(wanted_.duration, quiet_),
-      last_motion_(last_motion(scene, *simulation.constraints)) {
+      last_motion_(last_motion(scene, simulation)) {
   const double h = wanted_.time_step, exact = wanted_.duration / h;
   step_count_ = std::max(1L, std::lround(exact));
   last_step_ = h;
@@ -266,8 +269,7 @@ void Run::note_failure(const StepFailure& failure) {
 void Run::tell_of_open_seams() {
   for (const Cloth& cloth : simulation_.cloths)
     for (const Cloth::Stitched& open : cloth.seams) {
-      if (!open.seam.merge || simulation_.state.time < open.seam.close) continue;
-      bool told = false;
+      bool told = !open.seam.merge || record_.failure || simulation_.state.time < open.seam.close;
       tell_once(told, "warning: seam " + one_line(open.seam.name) + " of " + cloth.name +
                           " has not closed: it is " +
                           rounded(1000 * open.seam.gap(cloth.embedding, simulation_.state.x), 3) +

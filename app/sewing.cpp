@@ -129,9 +129,11 @@ OpenSeam open_seam(const SeamEntry& entry, const Fabric& fabric, const TriangleM
 
 double OpenSeam::gap(const Embedding& embedding, const VecX& x) const {
   double widest = 0;
-  for (const auto& [a, b] : pairs)
-    widest = std::max(
-        widest, (x.segment<3>(3 * embedding.particle(a)) - x.segment<3>(3 * embedding.particle(b))).norm());
+  for (const auto& [a, b] : pairs) {
+    const double wide =
+        (x.segment<3>(3 * embedding.particle(a)) - x.segment<3>(3 * embedding.particle(b))).norm();
+    if (!(wide <= widest)) widest = wide;  // what is no number is not closed
+  }
   return widest;
 }
 

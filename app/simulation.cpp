@@ -43,10 +43,21 @@ StepReport Simulation::advance(double h) {
       if (!stitched.force) continue;
       const double before = stitched.force->energy(state.x);
       close_until(*stitched.force, stitched.seam, state.time + h);
-      integrator->count_given(std::max(0.0, stitched.force->energy(state.x) - before));
+      const double more = stitched.force->energy(state.x) - before;
+      integrator->count_given(std::max(0.0, more));
+      given += more;
     }
   const StepReport report = integrator->advance(state, h);
-  if (open && report.done && merge_closed_seams(*this)) integrator = make_integrator(*system, *constraints);
+  if (!open || !report.done) return report;
+  const auto energy = [&] {
+    return system->kinetic_energy(state.v) + system->elastic_energy(state.x) +
+           system->gravity_energy(state.x);
+  };
+  const double before = energy();
+  if (merge_closed_seams(*this)) {
+    integrator = make_integrator(*system, *constraints);
+    given += energy() - before;
+  }
   return report;
 }
 
@@ -99,11 +110,11 @@ Simulation make_simulation(const Scene& scene, bool keep_level_sets) {
   Simulation simulation;
   simulation.scene = std::make_shared<const Scene>(scene);
   simulation.constraints = std::make_unique<Constraints>(scene.simulation.contact);
-  std::vector<SoftBody> softs = load_particles(scene, simulation);
+  Particles particles = load_particles(scene, simulation);
   add_obstacles(scene, keep_level_sets, simulation);
-  add_faces(scene, softs, simulation);
+  add_faces(scene, particles, simulation);
   add_pins(scene, simulation);  // some of them to bodies
-  assemble(simulation, std::move(softs), simulation.messages);
+  assemble(simulation, std::move(particles.masses), simulation.messages);
   add_warnings(scene, simulation);
   simulation.use([options = scene.simulation](System& system, Constraints& constraints) {
     return make_integrator(options.integrator, system, constraints, make_linear_solver(options.linear_solver),

@@ -36,6 +36,7 @@ struct Cloth {
   TriangleMesh rest;                         // its triangle k is the mesh's (solver/noh_jung.h)
   std::vector<RestEdge> edges;
   std::optional<LatticeCounts> soft;  // a soft body, and no cloth
+  std::function<std::vector<std::unique_ptr<Force>>(int first_particle)> springs;  // of a soft body
 
   struct Stitched {
     OpenSeam seam;
@@ -65,6 +66,8 @@ struct Simulation {
   std::shared_ptr<const Scene> scene;  // what it was made from
   // Makes the integrator, now and again when particles have become one.
   std::function<std::unique_ptr<Integrator>(System&, Constraints&)> make_integrator;
+
+  double given = 0;  // J, by seams so far: their pull, and what the cloth gets when they are merged
 
   // One step, h [s]. Seams go on closing; those that have closed are merged.
   StepReport advance(double h);

@@ -58,7 +58,8 @@ SoftBody make_soft_body(const SoftEntry& entry, int first_particle, Names& messa
   SoftBody body;
   Cloth& cloth = body.cloth;
   cloth.name = entry.name;
-  const Lattice lattice = lattice_of(entry, cloth.mesh, messages);
+  const auto kept = std::make_shared<const Lattice>(lattice_of(entry, cloth.mesh, messages));
+  const Lattice& lattice = *kept;
   std::vector<int> on_surface;
   const TriangleMesh surface = surface_of(lattice, on_surface);
   std::optional<double> volume;
@@ -71,7 +72,6 @@ SoftBody make_soft_body(const SoftEntry& entry, int first_particle, Names& messa
   }
   try {
     body.masses = masses(lattice, entry.material, volume);
-    body.forces = soft_body(lattice, entry.material, first_particle);
   } catch (const InputError& error) {
     throw InputError(entry.where + ": " + error.what());
   }
@@ -83,6 +83,7 @@ SoftBody make_soft_body(const SoftEntry& entry, int first_particle, Names& messa
   body.positions = placed(std::move(points), placement, entry.name).positions;
   cloth.first_particle = first_particle;
   cloth.end_particle = first_particle + lattice.particle_count();
+  cloth.springs = [kept, material = entry.material](int first) { return soft_body(*kept, material, first); };
   cloth.soft = LatticeCounts{static_cast<int>(lattice.structural.size()),
                              static_cast<int>(lattice.shear.size()), static_cast<int>(lattice.bend.size())};
   for (const auto* pairs : {&lattice.structural, &lattice.shear, &lattice.bend})

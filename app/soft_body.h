@@ -11,10 +11,9 @@
 namespace drape {
 
 struct SoftBody {
-  Cloth cloth;                  // as all that is simulated is written and looked at
-  std::vector<double> masses;   // kg
-  std::vector<Vec3> positions;  // m, of its particles
-  std::vector<std::unique_ptr<Force>> forces;
+  Cloth cloth;                   // as all that is simulated is written and looked at
+  std::vector<double> masses;    // kg
+  std::vector<Vec3> positions;   // m, of its particles
   std::vector<ClothFace> faces;  // of the cells
 };
 

@@ -65,17 +65,16 @@ void Constraints::move_pins() {
 
 void Constraints::merge(const std::vector<int>& particle_of) {
   const auto number = [&](int i) { return particle_of[static_cast<std::size_t>(i)]; };
+  std::vector<int> first(particle_of.size(), -1);  // pin of a number
+  for (int i : pinned_)
+    if (int& owner = first[static_cast<std::size_t>(number(i))]; owner < 0) owner = i;
+  std::erase_if(moving_pins_, [&](const MovingPin& pin) {
+    return first[static_cast<std::size_t>(number(pin.particle))] != pin.particle;
+  });
+  for (MovingPin& pin : moving_pins_) pin.particle = number(pin.particle);
   for (int& i : pinned_) i = number(i);
   std::sort(pinned_.begin(), pinned_.end());
   pinned_.erase(std::unique(pinned_.begin(), pinned_.end()), pinned_.end());
-  std::vector<MovingPin> pins;
-  for (MovingPin pin : moving_pins_) {
-    pin.particle = number(pin.particle);
-    const bool again = std::any_of(pins.begin(), pins.end(),
-                                   [&](const MovingPin& other) { return other.particle == pin.particle; });
-    if (!again) pins.push_back(pin);
-  }
-  moving_pins_ = std::move(pins);
   faces_.renumber(particle_of);
   held_.clear();  // all that is known of particles is prepared anew
   x_end_.resize(0);

@@ -64,7 +64,8 @@ class Constraints {
   void pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x);
 
   // Particles become one: particle i is number particle_of[i] from now on, and one of those is pinned if any
-  // of its parts was, as the first of them. Contacts are found anew; bodies stay as they are.
+  // of its parts was, in the way of the lowest of them that was. Contacts are found anew; bodies stay as they
+  // are.
   void merge(const std::vector<int>& particle_of);
 
   // The triangles of the cloth, so that corners and rims of bodies do not come through between the vertices.

@@ -98,7 +98,9 @@ RestHinge rest_hinge(const TriangleMesh& mesh, const TriangleMesh& rest, const H
   const double l1 = along1.norm(), l2 = along2.norm();
   if (l1 == 0 || l2 == 0) return {0, 0, 0, 0};
   RestHinge r{l1, 0, along1.cross(one[2] - one[0]).norm() / l1, along2.cross(two[2] - two[0]).norm() / l2};
-  if (one[0] == two[0] && one[1] == two[1]) {
+  const Vec3 n1 = along1.cross(one[2] - one[0]), n2 = along2.cross(two[2] - two[0]);
+  const bool on_one_side = n1.dot(n2) > (1 - 1e-9) * n1.norm() * n2.norm();  // mirrored texture coordinates
+  if (one[0] == two[0] && one[1] == two[1] && !on_one_side) {
     r.L = (two[2] - one[2]).norm();
   } else {  // cut here: unfolded into a plane, each side measured from the middle of its edge
     r.l = 0.5 * (l1 + l2);

@@ -11,6 +11,7 @@
 // Rest shape: a mesh of its own, whose triangle k is the cloth's triangle k, corner by corner. It may be cut
 // where the cloth is sewn: there each side of an edge has its own rest length, two springs side by side, and
 // the diagonal across it has the rest length of the two triangles unfolded into a plane.
+// The same where the rest shape is folded onto itself along the edge.
 // Two sides of the same rest length count as one spring. An edge without length and a triangle without area
 // give no bend connection.
 #pragma once

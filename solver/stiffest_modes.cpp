@@ -51,6 +51,14 @@ double form(const BlockMatrix& A, const VecX& x) {
   return dot(x, product);
 }
 
+// The trace of W K W: 0 where nothing that is free resists.
+double stiffness_of_free(const BlockMatrix& K, const VecX& weights) {
+  double trace = 0;
+  for (int row = 0; row < K.pattern().rows(); ++row)
+    trace += weights.segment<3>(3 * row).cwiseAbs2().dot(K.at(K.pattern().diagonal(row)).diagonal());
+  return trace;
+}
+
 // K from c = 1, and D = (what c = 2 gives) - 4 K, since A = c D + c^2 K.
 struct Matrices {
   BlockMatrix K, D;
@@ -92,7 +100,7 @@ Spectrum stiffest_modes(System& system, const Constraints& constraints, const St
   spectrum.proportional = at.proportional();
   const auto n = static_cast<int>(weights.size());
   const int wanted = std::min(count, n - 1);
-  if (wanted < 1 || form(at.K, weights) + at.K.at(0).norm() == 0) return spectrum;
+  if (wanted < 1 || stiffness_of_free(at.K, weights) == 0) return spectrum;
   Scaled op(at.K, weights);
   Spectra::SymEigsSolver<Scaled> solver(op, wanted, std::min(n, std::max(40, 4 * wanted)));
   solver.init();

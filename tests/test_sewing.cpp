@@ -239,6 +239,98 @@ TEST_CASE("a pattern named by the scene is the mesh that triangulate writes", "[
   CHECK_THROWS_WITH(made("mesh = \"p.obj\"\nedge = \"3 cm\"\n"), Contains("s.toml:4") && Contains("pattern"));
 }
 
+TEST_CASE("a corner whose sides are both sewn keeps its mass, and a soft body beside it its springs",
+          "[sewing]") {
+  const Folder folder;
+  std::string pillow = "unit = \"1 cm\"\n";
+  for (int p = 0; p < 2; ++p)
+    pillow += "[[panel]]\nname = \"" + std::string(p == 0 ? "a" : "b") + "\"\noutline = [[" +
+              std::to_string(60 * p) + ", 0], [" + std::to_string(40 + 60 * p) + ", 0], [" +
+              std::to_string(20 + 60 * p) + ", 35]]\nsides = [\"x\", \"y\", \"z\"]\n";
+  pillow +=
+      "[[seam]]\ncurves = [\"a.x\", \"b.x\"]\n[[seam]]\ncurves = [\"a.y\", \"b.z\"]\n"
+      "[[seam]]\ncurves = [\"a.z\", \"b.y\"]\n";
+  folder.write("pillow.toml", pillow);
+  for (const bool weighted : {false, true}) {
+    Simulation s = make_simulation(read_scene(
+        parse_toml(
+            std::string(
+                "[simulation]\ngravity = [0, 0, 0]\n[[cloth]]\nmesh = \"pillow.toml\"\nedge = \"6 cm\"\n"
+                "panels = [{ group = \"a\" }, { group = \"b\", rotate = { axis = [0, 1, 0], angle = \"180 "
+                "deg\" }, "
+                "translate = [0, 0, -0.02] }]\nseams = [{ close = 0.2 }]\nneighbour_weighting = ") +
+                (weighted ? "true" : "false") +
+                "\n[[soft]]\nparticles = [3, 3, 3]\nspacing = 0.1\ntranslate = [0, 1, 0]\n",
+            "s.toml"),
+        {}, folder.path, "s.toml"));
+    const double weight = mass(s);
+    advance(s, 1);
+    CHECK(s.cloths[0].seams.empty());
+    CHECK(mass(s) == Approx(weight).epsilon(1e-12));
+    for (const RestEdge& e : s.cloths[1].edges) {
+      REQUIRE(std::max(e.i, e.j) < s.state.particles());
+      CHECK((s.state.x.segment<3>(3 * e.i) - s.state.x.segment<3>(3 * e.j)).norm() ==
+            Approx(e.L).epsilon(1e-3));
+    }
+  }
+}
+
+TEST_CASE("a rest shape folded onto itself in uv is the sheet unfolded", "[sewing]") {
+  TriangleMesh flap, folded;
+  flap.positions = {{0, 0, 0}, {1, 0, 0}, {0.4, 1, 0}, {0.5, -0.8, 0}};
+  flap.triangles = {{0, 1, 2}, {1, 0, 3}};
+  folded = flap;
+  folded.positions[3].y() = 0.8;  // on the side of the other one
+  const Connections open = noh_jung_connections(flap, flap, {}),
+                    mirrored = noh_jung_connections(flap, folded, {});
+  REQUIRE(mirrored.bend.size() == 1);
+  CHECK(mirrored.bend[0].L == Approx(open.bend[0].L));
+  CHECK(mirrored.bend[0].k_b == Approx(open.bend[0].k_b));
+}
+
+TEST_CASE("a pattern that is scaled rests scaled", "[sewing]") {
+  const Tailor tailor;
+  const Simulation plain = tailor.simulation(""), twice = tailor.simulation("scale = 2\n");
+  REQUIRE(plain.cloths[0].edges.size() == twice.cloths[0].edges.size());
+  for (std::size_t k = 0; k < plain.cloths[0].edges.size(); ++k)
+    CHECK(twice.cloths[0].edges[k].L == Approx(2 * plain.cloths[0].edges[k].L));
+}
+
+TEST_CASE("a pin that stands and one that moves become the first of them", "[sewing]") {
+  const Tailor tailor;
+  Simulation s = tailor.simulation(
+      "seams = [{ close = 0.1 }]\npins = [{ group = \"front.right\" }, { group = \"back.left\", motion = "
+      "{ keyframes = [{ time = 0 }, { time = 0.15, translate = [0, 0, 0.04] }, "
+      "{ time = 1, translate = [0, 0.5, 0] }] } }]\n",
+      light);
+  advance(s, 0.8);
+  CHECK(s.cloths[0].seams.size() <= 1);
+  const std::vector<Vec3> x = s.cloths[0].embedding.positions(s.state.x);
+  for (int j = 0; j < tailor.panels.ny; ++j) {
+    const auto v = static_cast<std::size_t>(tailor.panels.vertex(0, tailor.panels.nx - 1, j));
+    CHECK((x[v] - s.cloths[0].mesh.positions[v]).norm() < 1e-12);
+  }
+}
+
+TEST_CASE("what rests is not settled while its seams are closing", "[sewing]") {
+  const Tailor tailor;
+  tailor.write("s.toml", tube_cloth +
+                             "seams = [{ close = \"1.5 s\" }]\npins = [{ group = \"front\" }, { group = "
+                             "\"back\" }]\n[simulation]\nstop_when_settled = true\nduration = 3\n");
+  const Outcome run = tailor.drape("simulate s.toml --out o --frames none --quiet");
+  REQUIRE(run.exit_code == 0);
+  CHECK(content(tailor.path / "o/run.json").find("has not closed") != std::string::npos);
+}
+
+TEST_CASE("seams make no scene unstable", "[sewing]") {
+  const Tailor tailor;
+  tailor.write("s.toml", tube_cloth + "seams = [{ close = \"0.1 s\" }]\n" + pinned);
+  const Outcome run =
+      tailor.drape("stability s.toml --time 0.2s --integrators implicit-euler --out st --quiet");
+  REQUIRE(run.exit_code == 0);
+  CHECK(content(tailor.path / "st/stability.csv").find("none") == std::string::npos);
+}
+
 TEST_CASE("a seam that is kept holds to a micrometre", "[sewing]") {
   const Tailor tailor;
   Simulation s = tailor.simulation("seams = [{ close = 0.3, then = \"keep\" }]\n" + pinned, light);

@@ -39,18 +39,21 @@ class EnergyWatch {
   }
   // What has been made, as a part of what was given.
   double growth() {
-    const double work = s_.constraints->work(), gravity = s_.system->gravity_energy(s_.state.x);
+    const double work = s_.constraints->work() + s_.given - seams_,
+                 gravity = s_.system->gravity_energy(s_.state.x);
+    seams_ = s_.given;
     work_ += work;
     given_ += std::max(0.0, work);
     lowest_ = std::min(lowest_, gravity);
     const double now =
         s_.system->kinetic_energy(s_.state.v) + s_.system->elastic_energy(s_.state.x) + gravity;
-    return (now - work_ - start_) / (given_ + start_gravity_ - lowest_);
+    const double made = now - work_ - start_, given = given_ + start_gravity_ - lowest_;
+    return made <= 0 && given == 0 ? 0 : made / given;
   }
 
  private:
   const Simulation& s_;
-  double start_ = 0, start_gravity_ = 0, lowest_ = 0, given_ = 0, work_ = 0;  // J
+  double start_ = 0, start_gravity_ = 0, lowest_ = 0, given_ = 0, work_ = 0, seams_ = 0;  // J
 };
 
 struct Trial {
