@@ -5,6 +5,7 @@
 
 #include "app/cloth_model.h"
 #include "app/pattern_read.h"
+#include "app/triangulate_command.h"
 #include "mesh/flat_pattern.h"
 #include "mesh/obj.h"
 #include "solver/face_contact_force.h"
@@ -17,6 +18,8 @@ TriangleMesh cut_pattern(const ClothEntry& entry, Names& messages) {
   Names notes;
   PatternMesh cut = triangulate(read_pattern(entry.mesh, notes), entry.pattern);
   for (const std::string& note : notes) messages.push_back("note: " + note);
+  for (std::string& line : remarks(cut, entry.pattern.min_angle, entry.mesh.string()))
+    messages.push_back(std::move(line));
   return std::move(cut.mesh);
 }
 

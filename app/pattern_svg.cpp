@@ -47,7 +47,7 @@ class SvgReader {
     if (local(root) != "svg")
       throw InputError(at(root) + ": is not an SVG drawing: it begins with <" + std::string(root.name()) +
                        ">");
-    walk_children(root, document_map(root));
+    walk_children(root, document_map(root), 0);
     pattern_.where = name_;
     sort_shapes();
     for (const std::string& seam : words(root.attribute("data-seams").value()))
@@ -126,17 +126,31 @@ class SvgReader {
     return map;
   }
 
-  void walk_children(const pugi::xml_node& parent, const Affine& map) {
+  void walk_children(const pugi::xml_node& parent, const Affine& map, int depth) {
+    if (depth > kDeepest)
+      throw InputError(at(parent) + ": more than " + std::to_string(kDeepest) +
+                       " groups in one another; ungroup the drawing");
     for (const pugi::xml_node& node : parent.children())
-      if (node.type() == pugi::node_element) walk(node, map);
+      if (node.type() == pugi::node_element) walk(node, map, depth);
   }
 
-  void walk(const pugi::xml_node& node, const Affine& outer) {
+  // What is not shown: display="none", or style="display:none", which counts more.
+  static bool hidden(const pugi::xml_node& node) {
+    std::string display = node.attribute("display").value();
+    std::string style = node.attribute("style").value();
+    std::erase_if(style, [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; });
+    std::istringstream declarations(style);
+    for (std::string text; std::getline(declarations, text, ';');)
+      if (text.starts_with("display:")) display = text.substr(8);
+    return display.substr(0, display.find('!')) == "none";  // without !important
+  }
+
+  void walk(const pugi::xml_node& node, const Affine& outer, int depth) {
     const std::string kind = local(node);
     static const std::set<std::string> silent = {
         "defs",   "metadata", "namedview", "title", "desc",   "style",          "symbol",
         "marker", "clipPath", "pattern",   "mask",  "filter", "linearGradient", "radialGradient"};
-    if (std::string(node.attribute("display").value()) == "none") return;
+    if (hidden(node)) return;
     if (silent.contains(kind)) return;
     if (kind == "script" || kind == "text" || kind == "use" || kind == "image" || kind == "switch" ||
         kind == "foreignObject" || kind == "svg") {
@@ -150,7 +164,7 @@ class SvgReader {
     } catch (const InputError& error) {
       throw InputError(at(node) + ": " + error.what());
     }
-    if (kind == "g" || kind == "a") return walk_children(node, map);
+    if (kind == "g" || kind == "a") return walk_children(node, map, depth + 1);
     const std::string d = path_data(node, kind);
     if (d.empty()) {
       if (kind == "path") throw InputError(at(node) + ": a path without 'd'");
@@ -301,6 +315,8 @@ class SvgReader {
                                    [](const std::string& n) { return !n.empty(); });
     if (!named) std::fill(shape.chain.names.begin(), shape.chain.names.end(), shape.name);
   }
+
+  static constexpr int kDeepest = 1000;  // groups in groups
 
   std::string_view text_;
   std::string name_;

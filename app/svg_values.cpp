@@ -49,8 +49,7 @@ class PathTaker {
     if (paths_.empty() || (fresh_ && paths_.back().closed)) paths_.emplace_back();  // after 'z' without 'm'
     fresh_ = false;
     at_ = segment.end;
-    const bool point = segment.kind == Segment::Kind::line && segment.start == segment.end;
-    if (!point) paths_.back().segments.push_back(segment);
+    if (!is_point(segment)) paths_.back().segments.push_back(segment);
   }
 
   std::vector<SvgPath> paths_;

@@ -57,27 +57,33 @@ void print_report(const PatternMesh& made) {
               rounded(1000 * made.tolerance, 3).c_str(), in_deg(made.smallest_angle).c_str());
 }
 
-void print_remarks(const PatternMesh& made, const TriangulateOptions& options) {
+void print_remarks(const PatternMesh& made, double min_angle, const std::string& where) {
   for (const SeamReport& seam : made.seams)
     if (std::max(seam.length_a, seam.length_b) > kVeryDifferent * std::min(seam.length_a, seam.length_b))
       std::printf("warning: seam %s / %s: %s to %s: very different lengths; is this the seam you mean?\n",
                   seam.a.c_str(), seam.b.c_str(), in_cm(seam.length_a).c_str(), in_cm(seam.length_b).c_str());
-  constexpr std::size_t most = 10;
-  for (std::size_t i = 0; i < made.sharp.size() && i < most; ++i)
-    std::printf("note: a corner of panel %s is sharper than the bound: %s at x = %s, y = %s\n",
-                made.sharp[i].panel.c_str(), in_deg(made.sharp[i].angle).c_str(),
-                in_cm(made.sharp[i].at.x()).c_str(), in_cm(made.sharp[i].at.y()).c_str());
-  if (made.sharp.size() > most) std::printf("note: and %zu more such corners\n", made.sharp.size() - most);
-  if (made.below > 0)
-    std::printf(
-        "warning: %s below %s that no sharp corner explains, down to %s: parts too fine for the edge length, "
-        "or a "
-        "bound too high\n",
-        counted(made.below, "triangle").c_str(), in_deg(options.min_angle).c_str(),
-        in_deg(made.smallest_angle_elsewhere).c_str());
+  for (const std::string& line : remarks(made, min_angle, where)) std::printf("%s\n", one_line(line).c_str());
 }
 
 }  // namespace
+
+Names remarks(const PatternMesh& made, double min_angle, const std::string& where) {
+  Names lines;
+  constexpr std::size_t most = 10;
+  for (std::size_t i = 0; i < made.sharp.size() && i < most; ++i)
+    lines.push_back("note: " + where + ": a corner of panel " + made.sharp[i].panel +
+                    " is sharper than the bound: " + in_deg(made.sharp[i].angle) +
+                    " at x = " + in_cm(made.sharp[i].at.x()) + ", y = " + in_cm(made.sharp[i].at.y()));
+  if (made.sharp.size() > most)
+    lines.push_back("note: " + where + ": and " + std::to_string(made.sharp.size() - most) +
+                    " more such corners");
+  if (made.below > 0)
+    lines.push_back("warning: " + where + ": " + counted(made.below, "triangle") + " below " +
+                    in_deg(min_angle) + " that no sharp corner explains, down to " +
+                    in_deg(made.smallest_angle_elsewhere) +
+                    ": parts too fine for the edge length, or a bound too high");
+  return lines;
+}
 
 int triangulate_file(const TriangulateWords& words) {
   TriangulateOptions options;
@@ -94,7 +100,7 @@ int triangulate_file(const TriangulateWords& words) {
   if (words.quiet) return 0;
   for (const std::string& note : notes) std::printf("note: %s\n", one_line(note).c_str());
   print_report(made);
-  print_remarks(made, options);
+  print_remarks(made, options.min_angle, words.pattern);
   std::printf("wrote %s\n", words.out.c_str());
   return 0;
 }

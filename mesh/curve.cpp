@@ -64,6 +64,11 @@ Segment arc_segment(const Vec2& start, const Vec2& end, double rx, double ry, do
   return arc;
 }
 
+bool is_point(const Segment& s) {
+  if (s.kind == Segment::Kind::arc) return s.sweep == 0;
+  return s.start == s.end && (s.kind == Segment::Kind::line || (s.p[1] == s.start && s.p[2] == s.start));
+}
+
 Segment mapped(const Segment& segment, const Eigen::Matrix2d& matrix, const Vec2& shift) {
   Segment s = segment;
   s.start = matrix * s.start + shift, s.end = matrix * s.end + shift;

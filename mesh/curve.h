@@ -31,6 +31,8 @@ Segment quadratic_segment(const Vec2& p0, const Vec2& p1, const Vec2& p2);
 Segment arc_segment(const Vec2& start, const Vec2& end, double rx, double ry, double turn, bool large,
                     bool counter_clockwise);
 
+bool is_point(const Segment& segment);  // has no length
+
 Segment mapped(const Segment& segment, const Eigen::Matrix2d& matrix, const Vec2& shift);
 Segment reversed(const Segment& segment);
 

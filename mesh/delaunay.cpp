@@ -1,6 +1,7 @@
 #include "mesh/delaunay.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "mesh/predicates.h"
@@ -174,15 +175,21 @@ Delaunay::Corner Delaunay::find_edge(int a, int b) const {
   return found;
 }
 
-void Delaunay::force_edge(int a, int b, int piece) {
+Delaunay::Corner Delaunay::edge_of(int a, int b) const {
+  const Corner found = find_edge(a, b);
+  if (found.t < 0) throw std::logic_error("Delaunay: two vertices of a piece are not joined");
+  return found;
+}
+
+bool Delaunay::force_edge(int a, int b, int piece) {
   std::deque<std::pair<int, int>> crossing;
   std::vector<std::pair<int, int>> changed;
-  if (find_edge(a, b).t < 0) crossing = crossed_edges(a, b);
+  if (find_edge(a, b).t < 0 && !crossed_edges(a, b, crossing)) return false;
   const auto side = [&](int v) { return orient2d(at(a), at(b), at(v)); };
   while (!crossing.empty()) {
     const auto [l, r] = crossing.front();
     crossing.pop_front();
-    const Corner c = find_edge(l, r);
+    const Corner c = edge_of(l, r);
     if (!convex(c)) {
       crossing.emplace_back(l, r);
       continue;
@@ -195,7 +202,7 @@ void Delaunay::force_edge(int a, int b, int piece) {
       changed.emplace_back(p, q);
     }
   }
-  const Corner c = find_edge(a, b);
+  const Corner c = edge_of(a, b);
   join(c.t, c.i, face(c.t).next[z(c.i)], piece);
   while (!changed.empty()) {
     const Corner k = find_edge(changed.back().first, changed.back().second);
@@ -208,10 +215,12 @@ void Delaunay::force_edge(int a, int b, int piece) {
     flip(k);
     changed.insert(changed.end(), {{p, l}, {l, q}, {q, r}, {r, p}});
   }
+  return true;
 }
 
-// The edges that the way from a to b crosses, which are not joined, in order; it meets no vertex between.
-std::deque<std::pair<int, int>> Delaunay::crossed_edges(int a, int b) const {
+// The edges that the way from a to b crosses, which are not joined, in order. False: it meets a vertex
+// between, or an edge with a piece.
+bool Delaunay::crossed_edges(int a, int b, std::deque<std::pair<int, int>>& crossed) const {
   const auto side = [&](int v) { return orient2d(at(a), at(b), at(v)); };
   Corner c;
   around(a, [&](int t) {
@@ -219,17 +228,18 @@ std::deque<std::pair<int, int>> Delaunay::crossed_edges(int a, int b) const {
     const int i = index_of(f, a), r = f.v[z(after(i))], l = f.v[z(before(i))];
     if (side(r) < 0 && side(l) > 0) c = {t, i};
   });
-  std::deque<std::pair<int, int>> crossed;
-  while (face(c.t).v[z(c.i)] != b) {
+  if (a == b || c.t < 0) return false;
+  while (true) {
     const Face& f = face(c.t);
+    if (f.piece[z(c.i)] >= 0) return false;
     crossed.emplace_back(f.v[z(after(c.i))], f.v[z(before(c.i))]);
     const Corner o = across(c);
     const int apex = face(o.t).v[z(o.i)];
-    if (apex == b) break;
+    if (apex == b) return true;
+    if (side(apex) == 0) return false;
     // In the triangle beyond, after(o.i) is left of the way and before(o.i) is right of it.
     c = {o.t, side(apex) > 0 ? after(o.i) : before(o.i)};
   }
-  return crossed;
 }
 
 bool Delaunay::fits(Corner edge, const Vec2& x) const {

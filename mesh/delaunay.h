@@ -46,7 +46,9 @@ class Delaunay {
   bool fits(Corner edge, const Vec2& x) const;  // whether split() would take x
   int add(const Vec2& x, const Place& place);   // the new vertex; an edge it is on carries no piece
   Corner find_edge(int a, int b) const;         // t = -1: a and b are not joined
-  void force_edge(int a, int b, int piece);
+  Corner edge_of(int a, int b) const;           // find_edge() of two that are joined
+  // False, with nothing done: a and b are one vertex, or another vertex or piece is in the way.
+  bool force_edge(int a, int b, int piece);
   // Puts x in the middle of an edge with a piece; the half at vertex `a` of it carries piece_a. x may lie
   // beside the edge, as long as the four triangles keep their sense; if not, -1 and nothing is done.
   int split(Corner edge, const Vec2& x, int a, int piece_a, int piece_b);
@@ -84,7 +86,7 @@ class Delaunay {
   void flip(Corner c);
   void legalise();
   int split_edge(Corner edge, const Vec2& x, int piece_a, int piece_b);
-  std::deque<std::pair<int, int>> crossed_edges(int a, int b) const;
+  bool crossed_edges(int a, int b, std::deque<std::pair<int, int>>& crossed) const;
 
   std::vector<Vec2> points_;
   std::vector<Face> faces_;

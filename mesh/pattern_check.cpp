@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "mesh/obj.h"
@@ -14,12 +13,6 @@ namespace {
 
 std::size_t z(int i) { return static_cast<std::size_t>(i); }
 
-std::string place(const Vec2& x) {
-  char text[80];
-  std::snprintf(text, sizeof text, "x = %.4g cm, y = %.4g cm", 100 * x.x(), 100 * x.y());
-  return text;
-}
-
 void check_chain(const Chain& chain, bool loop) {
   if (chain.segments.empty()) throw InputError(chain.where + ": nothing is drawn");
   double length = 0;
@@ -29,8 +22,7 @@ void check_chain(const Chain& chain, bool loop) {
         throw InputError(chain.where + ": a coordinate is not a finite number of at most 1000 km");
       if (t > 0) length += (point(s, t) - point(s, t - 0.125)).norm();
     }
-    if (s.kind == Segment::Kind::line && s.start == s.end)
-      throw InputError(chain.where + ": a side has no length, at " + place(s.start));
+    if (is_point(s)) throw InputError(chain.where + ": a side has no length, at " + place_of(s.start));
   }
   if (length <= 0) throw InputError(chain.where + ": has no length");
   if (loop && std::abs(enclosed_area(chain)) <= 1e-9 * length * length)
@@ -110,7 +102,7 @@ class PieceChecker {
 
   [[noreturn]] void crosses(int i, int j, const Vec2& x) const {
     const Run &a = run(i), &b = run(j);
-    const std::string at = " near " + place(x);
+    const std::string at = " near " + place_of(x);
     if (a.where == b.where)
       throw InputError(a.where + ": crosses or touches itself" + at + "; draw it without a crossing");
     throw InputError(a.where + ": crosses or touches " + b.where + at + "; draw them apart");
@@ -129,11 +121,11 @@ class PieceChecker {
 
   [[noreturn]] void overlap(int p, int q, const Vec2& x) const {
     throw InputError(pattern_.panels[z(p)].outline.where + ": panel '" + pattern_.panels[z(p)].name +
-                     "' overlaps panel '" + pattern_.panels[z(q)].name + "' near " + place(x) +
+                     "' overlaps panel '" + pattern_.panels[z(q)].name + "' near " + place_of(x) +
                      "; move one of them");
   }
 
-  // Whether a vertex or the middle of a piece of panel p is well inside panel q.
+  // Whether a vertex, the middle of a piece or an inner point of panel p is well inside panel q.
   void check_inside(int p, int q) const {
     const Boundary& other = boundary(q);
     const auto look = [&](const Vec2& x) {
@@ -142,6 +134,7 @@ class PieceChecker {
         overlap(p, q, x);
     };
     for (const auto& [a, b] : boundary(p).pieces) look(a), look((a + b) / 2);
+    look(boundary(p).inner_point());  // where the one has its sides on the other's
   }
 
   struct Boundary {
@@ -154,6 +147,19 @@ class PieceChecker {
         if ((a.y() > x.y()) != (b.y() > x.y()) && (orient2d(a, b, x) > 0) == (b.y() > a.y()))
           inside = !inside;
       return inside;
+    }
+    // In the middle of the widest part of the line across at half height.
+    Vec2 inner_point() const {
+      const double y = (low.y() + high.y()) / 2;
+      std::vector<double> crossings;
+      for (const auto& [a, b] : pieces)
+        if ((a.y() > y) != (b.y() > y))
+          crossings.push_back(a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
+      std::sort(crossings.begin(), crossings.end());
+      std::size_t best = 0;
+      for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
+        if (crossings[i + 1] - crossings[i] > crossings[best + 1] - crossings[best]) best = i;
+      return {(crossings[best] + crossings[best + 1]) / 2, y};
     }
     double distance(const Vec2& x) const {
       double least = 1e300;

@@ -103,7 +103,10 @@ class Refinement {
       Piece& piece = refined_.pieces[i];
       if (panel_of(piece) != panel) continue;
       closed[i] = run_of(piece).boundary;
-      mesh.force_edge(piece.a + kBox, piece.b + kBox, static_cast<int>(i));
+      if (!mesh.force_edge(piece.a + kBox, piece.b + kBox, static_cast<int>(i)))
+        throw InputError(run_of(piece).where + ": meets another corner or line of panel '" +
+                         pattern_.panels[z(panel)].name + "' at " + place_of(points[z(piece.a)]) +
+                         "; draw them apart");
     }
     mesh.mark_inside(closed);
     for (const Piece& piece : refined_.pieces)
@@ -113,7 +116,7 @@ class Refinement {
   // The panel is on the left of what bounds it, on both sides of a line.
   void check_sides(const Delaunay& mesh, const Piece& piece) const {
     const auto inside = [&](int a, int b) {
-      const Delaunay::Corner c = mesh.find_edge(a + kBox, b + kBox);
+      const Delaunay::Corner c = mesh.edge_of(a + kBox, b + kBox);
       const Delaunay::Face& f = mesh.faces()[z(c.t)];
       const bool left = f.v[z(Delaunay::after(c.i))] == a + kBox;
       return mesh.faces()[z(left ? c.t : f.next[z(c.i)])].inside;
@@ -200,13 +203,15 @@ class Refinement {
   // The pieces that a vertex at x would see from inside their circles: on the rim of what it would change.
   void find_in_the_way(const Delaunay& mesh, const Vec2& x, int from) {
     visited_.assign(1, from);
+    seen_.resize(std::max(seen_.size(), mesh.faces().size()), 0);
+    seen_[z(from)] = ++look_;
     for (std::size_t k = 0; k < visited_.size(); ++k) {
       const Delaunay::Face& f = mesh.faces()[z(visited_[k])];
       for (std::size_t i = 0; i < 3; ++i) {
         if (f.piece[i] >= 0) {
           if (in_circle_around(mesh, refined_.pieces[z(f.piece[i])], x)) in_the_way_.push_back(f.piece[i]);
-        } else if (std::find(visited_.begin(), visited_.end(), f.next[i]) == visited_.end() &&
-                   holds(mesh, mesh.faces()[z(f.next[i])], x)) {
+        } else if (seen_[z(f.next[i])] != look_ && holds(mesh, mesh.faces()[z(f.next[i])], x)) {
+          seen_[z(f.next[i])] = look_;
           visited_.push_back(f.next[i]);
         }
       }
@@ -238,7 +243,7 @@ class Refinement {
       const Piece& piece = refined_.pieces[z(q)];
       const Delaunay& mesh = refined_.panels[z(panel_of(piece))];
       const Vec2 &a = mesh.points()[z(piece.a + kBox)], &b = mesh.points()[z(piece.b + kBox)];
-      const Delaunay::Corner edge = mesh.find_edge(piece.a + kBox, piece.b + kBox);
+      const Delaunay::Corner edge = mesh.edge_of(piece.a + kBox, piece.b + kBox);
       Vec2 x = run_of(piece).curve.at((piece.f0 + piece.f1) / 2);
       if (!mesh.fits(edge, x)) x = (a + b) / 2;
       const bool can = !piece.stuck && (a - b).norm() > 2e-3 * edge_ && mesh.fits(edge, x);
@@ -290,7 +295,7 @@ class Refinement {
     const int panel = panel_of(second);
     Delaunay& mesh = refined_.panels[z(panel)];
     // A twin in the same panel may have changed what is around the edge.
-    edge = mesh.find_edge(second.a + kBox, second.b + kBox);
+    edge = mesh.edge_of(second.a + kBox, second.b + kBox);
     const Vec2 middle_point = (mesh.points()[z(second.a + kBox)] + mesh.points()[z(second.b + kBox)]) / 2;
     int v = mesh.split(edge, x, second.a + kBox, p, fresh);
     if (v < 0) v = mesh.split(edge, middle_point, second.a + kBox, p, fresh);
@@ -326,6 +331,8 @@ class Refinement {
   std::deque<Asked> encroached_;
   std::priority_queue<Bad> bad_;
   std::vector<int> in_the_way_, visited_, around_;
+  std::vector<long> seen_;  // of each triangle: the last look that visited it
+  long look_ = 0;
 };
 
 }  // namespace

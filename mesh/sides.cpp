@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "mesh/obj.h"
 #include "mesh/sharp_corners.h"
@@ -117,10 +119,9 @@ class SideCutter {
                std::vector<int> corners, bool boundary) {
     const std::string& panel_name = pattern_.panels[z(panel)].name;
     const std::string name = chain.names[begin].empty() ? "" : panel_name + "." + chain.names[begin];
-    for (const Run& run : sides_.runs)
-      if (!name.empty() && run.name == name)
-        throw InputError(chain.where + ": the name '" + chain.names[begin] +
-                         "' is given to two parts that do not follow each other; give each its own name");
+    if (!name.empty() && !names_.insert(name).second)
+      throw InputError(chain.where + ": the name '" + chain.names[begin] +
+                       "' is given to two parts that do not follow each other; give each its own name");
     const bool closed = corners.front() == corners.back();
     Run run{panel,
             name,
@@ -171,7 +172,9 @@ class SideCutter {
       sides_.runs[r].seam_class =
           numbers.try_emplace(owner[r], static_cast<int>(numbers.size())).first->second;
     }
-    knots_.resize(numbers.size());
+    knots_.resize(numbers.size()), members_.resize(numbers.size());
+    for (std::size_t r = 0; r < sides_.runs.size(); ++r)
+      members_[z(sides_.runs[r].seam_class)].push_back(static_cast<int>(r));
   }
 
   // Where every run of a class must have a vertex, in fractions of the class.
@@ -233,9 +236,7 @@ class SideCutter {
   }
 
   void cut_class(int seam_class) {
-    std::vector<int> members;
-    for (std::size_t r = 0; r < sides_.runs.size(); ++r)
-      if (sides_.runs[r].seam_class == seam_class) members.push_back(static_cast<int>(r));
+    const std::vector<int>& members = members_[z(seam_class)];
     const std::vector<double>& knots = knots_[z(seam_class)];
     double longest = 0;
     for (const int r : members) longest = std::max(longest, sides_.runs[z(r)].curve.length());
@@ -262,21 +263,26 @@ class SideCutter {
     std::vector<Attached> fixed = attached_[r];
     for (std::size_t i = 0; i < run.corners.size(); ++i)
       fixed.push_back({i == 0 ? 0 : run.curve.end_of(i - 1), run.corners[i]});
-    std::vector<int> vertices;
-    for (const double cut : cuts) {
-      const double f = class_fraction(run, cut);
-      int vertex = -1;
-      for (const Attached& a : fixed)
-        if (std::abs(a.fraction - f) < 2 * kSameFraction) vertex = a.vertex;
-      if (vertex < 0) {
-        vertex = static_cast<int>(sides_.points[z(run.panel)].size());
-        sides_.points[z(run.panel)].push_back(run.curve.at(f));
-        sides_.leg_of[z(run.panel)].push_back(leg_at(run, f));
-      }
-      vertices.push_back(vertex);
+    std::vector<int> vertices(cuts.size(), -1);
+    for (const Attached& a : fixed) {
+      int& vertex = vertices[nearest(cuts, class_fraction(run, a.fraction))];
+      if (vertex >= 0 && vertex != a.vertex)
+        throw InputError(run.where + ": two corners are too near to each other, at " +
+                         place_of(run.curve.at(a.fraction)) + "; make one of them");
+      vertex = a.vertex;
+    }
+    for (std::size_t i = 0; i < cuts.size(); ++i) {
+      if (vertices[i] >= 0) continue;
+      const double f = class_fraction(run, cuts[i]);
+      vertices[i] = static_cast<int>(sides_.points[z(run.panel)].size());
+      sides_.points[z(run.panel)].push_back(run.curve.at(f));
+      sides_.leg_of[z(run.panel)].push_back(leg_at(run, f));
     }
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
       const double f = class_fraction(run, cuts[i]), g = class_fraction(run, cuts[i + 1]);
+      if (vertices[i] == vertices[i + 1])  // both ends of a line were taken for one vertex
+        throw InputError(run.where + ": a part at " + place_of(run.curve.at(f)) +
+                         " is shorter than half the tolerance; leave it out, or ask for a smaller tolerance");
       Piece piece{r, vertices[i], vertices[i + 1], f, g, leg_at(run, (f + g) / 2), 0};
       if (run.turned) std::swap(piece.a, piece.b), std::swap(piece.f0, piece.f1);
       sides_.pieces.push_back(piece);
@@ -284,9 +290,20 @@ class SideCutter {
   }
 
   static int leg_at(const Run& run, double f) {
-    int i = 0;
-    while (z(i) + 1 < run.curve.segments().size() && f > run.curve.end_of(z(i))) ++i;
-    return run.first_leg + i;
+    std::size_t low = 0, high = run.curve.segments().size() - 1;  // the first that ends at f or behind it
+    while (low < high) {
+      const std::size_t middle = (low + high) / 2;
+      f > run.curve.end_of(middle) ? low = middle + 1 : high = middle;
+    }
+    return run.first_leg + static_cast<int>(low);
+  }
+
+  static std::size_t nearest(const std::vector<double>& cuts, double f) {
+    const auto above = std::lower_bound(cuts.begin(), cuts.end(), f);
+    if (above == cuts.begin()) return 0;
+    const auto below = std::prev(above);
+    return static_cast<std::size_t>((above == cuts.end() || f - *below < *above - f ? below : above) -
+                                    cuts.begin());
   }
 
   static constexpr int kDeepest = 20;  // halvings of a part that is no longer than the edge
@@ -294,11 +311,19 @@ class SideCutter {
   const Pattern& pattern_;
   const double edge_, tolerance_, min_angle_;
   Sides sides_;
+  std::set<std::string> names_;                    // of runs
   std::map<int, std::vector<Attached>> attached_;  // of each run
   std::vector<std::vector<double>> knots_;         // of each class, ascending
+  std::vector<std::vector<int>> members_;          // the runs of each class
 };
 
 }  // namespace
+
+std::string place_of(const Vec2& x) {
+  char text[80];
+  std::snprintf(text, sizeof text, "x = %.4g cm, y = %.4g cm", 100 * x.x(), 100 * x.y());
+  return text;
+}
 
 double enclosed_area(const Chain& loop) {
   double twice = 0;

@@ -59,6 +59,8 @@ struct Sides {
 // Throws InputError; see triangulate().
 Sides cut_sides(const Pattern& pattern, double edge, double tolerance, double min_angle);
 
+std::string place_of(const Vec2& x);  // as messages say it
+
 // The loop turned to have its area on its left (`left`) or right.
 Chain wound(const Chain& loop, bool left);
 
