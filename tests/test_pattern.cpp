@@ -4,6 +4,8 @@
 #include <map>
 #include <set>
 
+#include "app/triangulate_command.h"
+#include "mesh/delaunay.h"
 #include "mesh/predicates.h"
 #include "tests/obj.h"
 #include "tests/patterns.h"
@@ -132,6 +134,29 @@ TEST_CASE("an OBJ of a pattern has panels, flat coordinates and curves", "[patte
   bool said = false;
   for (const ObjStatement& s : read.document->statements) said = said || s.text == "# seam a.top b.low";
   CHECK(said);
+}
+
+TEST_CASE("an edge is brought in only where nothing is in its way", "[pattern]") {
+  Delaunay mesh({0, 0}, {4, 4});
+  const auto add = [&](double x, double y) { return mesh.add({x, y}, mesh.locate({x, y}, 0, false)); };
+  const int a = add(0, 0), b = add(4, 0), middle = add(2, 0), up = add(1, 3), down = add(2.5, -3);
+  CHECK_FALSE(mesh.force_edge(a, a, 0));
+  CHECK_FALSE(mesh.force_edge(a, b, 0));  // the vertex in the middle
+  CHECK(mesh.force_edge(a, middle, 0));
+  CHECK_FALSE(mesh.force_edge(up, down, 1));  // the piece
+  CHECK(mesh.find_edge(a, middle).t >= 0);
+  CHECK(mesh.find_edge(up, down).t < 0);
+  CHECK_THROWS_AS(mesh.edge_of(up, down), std::logic_error);
+}
+
+TEST_CASE("what is to be said of the triangles: nothing, or the corners below the bound", "[pattern]") {
+  CHECK(remarks(made(pattern_cases()[0]), 28 * kDegree, "p.svg").empty());
+  const PatternMesh needles = made(pattern_cases()[5]);
+  const Names lines = remarks(needles, 28 * kDegree, "p.svg");
+  REQUIRE(lines.size() == needles.sharp.size());
+  REQUIRE(lines.size() == 5);
+  for (const std::string& line : lines)
+    CHECK_THAT(line, Catch::StartsWith("note: p.svg: a corner of panel star is sharper than the bound: "));
 }
 
 TEST_CASE("the same pattern gives the same bits", "[pattern]") {

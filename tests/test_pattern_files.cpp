@@ -18,6 +18,12 @@ std::string svg(const std::string& head, const std::string& body) {
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" " + head + ">\n" + body + "</svg>\n";
 }
 
+std::string many(const std::string& text, int times) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += text;
+  return all;
+}
+
 const std::string kPage = "width=\"100mm\" height=\"100mm\" viewBox=\"0 0 100 100\"";
 
 Pattern drawn(const std::string& text) {
@@ -100,6 +106,30 @@ TEST_CASE("sides, holes, lines and seams of a drawing", "[pattern]") {
   CHECK(curve(curves, "a.top").size() == group(m.mesh, "a.top").size());
 }
 
+TEST_CASE("what a drawing does not show is no part of the pattern", "[pattern]") {
+  const auto panels = [](const std::string& attributes) {
+    const std::string two = "<path id=\"a\" d=\"M10 10 h20 v20z\"/><g " + attributes +
+                            "><path id=\"b\" d=\"M50 50 h20 v20z\"/></g>";
+    return drawn(svg(kPage, two)).panels.size();
+  };
+  for (const char* hidden :
+       {"display=\"none\"", "style=\"display:none\"", "style=\"fill:red; display : none !important;x:y\"",
+        "display=\"inline\" style=\"display:none\""})
+    CHECK(panels(hidden) == 1);
+  for (const char* shown : {"", "style=\"display:inline\"", "style=\"no-display:none\"",
+                            "display=\"none\" style=\"display:inline\""})
+    CHECK(panels(shown) == 2);
+}
+
+TEST_CASE("a segment that is a point is left out, of whatever kind", "[pattern]") {
+  for (const char* point : {"C10 10 10 10 10 10", "Q10 10 10 10", "L10 10", "A5 5 0 0 1 10 10"}) {
+    const Pattern p =
+        drawn(svg(kPage, std::string("<path id=\"a\" d=\"M10 10 ") + point + " H90 V90 H10 Z\"/>"));
+    CHECK(p.panels[0].outline.segments.size() == 4);
+    CHECK(meshed(p).panels[0].area == Approx(0.0064).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("drawings that are refused", "[pattern]") {
   const std::string square = "<path id=\"a\" d=\"M10 10 H90 V90 H10 Z\"/>\n";
   check_drawing_mistakes({
@@ -141,6 +171,14 @@ TEST_CASE("drawings that are refused", "[pattern]") {
       {svg(kPage + " data-seams=\"a.x=a.x\"",
            "<path id=\"a\" data-sides=\"x - y -\" d=\"M10 10 H90 V90 H10 Z\"/>"),
        "p.svg:1: data-seams: the seam of 'a.x'", "itself"},
+      {svg(kPage, square + "<path id=\"dot\" d=\"m 50 50 h 0.05\"/>"), "p.svg:3: path 'dot': a part at x = 5",
+       "shorter than half the tolerance"},
+      {svg(kPage, square + "<path id=\"tick\" d=\"m 50 10 v 0.05\"/>"),
+       "p.svg:3: path 'tick': a part at x = 5", "shorter than half the tolerance"},
+      {svg(kPage, square + "<path id=\"b\" d=\"M10 10 H90 V90 H10 Z\"/>"),
+       "p.svg:2: path 'a': panel 'a' overlaps panel 'b'", "move one"},
+      {svg(kPage, many("<g>\n", 100000) + square + many("</g>", 100000)), "p.svg:1002: more than 1000 groups",
+       "ungroup"},
       {svg(kPage, "<g transform=\"spin(3)\">" + square + "</g>"), "p.svg:2: the transform cannot be read",
        "spin"},
   });
@@ -161,6 +199,17 @@ TEST_CASE("polygons that are refused", "[pattern]") {
           {"unit = \"1 cm\"\n" + panel +
                "outline = [[0, 0], [5, 0], [5, 5]]\nholes = [[[8, 8], [9, 8], [9, 9]]]\n",
            "p.toml:5:", "hole is not inside"},
+          {"unit = \"1 m\"\n" + panel +
+               "outline = [[0, 0], [0.05, 0], [0.050000001, 0], [0.1, 0], [0.1, 0.1]]\n"
+               "sides = [\"s\", \"s\", \"s\", \"-\", \"-\"]\n",
+           "p.toml:4:", "two corners are too near to each other, at x = 5 cm"},
+          {"unit = \"1 m\"\n" + panel +
+               "outline = [[0, 0], [0.1, 0], [0.100000001, 0.000000001], [0.1, 0.1], [0, 0.1]]\n"
+               "sides = [\"s\", \"s\", \"s\", \"-\", \"-\"]\n",
+           "p.toml:4:", "two corners are too near"},
+          {"unit = \"1 cm\"\n" + panel +
+               "outline = [[0, 0], [5, 0], [5, 5]]\n[[panel.line]]\npoints = [[4, 1], [4.005, 1]]\n",
+           "p.toml:", "shorter than half the tolerance"},
           {"unit = \"1 cm\"\n" + panel + "outline = [[0, 0], [5, 0], [5, 5]]\nholse = 3\n",
            "p.toml:5:", "did you mean 'holes'?"},
       },
