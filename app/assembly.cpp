@@ -1,6 +1,7 @@
 #include "app/assembly.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "app/cloth_model.h"
@@ -8,19 +9,35 @@
 #include "app/triangulate_command.h"
 #include "mesh/flat_pattern.h"
 #include "mesh/obj.h"
+#include "mesh/topology.h"
 #include "solver/face_contact_force.h"
 
 namespace drape {
 namespace {
 
 // As drape triangulate writes it and reads it again.
-TriangleMesh cut_pattern(const ClothEntry& entry, Names& messages) {
+TriangleMesh cut_pattern(const ClothEntry& entry, Names& messages) try {
   Names notes;
   PatternMesh cut = triangulate(read_pattern(entry.mesh, notes), entry.pattern);
   for (const std::string& note : notes) messages.push_back("note: " + note);
   for (std::string& line : remarks(cut, entry.pattern.min_angle, entry.mesh.string()))
     messages.push_back(std::move(line));
   return std::move(cut.mesh);
+} catch (const InputError& error) {
+  throw InputError(entry.where + ": mesh: " + error.what());
+}
+
+// Texture coordinates are often without a length: the rest shape has then nothing to do with the mesh.
+void warn_of_scale(const ClothEntry& entry, const Cloth& cloth, Names& messages) {
+  if (!entry.rest_is_flat) return;
+  double area = 0, flat = 0;
+  for (const Triangle& t : cloth.mesh.triangles) area += triangle_area(cloth.mesh, t);
+  for (const Triangle& t : cloth.rest.triangles) flat += triangle_area(cloth.rest, t);
+  if (flat > 0.5 * area && flat < 2 * area) return;
+  messages.push_back("warning: cloth " + entry.name + ": rests with an area of " + rounded(flat, 3) +
+                     " m^2 by its uv, and its mesh has " + rounded(area, 3) +
+                     " m^2: was another uv_scale meant? (lengths would agree with " +
+                     rounded(entry.uv_scale * std::sqrt(area / flat), 4) + " m)");
 }
 
 // As the file has it, its panels placed; the rest shape is the flat pattern, or what the file has.
@@ -36,7 +53,8 @@ Cloth load_cloth(const ClothEntry& entry, Names& messages) {
   } catch (const InputError& error) {
     throw InputError(entry.where + ": " + entry.mesh.string() + ": " + error.what());
   }
-  place_panels(entry, cloth.mesh);
+  warn_of_scale(entry, cloth, messages);
+  place_panels(entry, cloth.mesh, messages);
   const Placement rest_of_it{.rotation = entry.placement.rotation, .translate = entry.placement.translate};
   cloth.mesh = placed(std::move(cloth.mesh), rest_of_it, entry.mesh.string());
   cloth.report = examine(cloth.mesh);

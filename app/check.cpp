@@ -7,6 +7,7 @@
 #include "app/pattern_read.h"
 #include "app/simulation.h"
 #include "app/soft_body.h"
+#include "app/toml_file.h"
 #include "mesh/obj.h"
 
 namespace drape {
@@ -38,7 +39,7 @@ namespace {
 // An OBJ file, or a drawing as it is cut with the default edge.
 void check_mesh(const std::filesystem::path& file) {
   Names messages;
-  const bool drawing = file.extension() == ".svg";
+  const bool drawing = is_pattern(file);
   const TriangleMesh mesh = drawing ? triangulate(read_pattern(file, messages), {}).mesh : read_obj(file);
   const MeshReport report = examine(mesh);
   add_messages(report, file.string(), messages);
@@ -166,7 +167,7 @@ void check_scene(const std::filesystem::path& file) {
 }  // namespace
 
 int check_file(const std::filesystem::path& file) {
-  if (file.extension() == ".toml") {
+  if (file.extension() == ".toml" && !read_toml(file).members.contains("panel")) {
     check_scene(file);
   } else {
     check_mesh(file);

@@ -273,7 +273,8 @@ void Run::tell_of_open_seams() {
       tell_once(told, "warning: seam " + one_line(open.seam.name) + " of " + cloth.name +
                           " has not closed: it is " +
                           rounded(1000 * open.seam.gap(cloth.embedding, simulation_.state.x), 3) +
-                          " mm open; what is between its panels, or is it the wrong pair?");
+                          " mm open; is a body or a pin between its panels, is it the wrong pair, or the "
+                          "stiffness too low?");
     }
 }
 

@@ -17,10 +17,15 @@ using SeamForce = PairForce<SeamSpring>;
 const Vec3& at(const std::vector<Vec3>& positions, int v) { return positions[static_cast<std::size_t>(v)]; }
 
 const std::vector<int>& group_of(const TriangleMesh& mesh, const PanelEntry& panel) {
-  Names known;
+  Names known, lines;
+  for (const Polyline& line : polylines(mesh)) lines.push_back(line.name);
   for (const VertexGroup& group : mesh.groups) {
+    const bool panel_of_faces = std::find(lines.begin(), lines.end(), group.name) == lines.end();
+    if (group.name == panel.group && !panel_of_faces)
+      throw InputError(panel.where + ": group = \"" + one_line(panel.group) +
+                       "\": is a line of the mesh, not a panel");
     if (group.name == panel.group && !group.vertices.empty()) return group.vertices;
-    known.push_back(group.name);
+    if (panel_of_faces) known.push_back(group.name);
   }
   throw InputError(panel.where + ": group = \"" + one_line(panel.group) + "\": the mesh has no such group; " +
                    (known.empty() ? "it has none" : suggestion(panel.group, known)));
@@ -100,6 +105,8 @@ OpenSeam open_seam(const SeamEntry& entry, const Fabric& fabric, const TriangleM
                    const std::vector<Vec3>& places, const std::vector<Polyline>& curves, Names& messages) {
   const std::vector<int>& one = curve_named(entry.curves[0], curves, entry.where).vertices;
   std::vector<int> two = curve_named(entry.curves[1], curves, entry.where).vertices;
+  if (entry.curves[0] == entry.curves[1])
+    throw InputError(entry.where + ": curves: '" + one_line(entry.curves[0]) + "' cannot be sewn to itself");
   OpenSeam seam;
   seam.name = entry.curves[0] + " / " + entry.curves[1];
   if (one.size() != two.size())
@@ -141,7 +148,7 @@ bool OpenSeam::closed(const Embedding& embedding, const State& state) const {
   return merge && state.time >= close * (1 - 1e-9) && gap(embedding, state.x) <= near_enough * edge;
 }
 
-void place_panels(const ClothEntry& entry, TriangleMesh& mesh) {
+void place_panels(const ClothEntry& entry, TriangleMesh& mesh, Names& messages) {
   std::vector<int> panel_of(mesh.positions.size(), -1);
   for (std::size_t p = 0; p < entry.panels.size(); ++p) {
     const PanelEntry& panel = entry.panels[p];
@@ -158,6 +165,13 @@ void place_panels(const ClothEntry& entry, TriangleMesh& mesh) {
       lower = lower.cwiseMin(at(mesh.positions, v)), upper = upper.cwiseMax(at(mesh.positions, v));
     }
     const Vec3 middle = 0.5 * (lower + upper);
+    constexpr double turn = 6.283185307179586;
+    if (panel.wrap && upper.x() - lower.x() > turn * *panel.wrap * (1 + 1e-6))
+      messages.push_back("warning: panel " + one_line(panel.group) + " is " +
+                         rounded(100 * (upper.x() - lower.x()), 4) +
+                         " cm wide and goes more than once round a "
+                         "cylinder of radius " +
+                         rounded(100 * *panel.wrap, 4) + " cm: give a larger wrap");
     for (int v : vertices) {
       Vec3& x = mesh.positions[static_cast<std::size_t>(v)];
       x -= middle;
@@ -174,8 +188,14 @@ std::vector<OpenSeam> open_seams(const ClothEntry& entry, const TriangleMesh& me
   const std::vector<Polyline> curves = polylines(mesh);
   const std::vector<Vec3> places = rest_places(mesh, rest);
   for (const SeamEntry& given : entry.seams)
-    for (const SeamEntry& seam : given.curves.empty() ? declared(given, mesh) : std::vector<SeamEntry>{given})
+    for (const SeamEntry& seam :
+         given.curves.empty() ? declared(given, mesh) : std::vector<SeamEntry>{given}) {
       seams.push_back(open_seam(seam, entry.fabric, mesh, places, curves, messages));
+      for (std::size_t k = 0; k + 1 < seams.size(); ++k)
+        if (seams[k].name == seams.back().name || seams[k].name == seam.curves[1] + " / " + seam.curves[0])
+          throw InputError(seam.where + ": seam " + one_line(seams.back().name) +
+                           ": these two curves are sewn twice");
+    }
   return seams;
 }
 

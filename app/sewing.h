@@ -31,7 +31,7 @@ struct OpenSeam {
 inline constexpr double near_enough = 0.1;
 
 // Throws InputError when a panel is no group of the mesh or shares a vertex with another one.
-void place_panels(const ClothEntry& entry, TriangleMesh& mesh);
+void place_panels(const ClothEntry& entry, TriangleMesh& mesh, Names& messages);
 
 // The mesh is placed, its rest shape as in solver/noh_jung.h. Throws InputError when a curve is missing or
 // two have different numbers of vertices; what is gathered is said in the messages.

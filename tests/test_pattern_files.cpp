@@ -202,11 +202,11 @@ TEST_CASE("polygons that are refused", "[pattern]") {
           {"unit = \"1 m\"\n" + panel +
                "outline = [[0, 0], [0.05, 0], [0.050000001, 0], [0.1, 0], [0.1, 0.1]]\n"
                "sides = [\"s\", \"s\", \"s\", \"-\", \"-\"]\n",
-           "p.toml:4:", "two corners are too near to each other, at x = 5 cm"},
+           "p.toml:2:", "two corners are too near to each other, at x = 5 cm"},
           {"unit = \"1 m\"\n" + panel +
                "outline = [[0, 0], [0.1, 0], [0.100000001, 0.000000001], [0.1, 0.1], [0, 0.1]]\n"
                "sides = [\"s\", \"s\", \"s\", \"-\", \"-\"]\n",
-           "p.toml:4:", "two corners are too near"},
+           "p.toml:2:", "two corners are too near"},
           {"unit = \"1 cm\"\n" + panel +
                "outline = [[0, 0], [5, 0], [5, 5]]\n[[panel.line]]\npoints = [[4, 1], [4.005, 1]]\n",
            "p.toml:", "shorter than half the tolerance"},

@@ -417,6 +417,8 @@ TEST_CASE("mistakes in a garment say where they are", "[sewing]") {
       {"seams = [{ close = \"3 m\" }]\n", "scene.toml:7:", "close"},
       {"seams = [{ then = \"glue\" }]\n", "scene.toml:7:", "merge"},
       {"seams = [{ stiffness = -1 }]\n", "scene.toml:7:", "stiffness"},
+      {"seams = [{ curves = [\"front.top\", \"front.top\"] }]\n", "scene.toml:7:", "to itself"},
+      {"seams = [{}, { curves = [\"back.right\", \"front.left\"] }]\n", "scene.toml:7:", "sewn twice"},
       {"seams = [{}]\nmodel = \"choi-ko\"\n", "scene.toml:8:", "noh-jung"},
   };
   check_mistakes(mistakes, [&](const std::string& text) { return tailor.simulation(text); });
@@ -427,6 +429,13 @@ TEST_CASE("mistakes in a garment say where they are", "[sewing]") {
                                         {}, tailor.path, "scene.toml"));
     };
   };
+  const std::string lines = tailor.panels.obj();
+  CHECK_THROWS_WITH(with_cloth("panels = [{ group = \"front.left\" }]\n", lines)(),
+                    Contains("a line of the mesh"));
+  CHECK_THAT(with_cloth("panels = [{ group = \"front\", wrap = 0.05 }]\n", lines)().messages.front(),
+             Contains("more than once round"));
+  CHECK_THAT(with_cloth("rest = \"uv\"\nuv_scale = 3\n", lines)().messages.front(),
+             Contains("another uv_scale") && Contains("with 1 m"));
   const std::string plain = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   CHECK_THROWS_WITH(with_cloth("rest = \"uv\"\n", plain)(), Contains("no texture coordinates"));
   CHECK_THROWS_WITH(with_cloth("rest = \"uv\"\n", "vt 0 0\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 3/1\n")(),
