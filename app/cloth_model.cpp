@@ -28,25 +28,32 @@ void warn_if_long(const ClothEntry& cloth, const TriangleMesh& mesh, const Trian
                      "along; use a grid of squares, or model = \"noh-jung\"");
 }
 
-Connections connections_of(const ClothEntry& entry, const TriangleMesh& mesh, const TriangleMesh& rest) {
-  if (entry.model != "choi-ko") return noh_jung_connections(mesh, rest, entry.fabric);
+// make() is asked of a mesh that may be no grid.
+template <class Make>
+auto of_grid(const ClothEntry& entry, const Make& make) {
   try {
-    return choi_ko_connections(mesh, rest, entry.fabric);
+    return make();
   } catch (const InputError& error) {
     throw InputError(entry.where + ": model = \"choi-ko\": " + entry.mesh.string() + ": " + error.what() +
                      "; use model = \"noh-jung\" for any other mesh");
   }
 }
 
+Connections connections_of(const ClothEntry& entry, const TriangleMesh& mesh, const TriangleMesh& rest) {
+  if (entry.model != "choi-ko") return noh_jung_connections(mesh, rest, entry.fabric);
+  return of_grid(entry, [&] { return choi_ko_connections(mesh, rest, entry.fabric); });
+}
+
 }  // namespace
 
 std::vector<double> cloth_masses(const ClothEntry& entry, const TriangleMesh& mesh,
                                  const TriangleMesh& rest) {
-  const Connections connections = connections_of(entry, mesh, rest);  // of a mesh that is one for the model
   const double density = entry.fabric.area_density;
-  std::vector<double> masses =
-      entry.model == "choi-ko" ? choi_ko_mass(mesh, rest, density) : lumped_mass(mesh, rest, density);
-  return entry.fabric.neighbour_weighting ? neighbour_weighted(std::move(masses), connections) : masses;
+  std::vector<double> masses = entry.model == "choi-ko"
+                                   ? of_grid(entry, [&] { return choi_ko_mass(mesh, rest, density); })
+                                   : lumped_mass(mesh, rest, density);
+  if (!entry.fabric.neighbour_weighting) return masses;
+  return neighbour_weighted(std::move(masses), connections_of(entry, mesh, rest));
 }
 
 Connections cloth_connections(const ClothEntry& entry, const TriangleMesh& mesh, const TriangleMesh& rest,

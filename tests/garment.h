@@ -1,9 +1,12 @@
 // A tube of cloth that is still two flat panels: what the tests of patterns and seams sew.
 #pragma once
 
+#include <algorithm>
 #include <string>
 
-#include "mesh/obj.h"
+#include "app/simulation.h"
+#include "app/toml_file.h"
+#include "tests/folder.h"
 
 namespace drape::test {
 
@@ -61,5 +64,33 @@ inline const std::string tube_cloth =
     "panels = [{ group = \"front\", wrap = \"16 cm\", translate = [0, 0, 0.02] },\n"
     "  { group = \"back\", wrap = \"16 cm\", rotate = { axis = [0, 1, 0], angle = \"180 deg\" }, "
     "translate = [0, 0, -0.02] }]\n";
+
+// A folder with the mesh, and what becomes of it.
+struct Tailor : Folder {
+  TwoPanels panels;
+  explicit Tailor(TwoPanels p = {}) : panels(p) { write("tube.obj", panels.obj()); }
+
+  Scene scene(const std::string& more, const std::string& before = "") const {
+    return read_scene(parse_toml(tube_cloth + more + before, "scene.toml"), {}, path, "scene.toml");
+  }
+  Simulation simulation(const std::string& more, const std::string& before = "") const {
+    return make_simulation(scene(more, before));
+  }
+  // The widest gap between the sides that are sewn [m].
+  double gap(const Simulation& s) const {
+    const std::vector<Vec3> x = s.cloths[0].embedding.positions(s.state.x);
+    double widest = 0;
+    for (int j = 0; j < panels.ny; ++j)
+      for (int p : {0, 1}) {
+        const int left = panels.vertex(p, 0, j), right = panels.vertex(1 - p, panels.nx - 1, j);
+        widest =
+            std::max(widest, (x[static_cast<std::size_t>(left)] - x[static_cast<std::size_t>(right)]).norm());
+      }
+    return widest;
+  }
+};
+
+inline const std::string pinned = "pins = [{ group = \"front.top\" }]\n";
+inline const std::string light = "[simulation]\ntime_step = 0.01\n";
 
 }  // namespace drape::test
