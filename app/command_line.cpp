@@ -10,8 +10,11 @@
 #include "app/check.h"
 #include "app/commands.h"
 #include "app/compare/compare.h"
+#include "app/export/export.h"
+#include "app/picture/picture.h"
 #include "app/stability/stability.h"
 #include "app/triangulate_command.h"
+#include "app/view/view.h"
 #include "app/words.h"
 #include "mesh/obj.h"
 
@@ -227,6 +230,53 @@ void add_triangulate(CLI::App& app, int& exit_code) {
   command->callback([=, &exit_code] { exit_code = triangulate_file(*words); });
 }
 
+void add_view(CLI::App& app, int& exit_code) {
+  CLI::App* const command =
+      app.add_subcommand("view", "makes an output folder one HTML file that plays it in a browser, offline");
+  auto words = std::make_shared<ViewWords>();
+  command->add_option("OUT", words->folder, "output folder of a run")->required();
+  command->add_option("-o,--out", words->out, "the page (OUT/view.html)")->type_name("FILE");
+  command->add_flag("--force", words->force, "replace a file that is there");
+  command->callback([=, &exit_code] { exit_code = view(*words); });
+}
+
+void add_picture(CLI::App& app, int& exit_code) {
+  CLI::App* const command = app.add_subcommand("picture", "draws an output folder or a mesh as PNG");
+  auto words = std::make_shared<PictureWords>();
+  command->add_option("INPUT", words->input, "output folder of a run, or an OBJ file")->required();
+  command->add_option("--with", words->with, "a further OBJ file, drawn as a body; as often as needed")
+      ->type_name("BODY.obj")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option("-o,--out", words->out, "the picture (picture.png)")->type_name("FILE");
+  command->add_option("--frame", words->frame, "a frame of the run from 1, 'last' or 'all' (last)")
+      ->type_name("N");
+  command
+      ->add_option("--view", words->view,
+                   "front, back, left, right, top, or degrees round and above, such as 30,20 (30,20)")
+      ->type_name("SIDE");
+  command->add_option("--color", words->color, "what colours show: strain, speed or contact")
+      ->type_name("WHAT");
+  command->add_option("--size", words->size, "of the picture in pixels (1280x960)")->type_name("WxH");
+  command->add_flag("--grid", words->grid, "frames side by side on one sheet");
+  command->add_flag("--force", words->force, "replace a file that is there");
+  command->callback([=, &exit_code] { exit_code = picture(*words); });
+}
+
+void add_export(CLI::App& app, int& exit_code) {
+  CLI::App* const command =
+      app.add_subcommand("export", "writes an output folder in a format of another program");
+  auto words = std::make_shared<ExportWords>();
+  command->add_option("OUT", words->folder, "output folder of a run")->required();
+  command->add_option("--to", words->to, listed(export_formats()))->type_name("FORMAT")->required();
+  command->add_option("-o,--out", words->out, "folder of the files (OUT/export)")->type_name("DIR");
+  command->add_option("--every", words->every, "every so many frames (1)")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--force", words->force, "replace files that are there");
+  command->callback([=, &exit_code] { exit_code = export_folder(*words); });
+}
+
 void add_check_and_list(CLI::App& app, int& exit_code) {
   CLI::App* const check =
       app.add_subcommand("check", "validates a scene or examines a mesh; changes nothing");
@@ -268,6 +318,9 @@ int parse_and_run(int argc, char** argv) {
   add_stability(app, exit_code);
   add_level_set(app, exit_code);
   add_triangulate(app, exit_code);
+  add_view(app, exit_code);
+  add_picture(app, exit_code);
+  add_export(app, exit_code);
   add_check_and_list(app, exit_code);
   if (argc > 1 && argv[1][0] != '-') check_command(app, argv[1]);
   try {

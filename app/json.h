@@ -28,9 +28,20 @@ struct Json {
   Json(const std::vector<std::string>& texts) : value(List(texts.begin(), texts.end())) {}
   Json(const std::vector<int>& numbers) : value(List(numbers.begin(), numbers.end())) {}
   Json(const std::vector<double>& numbers) : value(List(numbers.begin(), numbers.end())) {}
+
+  bool is_null() const { return std::holds_alternative<std::monostate>(value); }
+  // What a reader finds: null or an empty list where it is of another kind or absent.
+  const Json& operator[](std::string_view member) const;
+  const List& items() const;
+  std::string text() const;               // empty when it is no text
+  double number(double otherwise) const;  // of an integer, too
 };
 
 // Indented by two; bytes that are not UTF-8 are replaced.
 std::string json_text(const Json& json);
+std::string compact_json_text(const Json& json);  // in one line
+
+// Throws InputError "run.json:3: is not JSON: ...".
+Json parse_json(std::string_view text, const std::string& name);
 
 }  // namespace drape
