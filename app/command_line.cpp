@@ -11,6 +11,7 @@
 #include "app/commands.h"
 #include "app/compare/compare.h"
 #include "app/export/export.h"
+#include "app/keys.h"
 #include "app/picture/picture.h"
 #include "app/stability/stability.h"
 #include "app/triangulate_command.h"
@@ -287,6 +288,16 @@ void add_check_and_list(CLI::App& app, int& exit_code) {
       ->callback([&exit_code] { exit_code = list_parts(); });
 }
 
+void add_keys(CLI::App& app, int& exit_code) {
+  CLI::App* const command =
+      app.add_subcommand("keys", "what may stand in scene, fabric and pattern files, and what it means");
+  auto words = std::make_shared<KeysWords>();
+  command->add_option("TABLE", words->table,
+                      "such as cloth or obstacle; or all of a file: scene, fabric, pattern (everything)");
+  command->add_flag("--markdown", words->markdown, "as tables in Markdown");
+  command->callback([=, &exit_code] { exit_code = print_keys(*words); });
+}
+
 void check_command(const CLI::App& app, const std::string& word) {
   Names known;
   for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
@@ -322,6 +333,7 @@ int parse_and_run(int argc, char** argv) {
   add_picture(app, exit_code);
   add_export(app, exit_code);
   add_check_and_list(app, exit_code);
+  add_keys(app, exit_code);
   if (argc > 1 && argv[1][0] != '-') check_command(app, argv[1]);
   try {
     app.parse(argc, argv);
