@@ -284,8 +284,13 @@ void add_check_and_list(CLI::App& app, int& exit_code) {
   auto file = std::make_shared<std::string>();
   check->add_option("FILE", *file, "scene (.toml) or mesh (.obj)")->required();
   check->callback([=, &exit_code] { exit_code = check_file(*file); });
-  app.add_subcommand("list", "fabrics, shapes, forces, integrators and linear solvers of this build")
-      ->callback([&exit_code] { exit_code = list_parts(); });
+  CLI::App* const list =
+      app.add_subcommand("list", "fabrics, shapes, forces, integrators and linear solvers of this build");
+  auto which = std::make_shared<std::string>();
+  auto markdown = std::make_shared<bool>(false);
+  list->add_option("KIND", *which, "such as fabrics or \"linear solvers\" (all)");
+  list->add_flag("--markdown", *markdown, "as tables in Markdown");
+  list->callback([=, &exit_code] { exit_code = list_parts(*which, *markdown); });
 }
 
 void add_keys(CLI::App& app, int& exit_code) {
