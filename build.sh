@@ -16,6 +16,7 @@ usage: ./build.sh WORD
   lint            check the formatting, then clang-tidy
   format          format the sources in place; format --check only looks
   sanitize        build with the address and undefined-behaviour sanitizers and run the tests, but for the slow ones
+  docs            make a site of the pages in docs/ and of the C++ interface, build/docs/site, and look for dead links in it
   install PREFIX  build, then install the program, the library and its headers under PREFIX
 
 Missing Debian or Ubuntu packages are installed with apt-get, through sudo when not root; elsewhere they are only named.
@@ -35,7 +36,8 @@ die() {
 required=(g++ cmake ninja-build libeigen3-dev libspectra-dev libembree-dev libtoml11-dev libcli11-dev nlohmann-json3-dev libudunits2-dev libcsv-dev
   libboost-dev libsvgpp-dev libpugixml-dev)
 optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev)
-for_tests=(catch2 libtinyobjloader-dev)
+for_docs=(python3 python3-sphinx python3-myst-parser furo doxygen linkchecker)
+for_tests=(catch2 libtinyobjloader-dev "${for_docs[@]}")
 for_format=(clang-format)
 for_lint=(clang-tidy)
 
@@ -231,6 +233,16 @@ pictures() {
   "$python" data/pictures/make_pictures.py "$out" || die "drawing failed, see above"
 }
 
+# The tables of keys, fabrics and solvers are written anew first: the program has them.
+docs() {
+  build
+  get_required "${for_docs[@]}"
+  say "writing what the program knows into docs/"
+  /usr/bin/python3 tests/docs/made.py --program build/release/drape --write docs/*.md || die "docs/ could not be written, see above"
+  say "making build/docs/site"
+  /usr/bin/python3 docs/make.py build/docs/site || die "the site has mistakes, see above"
+}
+
 install_into() {
   [[ $# -eq 1 ]] || { warn "install needs one folder: ./build.sh install PREFIX"; exit 2; }
   build
@@ -286,7 +298,7 @@ tidy() {
 word=${1:-}
 [[ $# -eq 0 ]] || shift
 case "$word" in
-  demo | build | pictures | compare | lint | sanitize)
+  demo | build | docs | pictures | compare | lint | sanitize)
     [[ $# -eq 0 ]] || { warn "'$word' takes nothing more, but got: $*"; exit 2; }
     "$word"
     ;;

@@ -2,10 +2,12 @@
 """Makes the site of the pages in docs/ (Sphinx) with the C++ interface under api/ (Doxygen), and looks for links that lead
 nowhere and for requests to the network in it.
     make.py OUT"""
+import os
 import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 root = Path(__file__).resolve().parent.parent
@@ -32,8 +34,21 @@ def public_headers():
 def pages(out):
     # The whole site each time: what is gone from the pages is gone from it.
     shutil.rmtree(out, ignore_errors=True)
-    run([python, "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-b", "html", "-d", f"{out}.cache", "docs", out])
+    run([python, "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-b", "html", "-d", f"{out}.cache", "-c", "docs", ".", out])
     (out / ".buildinfo").unlink(missing_ok=True)
+    (out / "index.html").write_text('<!doctype html><meta charset="utf-8"><title>drape</title>'
+                                    '<meta http-equiv="refresh" content="0; url=docs/index.html">'
+                                    '<a href="docs/index.html">drape</a>, <a href="api/index.html">C++ interface</a>\n')
+
+
+def bring_styles(out):
+    """Debian's Furo takes a style from a web server's folder /javascript; a site on a disk must have it itself."""
+    for style in out.rglob("*.css"):
+        text = style.read_text()
+        for address in set(re.findall(r"url\((/javascript/[^)]+)\)", text)):
+            shutil.copy(f"/usr/share{address}", style.parent)
+            text = text.replace(address, Path(address).name)
+        style.write_text(text)
 
 
 def interface(out):
@@ -44,15 +59,20 @@ def interface(out):
 def check(out):
     run([python, "tests/docs/check_links.py", "."])
     run([python, "tests/docs/check_site.py", out])
-    # linkchecker leaves addresses on the web alone unless it is asked to.
-    settings = Path(f"{out}.linkcheckerrc")
-    settings.write_text("[AnchorCheck]\n[filtering]\nignorewarnings=url-content-too-large\n")
-    run(["linkchecker", "--config", settings, "--no-status", "--recursion-level", "3", "--threads", "2",
-         (out / "index.html").as_uri()])
+    # linkchecker leaves addresses on the web alone unless it is asked to. Run by root it becomes nobody, who may not be allowed to
+    # read this folder: so it gets a copy.
+    with tempfile.TemporaryDirectory() as folder:
+        os.chmod(folder, 0o755)
+        site = shutil.copytree(out, Path(folder) / "site")
+        settings = Path(folder) / "linkcheckerrc"
+        settings.write_text("[checking]\nmaxrequestspersecond=1000\n[AnchorCheck]\n")
+        run(["linkchecker", "--config", settings, "--no-status", "--recursion-level", "3", "--threads", "2",
+             (site / "index.html").as_uri()])
 
 
 def main(out):
     pages(out)
+    bring_styles(out)
     interface(out)
     check(out)
     print(f"the site: {out}/index.html")

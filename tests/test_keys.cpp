@@ -1,4 +1,5 @@
-// What `drape keys` says of scene files, and so docs/scene.md: every key that the readers ask for, none that they do not know.
+// What `drape keys` says of scene files, and so docs/scene.md: every key that the readers ask for, none that
+// they do not know.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <regex>
@@ -41,7 +42,8 @@ void collect(Node& node, const std::string& name, std::vector<Node*>& found) {
 }
 
 // What reading the scene of every kind complains of when a key of one table has another value. "": nothing.
-std::string complaint(const std::string& table, std::size_t which, const std::string& key, const Node& value) {
+std::string complaint(const std::string& table, std::size_t which, const std::string& key,
+                      const Node& value) {
   Node root = parse_toml(scene_of_every_kind(), "scene.toml");
   std::vector<Node*> tables;
   if (table.empty())
@@ -105,7 +107,8 @@ TEST_CASE("every key that the readers' code names is listed", "[keys]") {
   listed.merge(keys_of(pattern_keys()));
   const std::regex read(R"re([.](?:read|read_required|read_part|take|tables|require)\(\s*"([a-z_]+)")re");
   int found = 0;
-  for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(test::source_dir()) / "app")) {
+  for (const auto& file :
+       std::filesystem::directory_iterator(std::filesystem::path(test::source_dir()) / "app")) {
     if (file.path().extension() != ".cpp") continue;
     const std::string code = test::content(file.path());
     for (std::sregex_iterator key(code.begin(), code.end(), read), end; key != end; ++key, ++found) {

@@ -10,7 +10,7 @@ from pathlib import Path
 fetched = {"script": "src", "img": "src", "iframe": "src", "source": "src", "video": "src", "audio": "src", "embed": "src",
            "object": "data", "link": "href", "use": "href", "image": "href"}
 harmless = {"canonical", "next", "prev", "index", "search", "author", "copyright", "license"}  # of <link rel>
-elsewhere = re.compile(r"\s*(?:[a-z]+:)?//", re.IGNORECASE)
+elsewhere = re.compile(r"\s*(?:[a-z]+:)?/", re.IGNORECASE)  # another host, or a folder that only a server has
 in_styles = re.compile(r"(?:url\(\s*['\"]?|@import\s+['\"])([^'\")\s]+)", re.IGNORECASE)
 
 

@@ -3,8 +3,10 @@
 What is said of a block stands in HTML comments right above its fence, which no reader of the page sees:
     <!-- before: COMMAND -->     sh, run first
     <!-- file: NAME -->          the block is this file
+    <!-- shorter: WORDS -->      sh: words added to each command, so that the tests do not wait
     <!-- exit: N -->             how the command ends, when not with 0
     <!-- output -->              a text block: what the sh block before it printed; ... stands for anything
+    <!-- output: numbers may differ -->
     <!-- pattern -->             a toml block that is a sewing pattern and no scene
     <!-- not run: REASON -->
 A part that a command made, between its table's ends:
@@ -14,7 +16,7 @@ import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
-words = {"before", "file", "exit", "output", "pattern", "not run"}
+words = {"before", "shorter", "file", "exit", "output", "pattern", "not run"}
 
 
 class Mistake(Exception):
