@@ -13,6 +13,9 @@ html_title = "drape"
 templates_path = ["templates"]
 html_sidebars = {"**": ["sidebar/brand.html", "sidebar/search.html", "sidebar/scroll-start.html", "sidebar/navigation.html",
                         "interface.html", "sidebar/scroll-end.html"]}
+html_static_path = ["static"]
+html_css_files = ["wide.css"]
+smartquotes = False  # texts in quotes are what is to be written
 html_show_sphinx = False
 html_copy_source = False
 html_permalinks_icon = "#"
