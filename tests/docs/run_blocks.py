@@ -4,7 +4,7 @@
 
     sh       bash -eu, one block after another
     toml     a scene, or a part of one, which a small cloth makes whole: drape check
-    python   one program for all blocks of the page; DIR holds the module drape
+    python   one program for all blocks of the page; DIR (BUILD/python) holds the module drape
     cpp      a whole program: compiled with the installed library, and run
     cmake    configured, built and run, with the files of the blocks before
     text     not run; after `<!-- output -->` compared with what the command before it printed
@@ -36,8 +36,7 @@ class Runner:
         build = Path(options.build).resolve()
         self.environment = dict(os.environ, PATH=f"{build}{os.pathsep}{os.environ['PATH']}", MPLBACKEND="Agg")
         self.environment.pop("DRAPE_DATA", None)
-        if options.python:
-            self.environment["PYTHONPATH"] = str(Path(options.python).resolve())
+        self.environment["PYTHONPATH"] = str(Path(options.python).resolve() if options.python else build / "python")
 
     def prepare(self):
         """The project's files, none of which a block can change: data/ is a copy, for programs write beside what they read."""
@@ -60,8 +59,17 @@ class Runner:
                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace")
         self.printed = result.stdout
         expected = int(block.said.get("exit", 0))
-        if result.returncode != expected:
+        if result.returncode != expected and not self.lacks_module(result.stdout):
             self.fail(block, f"{what} ended with {result.returncode}, expected {expected}:\n{result.stdout}")
+
+    def lacks_module(self, printed):
+        """Whether a program ended because a module is not there that need not be; then it is noted."""
+        last = printed.strip().split("\n")[-1]
+        for module in optional_modules:
+            if last == f"ModuleNotFoundError: No module named '{module}'":
+                self.skipped.append(f"{self.page.path}: the Python module {module} is not there")
+                return True
+        return False
 
     def run_block(self, block):
         language = block.language
@@ -72,7 +80,9 @@ class Runner:
         if "before" in block.said:
             self.run(block, ["bash", "-euc", block.said["before"]], "what comes before it")
         if "file" in block.said:
-            (self.folder / block.said["file"]).write_text(block.text, encoding="utf-8")
+            file = self.folder / block.said["file"]
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(block.text, encoding="utf-8")
         kind = {"sh": self.sh, "toml": self.toml, "python": self.collect, "cpp": self.cpp, "cmake": self.cmake}.get(language)
         if kind:
             kind(block)
@@ -133,14 +143,8 @@ class Runner:
         (self.folder / name).write_text(text, encoding="utf-8")
         result = subprocess.run([sys.executable, name], cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL,
                                 text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace")
-        if result.returncode == 0:
-            return
-        last = result.stdout.strip().split("\n")[-1]
-        for module in optional_modules:
-            if last == f"ModuleNotFoundError: No module named '{module}'":
-                self.skipped.append(f"{self.page.path}: python: the module {module} is not there")
-                return
-        self.fail(self.python[0], f"the python blocks failed:\n{result.stdout}")
+        if result.returncode != 0 and not self.lacks_module(result.stdout):
+            self.fail(self.python[0], f"the python blocks failed:\n{result.stdout}")
 
     def install(self, block):
         prefix = self.folder / "installed"
