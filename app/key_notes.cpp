@@ -6,10 +6,13 @@
 namespace drape {
 
 void KeyNotes::add(const std::string& table, const std::string& kind, KeyNote note) {
-  auto section = std::find_if(sections_.begin(), sections_.end(), [&](const KeySection& each) {
-    return each.table == table && each.kind == kind;
-  });
-  if (section == sections_.end()) section = sections_.insert(section, {table, kind, {}});
+  const auto of_table = [&](const KeySection& each) { return each.table == table; };
+  auto section = std::find_if(sections_.begin(), sections_.end(),
+                              [&](const KeySection& each) { return of_table(each) && each.kind == kind; });
+  if (section == sections_.end()) {  // what all have comes before what some have
+    const auto place = kind.empty() ? std::find_if(sections_.begin(), sections_.end(), of_table) : section;
+    section = sections_.insert(place, {table, kind, {}});
+  }
   for (const KeyNote& before : section->keys)
     if (before.key == note.key) {
       if (before.text != note.text)

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "app/words.h"
@@ -39,7 +40,8 @@ class KeyNotes {
   // Once for each key of a section: what is read again is the same key.
   void add(const std::string& table, const std::string& kind, KeyNote note);
 
-  const std::vector<KeySection>& sections() const { return sections_; }
+  const std::vector<KeySection>& sections() const& { return sections_; }
+  std::vector<KeySection> sections() && { return std::move(sections_); }
 
  private:
   std::vector<KeySection> sections_;

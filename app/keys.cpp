@@ -37,7 +37,6 @@ motion   = { spin = { axis = [0, 1, 0], rate = 1 } }
 [[obstacle]]
 shape  = "sphere"
 radius = 1
-mass   = 1
 
 [[obstacle]]
 shape  = "bowl"
@@ -61,6 +60,11 @@ frames = "body_%d.obj"
 [[obstacle]]
 shape = "level-set"
 mesh  = "body.obj"
+
+[[obstacle]]
+shape  = "sphere"
+radius = 1
+mass   = 1
 )";
 
 constexpr std::string_view pattern_of_every_kind = R"(

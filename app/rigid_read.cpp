@@ -80,12 +80,6 @@ void read_rigid(Table& table, ObstacleEntry& entry, const Vec3& middle) {
       table.fail(key,
                  "is of a body that moves by what acts on it, which needs a mass; a body that is moved has "
                  "motion = { velocity = [...], spin = { ... } }");
-  table.only_of("with a mass");
-  table.read("velocity", rigid.velocity, dimension::speed, "of its centre of mass, at first");
-  rigid.spin = read_spin(table);
-  std::optional<Vec3> inertia;
-  read_inertia(table, inertia);
-  table.only_of({});
   if (!table.has("mass")) return;
   const std::string_view shape = name(entry.obstacle.shape);
   if (shape == "plane" || shape == "bowl")
@@ -94,6 +88,12 @@ void read_rigid(Table& table, ObstacleEntry& entry, const Vec3& middle) {
     table.fail("motion",
                "a body with a mass moves by what acts on it: give its first velocity and spin, or leave "
                "the mass out");
+  table.only_of("with a mass");
+  table.read("velocity", rigid.velocity, dimension::speed, "of its centre of mass, at first");
+  rigid.spin = read_spin(table);
+  std::optional<Vec3> inertia;
+  read_inertia(table, inertia);
+  table.only_of({});
   rigid.inertia = inertia ? inertia : solid_moments(entry.obstacle.shape, rigid.mass);
   rigid.axes = own_axes(entry);
   rigid.centre = middle;

@@ -40,9 +40,7 @@ void read_springs(Table& table, SoftMaterial& material) {
   const bool springs = table.has("structural") || table.has("shear") || table.has("bend");
   if (springs && table.has("young")) table.fail("young", "give either young, or structural, shear and bend");
   table.read("young", material.young, dimension::pressure, Range::positive,
-             "Young's modulus of an isotropic solid with Poisson's number 1/4; cubic cells only");
-  for (const char* key : {"structural", "shear", "bend"})
-    if (springs) table.require(key);
+             "of an isotropic solid with Poisson's number 1/4; cubic cells only");
   const char* const instead = "by young";
   table.read("structural", material.structural, dimension::spring, Range::not_negative,
              {"every spring along an edge of a cell; this, shear and bend, instead of young", instead});
@@ -50,6 +48,8 @@ void read_springs(Table& table, SoftMaterial& material) {
              {"every spring along a diagonal of a face or a cell", instead});
   table.read("bend", material.bend, dimension::spring, Range::not_negative,
              {"every spring to the next particle but one", instead});
+  for (const char* key : {"structural", "shear", "bend"})
+    if (springs) table.require(key);
   if (springs) material.young.reset();
 }
 

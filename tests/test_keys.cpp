@@ -21,11 +21,11 @@ std::set<std::string> keys_of(const KeyNotes& notes) {
   return keys;
 }
 
-const KeySection& section_of(const KeyNotes& notes, const std::string& table, const std::string& kind = {}) {
+KeySection section_of(const KeyNotes& notes, const std::string& table, const std::string& kind = {}) {
   for (const KeySection& section : notes.sections())
     if (section.table == table && section.kind == kind) return section;
   FAIL("no keys of '" << table << "' " << kind);
-  return notes.sections().front();
+  return {};
 }
 
 // The tables of this name, wherever they are.
@@ -93,7 +93,7 @@ TEST_CASE("a key that is not listed is refused in every table", "[keys]") {
   const Node value = Node::of_number(1, "scene.toml");
   std::set<std::string> tables;
   for (const KeySection& section : scene_keys().sections()) tables.insert(section.table);
-  CHECK(tables.size() >= 14);
+  CHECK(tables.size() >= 13);
   for (const std::string& table : tables) {
     INFO(table);
     REQUIRE(count_of(table) > 0);
@@ -126,7 +126,8 @@ TEST_CASE("every shape has its keys listed", "[keys]") {
 }
 
 TEST_CASE("a key's default is what holds without it", "[keys]") {
-  for (const KeyNote& note : section_of(scene_keys(), "simulation").keys) {
+  const KeySection simulation = section_of(scene_keys(), "simulation");
+  for (const KeyNote& note : simulation.keys) {
     if (note.key == "contact" || note.key == "threads") continue;  // said in words
     INFO(note.key << " = " << note.otherwise);
     const Node value = parse_toml_value(note.otherwise, "scene.toml");
