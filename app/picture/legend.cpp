@@ -40,7 +40,7 @@ void draw_legend(Image& image, const Box& strip, const Scale& scale, double larg
   const bool strain = scale.field == Field::strain;
   const double unit = strain ? 100 : 1;
   const std::string title =
-      (strain ? "strain of edges, % (most " : "speed, m/s (most ") + rounded(unit * largest, 3) + ")";
+      (strain ? "strain of edges, % (largest " : "speed, m/s (largest ") + rounded(unit * largest, 3) + ")";
   const int middle = static_cast<int>(strip.x + strip.width / 2);
   const int width = static_cast<int>(std::min(0.8 * strip.width, 26.0 * size)), left = middle - width / 2;
   const int top = static_cast<int>(strip.y) + 3 * size / 2, bottom = top + std::max(4, 3 * size / 5);

@@ -28,7 +28,7 @@ constexpr double sample_y[2][2] = {{0.125, 0.375}, {0.625, 0.875}};
 struct Lights {
   float key, sky, fill;
 };
-constexpr Lights plain = {0.78F, 0.42F, 0.14F}, legible = {0.38F, 0.52F, 0.22F};
+constexpr Lights plain = {1.0F, 0.36F, 0.10F}, legible = {0.42F, 0.50F, 0.20F};
 constexpr double border = 0.12;  // of the smaller side
 constexpr float ground_tone = 0.93F, ground_key = 0.45F;
 
@@ -73,7 +73,7 @@ class Painter {
         top_(static_cast<int>(box.y)),
         width_(static_cast<int>(box.width)),
         height_(static_cast<int>(box.height)) {
-    key_ = (-0.45 * camera.right + 0.85 * Vec3::UnitY() + 0.55 * camera.toward).normalized();
+    key_ = (-0.65 * camera.right + 0.80 * Vec3::UnitY() + 0.60 * camera.toward).normalized();
     across_ = key_.unitOrthogonal();
     along_ = key_.cross(across_);
   }

@@ -13,22 +13,35 @@ namespace drape {
 namespace {
 
 constexpr double around = 0.35;  // of the cloth's size: how much of a body is shown with it
-constexpr double air = 0.04;     // of a panel, left free on every side
+constexpr double around_small = 1;
+constexpr double air = 0.04;  // of a panel, left free on every side
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-// f(point) of what must be on the picture: the cloths, and what of bodies is near them.
+struct Extent {
+  Vec3 low = Vec3::Constant(infinite), high = Vec3::Constant(-infinite);  // m
+  void add(const Vec3& p) { low = low.cwiseMin(p), high = high.cwiseMax(p); }
+  bool empty() const { return !(low.x() <= high.x()); }
+  double size() const { return empty() ? 0 : (high - low).norm(); }
+  bool holds(const Vec3& p, double reach) const {
+    return (p - low).minCoeff() >= -reach && (high - p).minCoeff() >= -reach;
+  }
+};
+
+// f(point) of what must be on the picture: the cloths, and what of bodies is near them. A body that is no
+// larger than the cloths may be farther away.
 template <class F>
 void for_framed(const Still& still, const F& f) {
-  Vec3 low = Vec3::Constant(infinite), high = -low;
+  Extent cloths;
   for (const StillPart& part : still.parts)
     if (!part.body)
-      for (const Vec3& p : part.positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  const bool alone = !(low.x() <= high.x());  // bodies without a cloth
-  const Vec3 reach = Vec3::Constant(alone ? 0 : around * (high - low).norm());
-  low -= reach, high += reach;
-  for (const StillPart& part : still.parts)
+      for (const Vec3& p : part.positions) cloths.add(p);
+  for (const StillPart& part : still.parts) {
+    Extent own;
+    for (const Vec3& p : part.positions) own.add(p);
+    const double reach = (own.size() <= cloths.size() ? around_small : around) * cloths.size();
     for (const Vec3& p : part.positions)
-      if (alone || !part.body || ((p - low).minCoeff() >= 0 && (high - p).minCoeff() >= 0)) f(p);
+      if (cloths.empty() || !part.body || cloths.holds(p, reach)) f(p);
+  }
 }
 
 // The ends are round numbers; beyond them is at most one value of a hundred.
@@ -47,7 +60,7 @@ Scale scale_of(Field field, std::vector<float>& values) {
 
 Sheet::Sheet(const std::vector<SheetPanel>& all, std::size_t together, const SheetOptions& options)
     : options_(options), together_(together), labelled_(!all.front().label.empty()) {
-  letters_ = std::clamp(std::min(options.width, options.height) / 40, 11, 60);
+  letters_ = std::clamp(static_cast<int>(std::sqrt(double(options.width) * options.height) / 50), 11, 80);
   if (options.field) legend_height_ = legend_lines * letters_;
   if (options.field && (options.width < 160 || options.height < 120))
     throw InputError("--size " + std::to_string(options.width) + "x" + std::to_string(options.height) +

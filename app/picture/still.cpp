@@ -2,29 +2,24 @@
 
 #include <cmath>
 #include <filesystem>
-#include <limits>
-#include <numbers>
 
 #include "mesh/obj.h"
 
 namespace drape {
 namespace {
 
-// A ball that moves has eight sectors of two tones, or nobody could see that it turns: of what moves, the
-// bodies whose vertices are all as far from their middle. Others have none.
-std::vector<char> ball_marks(const TriangleMesh& mesh, const std::vector<Vec3>& first) {
-  Vec3 low = first[0], high = first[0];
-  for (const Vec3& p : first) low = low.cwiseMin(p), high = high.cwiseMax(p);
+// A ball that moves is drawn with sectors of two tones, or nobody could see that it turns. A ball is what has
+// all vertices as far from its middle; of anything else nothing is returned.
+std::vector<Vec3> ball_from_middle(std::vector<Vec3> positions) {
+  Vec3 low = positions[0], high = positions[0];
+  for (const Vec3& p : positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const Vec3 middle = (low + high) / 2;
   const double radius = (high - low).maxCoeff() / 2;
-  for (const Vec3& p : first)
-    if (std::abs((p - middle).norm() - radius) > 0.02 * radius) return {};
-  std::vector<char> marks;
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3 out = (first[t[0]] + first[t[1]] + first[t[2]]) / 3 - middle;
-    marks.push_back(std::lround(std::floor(std::atan2(out.z(), out.x()) / (std::numbers::pi / 4))) % 2 == 0);
+  for (Vec3& p : positions) {
+    p -= middle;
+    if (std::abs(p.norm() - radius) > 0.02 * radius) return {};
   }
-  return marks;
+  return positions;
 }
 
 RecordedShape file_shape(const std::string& path, bool body) {
@@ -45,9 +40,9 @@ Subject::Subject(const std::string& path) : path_(path) {
   recording_ = std::make_unique<Recording>(path);
   for (std::size_t k = 0; k < recording_->shapes().size(); ++k) {
     const RecordedShape& shape = recording_->shapes()[k];
-    marks_.push_back(shape.body && shape.moves && !shape.mesh.positions.empty()
-                         ? ball_marks(shape.mesh, recording_->positions(k, 0))
-                         : std::vector<char>());
+    sectors_.push_back(shape.body && shape.moves && !shape.mesh.positions.empty()
+                           ? ball_from_middle(recording_->positions(k, 0))
+                           : std::vector<Vec3>());
   }
 }
 
@@ -83,7 +78,7 @@ Still Subject::still(int frame, std::optional<Field> field) const {
   for (std::size_t k = 0; recording_ && k < recording_->shapes().size(); ++k) {
     const RecordedShape& shape = recording_->shapes()[k];
     StillPart& part = add(shape, recording_->positions(k, frame));
-    if (!marks_[k].empty()) part.marked = &marks_[k];
+    if (!sectors_[k].empty()) part.sectors = &sectors_[k];
     if (field && !shape.body) part.values = values(k, frame, *field);
     coloured = coloured || !part.values.empty();
   }

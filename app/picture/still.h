@@ -17,7 +17,7 @@ struct StillPart {
   int cloth = 0;                                     // which one, from 0: its colour
   std::vector<Vec3> positions;                       // m
   const std::vector<Triangle>* triangles = nullptr;  // of the Subject
-  const std::vector<char>* marked = nullptr;         // triangles in a second tone; null: none
+  const std::vector<Vec3>* sectors = nullptr;        // of a ball: its vertices from its middle at first, m
   std::vector<double> values;  // of vertices, to be coloured by; empty: a colour of its own
 };
 
@@ -47,8 +47,8 @@ class Subject {
 
   std::string path_;
   std::unique_ptr<Recording> recording_;
-  std::vector<RecordedShape> meshes_;     // of files
-  std::vector<std::vector<char>> marks_;  // of the recording's shapes
+  std::vector<RecordedShape> meshes_;       // of files
+  std::vector<std::vector<Vec3>> sectors_;  // of the recording's shapes; empty: is no ball
 };
 
 }  // namespace drape

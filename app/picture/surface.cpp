@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace drape {
 namespace {
@@ -22,7 +23,7 @@ double smooth_step(double from, double to, double x) {
 
 Surface::Surface(const Still& still, const Look& look) : still_(still), look_(look) {
   for (const StillPart& part : still.parts) {
-    const Light own = light(part.body ? body_colour : cloth_colour(part.cloth));
+    const Light own = part.body ? light(body_colour) : Light(0.97F * light(cloth_colour(part.cloth)) + 0.03F);
     pieces_.push_back({static_cast<int>(triangles_.size()), &part, own,
                        part.body ? own : Light(0.72F * own + 0.28F), light(body_mark)});
     const auto normals =
@@ -39,12 +40,16 @@ Surface::Surface(const Still& still, const Look& look) : still_(still), look_(lo
 
 Light Surface::colour(const Piece& piece, int triangle, const Vec3& weights, bool front) const {
   const std::vector<double>& values = piece.part->values;
-  const int own = triangle - piece.begin;
+  const Triangle& t = (*piece.part->triangles)[triangle - piece.begin];
   if (values.empty() || !look_.scale) {
-    if (piece.part->marked && (*piece.part->marked)[own]) return piece.mark;
+    if (piece.part->sectors) {
+      const std::vector<Vec3>& x = *piece.part->sectors;
+      const Vec3 out = weights[0] * x[t[0]] + weights[1] * x[t[1]] + weights[2] * x[t[2]];
+      const double sector = std::floor(std::atan2(out.z(), out.x()) / (std::numbers::pi / 4));
+      if (std::lround(sector) % 2 == 0) return piece.mark;
+    }
     return front ? piece.front : piece.back;
   }
-  const Triangle& t = (*piece.part->triangles)[own];
   if (look_.scale->field == Field::contact) {  // no vertex touches by half
     Eigen::Index nearest = 0;
     weights.maxCoeff(&nearest);
