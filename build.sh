@@ -35,7 +35,7 @@ die() {
 required=(g++ cmake ninja-build libeigen3-dev libspectra-dev libembree-dev libtoml11-dev libcli11-dev nlohmann-json3-dev libudunits2-dev libcsv-dev
   libboost-dev libsvgpp-dev libpugixml-dev libpng-dev libfreetype-dev fonts-dejavu-core)
 optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev)
-for_tests=(catch2 libtinyobjloader-dev)
+for_tests=(catch2 libtinyobjloader-dev libstb-dev)
 for_format=(clang-format)
 for_lint=(clang-tidy)
 
