@@ -13,6 +13,8 @@
 
 namespace drape::test {
 
+using drawing::Image;
+
 Image read_png(const std::string& bytes) {
   int width = 0, height = 0, channels = 0;
   unsigned char* rgb = stbi_load_from_memory(reinterpret_cast<const unsigned char*>(bytes.data()),

@@ -16,6 +16,7 @@
 #include "tests/tables.h"
 
 using namespace drape;
+using namespace drape::drawing;
 using namespace drape::test;
 
 namespace {
@@ -116,14 +117,14 @@ TEST_CASE("what is in front hides what is behind, from either side", "[picture]"
 TEST_CASE("views: y is up, front looks along -z, the azimuth turns the eye towards +x", "[picture]") {
   struct Seen {
     const char* view;
-    Vec3 at;            // of the cloth, from the body
-    int right, down;    // where it is then
+    Vec3 at;          // of the cloth, from the body
+    int right, down;  // where it is then
   };
-  for (const Seen& seen : {Seen{"front", {1, 0, 0}, 1, 0}, Seen{"front", {0, 1, 0}, 0, -1},
-                           Seen{"back", {1, 0, 0}, -1, 0}, Seen{"right", {0, 0, 1}, -1, 0},
-                           Seen{"side", {0, 0, 1}, -1, 0}, Seen{"left", {0, 0, 1}, 1, 0},
-                           Seen{"left", {0, 1, 0}, 0, -1}, Seen{"top", {1, 0, 0}, 1, 0},
-                           Seen{"top", {0, 0, 1}, 0, 1}, Seen{"90,0", {0, 0, 1}, -1, 0}}) {
+  for (const Seen& seen :
+       {Seen{"front", {1, 0, 0}, 1, 0}, Seen{"front", {0, 1, 0}, 0, -1}, Seen{"back", {1, 0, 0}, -1, 0},
+        Seen{"right", {0, 0, 1}, -1, 0}, Seen{"side", {0, 0, 1}, -1, 0}, Seen{"left", {0, 0, 1}, 1, 0},
+        Seen{"left", {0, 1, 0}, 0, -1}, Seen{"top", {1, 0, 0}, 1, 0}, Seen{"top", {0, 0, 1}, 0, 1},
+        Seen{"90,0", {0, 0, 1}, -1, 0}}) {
     Scene scene;
     scene.add(sphere(3, 0.1), true);
     scene.add(moved(sphere(3, 0.1), 0.5 * seen.at), false);
@@ -161,7 +162,8 @@ TEST_CASE("colours follow the values of the vertices, times the light that falls
     const Scale scale{field, field == Field::strain ? -0.1 : 0, 0.1};
     const TriangleMesh sheet = grid(21, 21, 1, 1);
     std::vector<double> values;
-    for (const Vec3& p : sheet.positions) values.push_back(scale.low + (p.x() + 0.5) * (scale.high - scale.low));
+    for (const Vec3& p : sheet.positions)
+      values.push_back(scale.low + (p.x() + 0.5) * (scale.high - scale.low));
     Scene scene;
     scene.add(sheet, false, values);
     Look look;
@@ -220,7 +222,8 @@ TEST_CASE("a body throws a shadow on the ground, which ends in the background", 
       }
   CHECK(darkest < 0.65 * lightest);
   for (int k = 0; k < 300; ++k)
-    for (const Pixel& p : {image.at(k, 0), image.at(k, 299), image.at(0, k), image.at(299, k)}) CHECK(empty(p));
+    for (const Pixel& p : {image.at(k, 0), image.at(k, 299), image.at(0, k), image.at(299, k)})
+      CHECK(empty(p));
   // From below the ground is not there, or it would hide everything.
   Framing below({0, -30}, {0, 0, 60, 60});
   for (const Vec3& p : scene.still.parts[0].positions) below.add(p);
@@ -270,7 +273,8 @@ TEST_CASE("normals are round on a ball, flat on a box, and pass over a seam of t
 
 TEST_CASE("steps of a legend are round and about as many as asked", "[picture]") {
   for (double range = 1e-6; range < 1e6; range *= 1.37) {
-    const double step = round_step(range, 4), digit = step / std::pow(10, std::floor(std::log10(step) + 1e-9));
+    const double step = round_step(range, 4),
+                 digit = step / std::pow(10, std::floor(std::log10(step) + 1e-9));
     INFO(range << " by " << step);
     CHECK((digit == Approx(1) || digit == Approx(2) || digit == Approx(5)));
     CHECK(range / step > 1.5);

@@ -7,6 +7,7 @@
 #include "tests/workshop.h"
 
 using namespace drape;
+using namespace drape::drawing;
 using namespace drape::test;
 using Catch::Contains;
 using Catch::StartsWith;
@@ -91,7 +92,8 @@ TEST_CASE("colours come with a legend whose ends are those of the map", "[pictur
   const Run shop;
   for (const std::string field : {"strain", "speed", "contact"}) {
     INFO(field);
-    CHECK(shop.drape("picture o --color " + field + " --size 640x480 --frame 6 -o " + field + ".png").exit_code == 0);
+    CHECK(shop.drape("picture o --color " + field + " --size 640x480 --frame 6 -o " + field + ".png")
+              .exit_code == 0);
     const Image image = shop.read(field + ".png");
     const auto has = [&](const Pixel& p) {
       return std::count(image.pixels.begin() + 640 * 420, image.pixels.end(), p) > 3;

@@ -10,7 +10,7 @@
 
 #include "mesh/obj.h"
 
-namespace drape {
+namespace drape::drawing {
 namespace {
 
 const std::map<std::string, View>& views() {
@@ -62,7 +62,7 @@ Camera facing(const View& view) {
 // Seen is what has |X - x| <= a (z - Z) for the eye (x, y, z) in the camera's axes, a the slope of the box's
 // side; so with R = max(X + a Z), L = max(-X + a Z): a z >= (R + L) / 2, and x = (R - L) / 2 is in the
 // middle.
-Framing::Framing(const View& view, const Box& box) : camera_(facing(view)) {
+Framing::Framing(const View& view, const PixelBox& box) : camera_(facing(view)) {
   camera_.slope = std::tan(half_field * std::numbers::pi / 180) / (std::max(box.width, box.height) / 2);
   camera_.middle_x = box.x + box.width / 2;
   camera_.middle_y = box.y + box.height / 2;
@@ -87,4 +87,4 @@ Camera Framing::camera() const {
   return camera;
 }
 
-}  // namespace drape
+}  // namespace drape::drawing

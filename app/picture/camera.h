@@ -10,7 +10,7 @@
 #include "app/words.h"
 #include "mesh/triangle_mesh.h"
 
-namespace drape {
+namespace drape::drawing {
 
 struct View {
   double azimuth = 30, elevation = 20;  // degrees
@@ -19,7 +19,7 @@ Names named_views();
 View view_named(const std::string& text);  // a name or "azimuth,elevation"; throws InputError
 
 // A part of a picture, in pixels.
-struct Box {
+struct PixelBox {
   double x = 0, y = 0, width = 0, height = 0;
 };
 
@@ -37,7 +37,7 @@ Camera facing(const View& view);
 // The nearest eye that has all points [m] within the box, in the middle of it.
 class Framing {
  public:
-  Framing(const View& view, const Box& box);
+  Framing(const View& view, const PixelBox& box);
   void add(const Vec3& point);
   Camera camera() const;  // of one point at least
 
@@ -48,4 +48,4 @@ class Framing {
   double right_, left_, above_, below_, nearest_, farthest_;
 };
 
-}  // namespace drape
+}  // namespace drape::drawing

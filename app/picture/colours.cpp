@@ -6,7 +6,7 @@
 
 #include "app/recording.h"
 
-namespace drape {
+namespace drape::drawing {
 namespace {
 
 constexpr std::array<Pixel, 7> cloths = {{{0, 114, 178},
@@ -99,4 +99,4 @@ double round_step(double range, int count) {
   return 10 * power;
 }
 
-}  // namespace drape
+}  // namespace drape::drawing

@@ -11,7 +11,7 @@
 
 #include "app/picture/image.h"
 
-namespace drape {
+namespace drape::drawing {
 
 using Light = Eigen::Array3f;  // linear red, green, blue
 
@@ -36,4 +36,4 @@ Pixel colour_of(const Scale& scale, double value);  // beyond the ends as at the
 // A step of 1, 2 or 5 times a power of ten with about `count` of them up to `range` > 0.
 double round_step(double range, int count);
 
-}  // namespace drape
+}  // namespace drape::drawing

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace drape {
+namespace drape::drawing {
 
 using Pixel = std::array<std::uint8_t, 3>;  // sRGB
 
@@ -27,4 +27,4 @@ struct Image {
 // The bytes of a PNG file, 8 bits a channel, marked as sRGB; with a table of colours where 256 are enough.
 std::string png(const Image& image);
 
-}  // namespace drape
+}  // namespace drape::drawing

@@ -8,7 +8,7 @@
 #include "app/picture/text.h"
 #include "app/words.h"
 
-namespace drape {
+namespace drape::drawing {
 namespace {
 
 void fill(Image& image, int x0, int y0, int x1, int y1, const Pixel& colour) {
@@ -17,7 +17,7 @@ void fill(Image& image, int x0, int y0, int x1, int y1, const Pixel& colour) {
       if (image.has(x, y)) image.at(x, y) = colour;
 }
 
-void draw_words(Image& image, const Box& strip, const Scale& scale, int size) {
+void draw_words(Image& image, const PixelBox& strip, const Scale& scale, int size) {
   const std::vector<std::string> words = {"free", "slides", "sticks"};  // as Touch counts
   const int gap = size / 2, after = 3 * size / 2;
   int width = -after;
@@ -35,7 +35,7 @@ void draw_words(Image& image, const Box& strip, const Scale& scale, int size) {
 
 }  // namespace
 
-void draw_legend(Image& image, const Box& strip, const Scale& scale, double largest, int size) {
+void draw_legend(Image& image, const PixelBox& strip, const Scale& scale, double largest, int size) {
   if (scale.field == Field::contact) return draw_words(image, strip, scale, size);
   const bool strain = scale.field == Field::strain;
   const double unit = strain ? 100 : 1;
@@ -59,4 +59,4 @@ void draw_legend(Image& image, const Box& strip, const Scale& scale, double larg
   }
 }
 
-}  // namespace drape
+}  // namespace drape::drawing

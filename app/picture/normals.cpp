@@ -7,7 +7,7 @@
 #include <numbers>
 #include <unordered_map>
 
-namespace drape {
+namespace drape::drawing {
 namespace {
 
 struct PlaceHash {
@@ -71,4 +71,4 @@ std::vector<CornerNormals> corner_normals(const std::vector<Vec3>& positions,
   return normals;
 }
 
-}  // namespace drape
+}  // namespace drape::drawing

@@ -9,11 +9,11 @@
 
 #include "mesh/triangle_mesh.h"
 
-namespace drape {
+namespace drape::drawing {
 
 using CornerNormals = std::array<Eigen::Vector3f, 3>;  // unit; of a triangle without area zero
 
 std::vector<CornerNormals> corner_normals(const std::vector<Vec3>& positions,
                                           const std::vector<Triangle>& triangles, double crease_degrees);
 
-}  // namespace drape
+}  // namespace drape::drawing

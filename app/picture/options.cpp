@@ -8,7 +8,7 @@
 #include "app/words.h"
 #include "mesh/obj.h"
 
-namespace drape {
+namespace drape::drawing {
 namespace {
 
 constexpr int smallest = 16, largest = 8192;  // pixels
@@ -76,4 +76,4 @@ std::vector<int> frames_named(const std::string& text, int count, int several, c
   return frames;
 }
 
-}  // namespace drape
+}  // namespace drape::drawing

@@ -8,7 +8,7 @@
 
 #include "app/picture/colours.h"
 
-namespace drape {
+namespace drape::drawing {
 
 // Throw InputError.
 std::pair<int, int> size_named(const std::string& text);  // "1280x960"; empty: that
@@ -18,4 +18,4 @@ std::optional<Field> field_asked(const std::string& text);
 // `several` up to `several` spread over the run. `where` stands in messages.
 std::vector<int> frames_named(const std::string& text, int count, int several, const std::string& where);
 
-}  // namespace drape
+}  // namespace drape::drawing

@@ -12,6 +12,8 @@
 namespace drape {
 namespace {
 
+using namespace drawing;
+
 constexpr int spread = 12;  // frames of a sheet when none are named
 
 std::filesystem::path out_path(const PictureWords& words) {

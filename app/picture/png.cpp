@@ -7,7 +7,7 @@
 
 #include "app/picture/image.h"
 
-namespace drape {
+namespace drape::drawing {
 namespace {
 
 void append(png_structp writer, png_bytep bytes, png_size_t count) {
@@ -78,4 +78,4 @@ std::string png(const Image& image) {
   return bytes;
 }
 
-}  // namespace drape
+}  // namespace drape::drawing

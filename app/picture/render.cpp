@@ -10,7 +10,7 @@
 #include "app/picture/surface.h"
 #include "mesh/parallel.h"
 
-namespace drape {
+namespace drape::drawing {
 namespace {
 
 constexpr int window = 8;  // samples: what is averaged, and the period of the pattern
@@ -63,7 +63,7 @@ struct Sample {
 
 class Painter {
  public:
-  Painter(const Still& still, const Camera& camera, const Look& look, Image& image, const Box& box)
+  Painter(const Still& still, const Camera& camera, const Look& look, Image& image, const PixelBox& box)
       : surface_(still, look),
         still_(still),
         camera_(camera),
@@ -179,8 +179,8 @@ class Painter {
 
 }  // namespace
 
-void render(const Still& still, const Camera& camera, const Look& look, Image& image, const Box& box) {
+void render(const Still& still, const Camera& camera, const Look& look, Image& image, const PixelBox& box) {
   Painter(still, camera, look, image, box).paint();
 }
 
-}  // namespace drape
+}  // namespace drape::drawing

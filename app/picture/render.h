@@ -11,7 +11,7 @@
 #include "app/picture/camera.h"
 #include "app/picture/still.h"
 
-namespace drape {
+namespace drape::drawing {
 
 struct Look {
   std::optional<Scale> scale;  // of the parts' values
@@ -21,6 +21,6 @@ struct Look {
 };
 
 // Into the part `box` of the image, whole pixels.
-void render(const Still& still, const Camera& camera, const Look& look, Image& image, const Box& box);
+void render(const Still& still, const Camera& camera, const Look& look, Image& image, const PixelBox& box);
 
-}  // namespace drape
+}  // namespace drape::drawing

@@ -9,7 +9,7 @@
 #include "app/picture/text.h"
 #include "mesh/obj.h"
 
-namespace drape {
+namespace drape::drawing {
 namespace {
 
 constexpr double around = 0.35;  // of the cloth's size: how much of a body is shown with it
@@ -100,7 +100,7 @@ void Sheet::choose_columns(const std::vector<SheetPanel>& all) {
   double best = -1;
   int chosen = 1;
   for (columns_ = 1; columns_ <= static_cast<int>(together_); ++columns_) {
-    const Box box = place(0).framed;
+    const PixelBox box = place(0).framed;
     const double scale = std::min(box.width / size.x(), box.height / size.y());
     if (scale > best * (1 + 1e-9)) best = scale, chosen = columns_;
   }
@@ -149,9 +149,9 @@ Image Sheet::draw(const std::vector<SheetPanel>& panels) const {
               static_cast<int>(here.panel.y + here.panel.height + 1.25 * letters_), panels[k].label, letters_,
               Anchor::middle, ink);
   }
-  const Box strip = {0, options_.height - legend_height_, double(options_.width), legend_height_};
+  const PixelBox strip = {0, options_.height - legend_height_, double(options_.width), legend_height_};
   if (options_.field) draw_legend(image, strip, scale_, largest_, letters_);
   return image;
 }
 
-}  // namespace drape
+}  // namespace drape::drawing

@@ -8,7 +8,7 @@
 #include "app/picture/colours.h"
 #include "app/picture/still.h"
 
-namespace drape {
+namespace drape::drawing {
 
 struct SheetPanel {
   const Subject* subject;
@@ -34,7 +34,7 @@ class Sheet {
 
  private:
   struct Place {
-    Box panel, framed;  // whole pixels; within the panel
+    PixelBox panel, framed;  // whole pixels; within the panel
   };
   Place place(std::size_t k) const;
   void choose_columns(const std::vector<SheetPanel>& all);
@@ -51,4 +51,4 @@ class Sheet {
   double largest_ = 0;
 };
 
-}  // namespace drape
+}  // namespace drape::drawing

@@ -5,7 +5,7 @@
 
 #include "mesh/obj.h"
 
-namespace drape {
+namespace drape::drawing {
 namespace {
 
 // A ball that moves is drawn with sectors of two tones, or nobody could see that it turns. A ball is what has
@@ -95,4 +95,4 @@ Still Subject::still(int frame, std::optional<Field> field) const {
   return still;
 }
 
-}  // namespace drape
+}  // namespace drape::drawing

@@ -10,7 +10,7 @@
 #include "app/recording.h"
 #include "mesh/triangle_mesh.h"
 
-namespace drape {
+namespace drape::drawing {
 
 struct StillPart {
   bool body = false;
@@ -51,4 +51,4 @@ class Subject {
   std::vector<std::vector<Vec3>> sectors_;  // of the recording's shapes; empty: is no ball
 };
 
-}  // namespace drape
+}  // namespace drape::drawing

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace drape {
+namespace drape::drawing {
 namespace {
 
 constexpr double cloth_crease = 80, body_crease = 40;       // degrees
@@ -136,4 +136,4 @@ bool Surface::covered(const Vec3& from, const Vec3& direction, double distance) 
   return blocked(from, direction, distance);
 }
 
-}  // namespace drape
+}  // namespace drape::drawing

@@ -7,7 +7,7 @@
 #include "app/picture/render.h"
 #include "mesh/triangle_tree.h"
 
-namespace drape {
+namespace drape::drawing {
 
 // What a ray from the eye meets.
 struct Seen {
@@ -50,4 +50,4 @@ class Surface {
   std::optional<TriangleTree> tree_;
 };
 
-}  // namespace drape
+}  // namespace drape::drawing
