@@ -13,8 +13,8 @@
 namespace drape::drawing {
 namespace {
 
-constexpr int window = 8;  // samples: what is averaged, and the period of the pattern
-constexpr int margin = window / 2;
+constexpr int margin = 4;  // samples round a tile: half of the largest window that is averaged
+constexpr int small_picture = 700000;  // pixels: up to here there is time for four times as many rays
 constexpr int tile = 64;  // pixels
 constexpr int tile_samples = 2 * tile + 2 * margin;
 constexpr double light_spread = 0.16;    // radius of the light over its distance
@@ -29,8 +29,9 @@ struct Lights {
   float key, sky, fill;
 };
 constexpr Lights plain = {1.0F, 0.36F, 0.10F}, legible = {0.42F, 0.50F, 0.20F};
-constexpr double border = 0.12;  // of the smaller side
-constexpr float ground_tone = 0.93F, ground_key = 0.45F;
+constexpr float occluded = 0.88F;  // the rest is light that walls throw back
+constexpr double border = 0.2;  // of the sides
+constexpr float ground_tone = 0.96F, ground_key = 0.45F;
 
 // Directions and places of the light that the samples of a window ask for: 64 points spread over the unit
 // square (Hammersley), handed out in the order of Bayer's matrix, so that neighbours get distant ones.
@@ -58,7 +59,7 @@ const Pattern pattern;
 
 struct Sample {
   Seen seen;
-  float shadow = 0, occlusion = 0;  // what its own ray met
+  float shadow = 0, occlusion = 0;  // shares of its own rays that met something
 };
 
 class Painter {
@@ -72,7 +73,8 @@ class Painter {
         left_(static_cast<int>(box.x)),
         top_(static_cast<int>(box.y)),
         width_(static_cast<int>(box.width)),
-        height_(static_cast<int>(box.height)) {
+        height_(static_cast<int>(box.height)),
+        window_(image.width * image.height > small_picture ? 8 : 4) {
     key_ = (-0.65 * camera.right + 0.80 * Vec3::UnitY() + 0.60 * camera.toward).normalized();
     across_ = key_.unitOrthogonal();
     along_ = key_.cross(across_);
@@ -117,16 +119,21 @@ class Painter {
     sample.seen = surface_.seen(camera_.eye, direction, camera_.slope);
     if (sample.seen.part == -1) return;
     if (sample.seen.part <= -2) sample.seen.fade *= near_border(sx / 2, sy / 2);
-    const std::size_t rank = static_cast<std::size_t>(8 * (sy & 7) + (sx & 7));
+    for (int dy = 0; dy < 8; dy += window_)
+      for (int dx = 0; dx < 8; dx += window_)
+        ask(sample, static_cast<std::size_t>(8 * ((sy & (window_ - 1)) + dy) + (sx & (window_ - 1)) + dx));
+  }
+
+  void ask(Sample& sample, std::size_t place) const {
+    const float share = static_cast<float>(window_ * window_) / 64;
     const Vec3 normal = sample.seen.normal.cast<double>();
-    const Eigen::Vector2d& off = light_spread * pattern.disc[rank];
+    const Eigen::Vector2d off = light_spread * pattern.disc[place];
     const Vec3 to_light = key_ + off.x() * across_ + off.y() * along_;
-    if (normal.dot(to_light) > 0)
-      sample.shadow = surface_.blocked(sample.seen.from, to_light.normalized(), 4 * look_.size) ? 1 : 0;
-    const Vec3& local = pattern.half_sphere[rank];
-    const Vec3 a = normal.unitOrthogonal(), b = normal.cross(a);
-    const Vec3 outwards = local.x() * a + local.y() * b + local.z() * normal;
-    sample.occlusion = surface_.covered(sample.seen.from, outwards, occlusion_reach * look_.size) ? 1 : 0;
+    if (normal.dot(to_light) > 0 &&
+        surface_.blocked(sample.seen.from, to_light.normalized(), 4 * look_.size))
+      sample.shadow += share;
+    const Vec3 outwards = frame_of(normal) * pattern.half_sphere[place];
+    if (surface_.covered(sample.seen.from, outwards, occlusion_reach * look_.size)) sample.occlusion += share;
   }
 
   // What a sample shows, with what it and its neighbours on the same surface have learnt.
@@ -136,10 +143,10 @@ class Painter {
     if (seen.part == -1) return nothing;
     const double thick = 6 * camera_.slope * seen.distance;  // m
     float shadow = 0, occlusion = 0, count = 0;
-    for (int j = -margin; j < window - margin; ++j)
-      for (int i = -margin; i < window - margin; ++i) {
+    for (int j = -window_ / 2; j < window_ / 2; ++j)
+      for (int i = -window_ / 2; i < window_ / 2; ++i) {
         const Sample& other = samples[static_cast<std::size_t>(at + j * tile_samples + i)];
-        if (other.seen.part != seen.part || other.seen.normal.dot(seen.normal) < 0.85F ||
+        if (other.seen.part != seen.part || other.seen.normal.dot(seen.normal) < 0.75F ||
             std::abs((other.seen.point - seen.point).dot(seen.normal.cast<double>())) > thick)
           continue;
         shadow += other.shadow, occlusion += other.occlusion, count += 1;
@@ -151,15 +158,30 @@ class Painter {
     const Eigen::Vector3f l = key_.cast<float>(), e = (camera_.eye - seen.point).normalized().cast<float>();
     const float from_above = 0.8F + 0.2F * seen.normal.y();
     return seen.colour * (lights.key * std::max(0.0F, seen.normal.dot(l)) * (1 - shadow) +
-                          lights.sky * (1 - occlusion) * from_above +
+                          lights.sky * (1 - occluded * occlusion) * from_above +
                           lights.fill * std::max(0.0F, seen.normal.dot(e)) * (1 - 0.5F * occlusion));
+  }
+
+  // Axes whose third is the normal. They turn as little as can be from one normal to the next, so that
+  // neighbours ask for different directions: singular only where the normal points away from the viewer
+  // [Duff et al. 2017, Building an orthonormal basis, revisited].
+  Mat3 frame_of(const Vec3& normal) const {
+    Mat3 axes, turned;
+    axes << camera_.right, camera_.up, camera_.toward;
+    const Vec3 n = axes.transpose() * normal;
+    const double a = -1 / (1 + std::max(n.z(), -0.9)), b = n.x() * n.y() * a;
+    turned << 1 + a * n.x() * n.x(), b, n.x(), b, 1 + a * n.y() * n.y(), n.y(), -n.x(), -n.y(), n.z();
+    return axes * turned;
   }
 
   // 0 at the border of the box, 1 some way in: the ground has no edge.
   float near_border(int x, int y) const {
-    const int depth = std::min(std::min(x, width_ - 1 - x), std::min(y, height_ - 1 - y));
-    const double t = std::clamp(depth / (border * std::min(width_, height_)), 0.0, 1.0);
-    return static_cast<float>(t * t * (3 - 2 * t));
+    const auto fade = [](double depth, double size) {
+      const double t = std::clamp(depth / (border * size), 0.0, 1.0);
+      return t * t * (3 - 2 * t);
+    };
+    return static_cast<float>(fade(std::min(x, width_ - 1 - x), width_) *
+                              fade(std::min(y, height_ - 1 - y), height_));
   }
 
   // The ground is the background, a little darker, where nothing keeps the light from it.
@@ -174,6 +196,7 @@ class Painter {
   const Look& look_;
   Image& image_;
   int left_, top_, width_, height_;
+  int window_;  // samples: what is averaged, and the period of the pattern
   Vec3 key_, across_, along_;  // to the light, unit, and across
 };
 

@@ -1,9 +1,9 @@
 // Draws a still by casting rays: one light with soft shadows, light from everywhere else where nothing is in
 // its way (ambient occlusion), no noise, the same bits on any number of threads.
 //   light = colour (key max(0, n . l) (1 - shadow) + sky (1 - occlusion) + fill max(0, n . e))
-// Every sample asks one ray each for shadow and occlusion; 8 x 8 neighbours ask 64 different ones, and what
-// they learn is averaged over those of them that lie on the same surface [Segovia et al. 2006, interleaved
-// sampling]. Time: linear in the pixels.
+// Four samples a pixel. Each asks one ray for shadow and one for occlusion, and 8 x 8 neighbours together 64
+// different ones; what they learn is averaged over those of them that lie on the same surface [Segovia et al.
+// 2006, interleaved sampling]. In small pictures each asks four, and 4 x 4 share. Time: linear in the pixels.
 #pragma once
 
 #include <optional>

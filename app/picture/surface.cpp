@@ -25,7 +25,7 @@ Surface::Surface(const Still& still, const Look& look) : still_(still), look_(lo
   for (const StillPart& part : still.parts) {
     const Light own = part.body ? light(body_colour) : Light(0.97F * light(cloth_colour(part.cloth)) + 0.03F);
     pieces_.push_back({static_cast<int>(triangles_.size()), &part, own,
-                       part.body ? own : Light(0.72F * own + 0.28F), light(body_mark)});
+                       part.body ? own : Light(0.86F * own + 0.07F), light(body_mark)});
     const auto normals =
         corner_normals(part.positions, *part.triangles, part.body ? body_crease : cloth_crease);
     const int shift = static_cast<int>(positions_.size());
