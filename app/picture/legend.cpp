@@ -43,7 +43,7 @@ void draw_legend(Image& image, const PixelBox& strip, const Scale& scale, double
       (strain ? "strain of edges, % (largest " : "speed, m/s (largest ") + rounded(unit * largest, 3) + ")";
   const int middle = static_cast<int>(strip.x + strip.width / 2);
   const int width = static_cast<int>(std::min(0.8 * strip.width, 26.0 * size)), left = middle - width / 2;
-  const int top = static_cast<int>(strip.y) + 3 * size / 2, bottom = top + std::max(4, 3 * size / 5);
+  const int top = static_cast<int>(strip.y) + 2 * size, bottom = top + std::max(4, 3 * size / 5);
   draw_text(image, middle, top - size / 2, title, size, Anchor::middle, ink);
   const auto value_at = [&](int x) { return scale.low + (x + 0.5) / width * (scale.high - scale.low); };
   for (int x = 0; x < width; ++x)

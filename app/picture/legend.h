@@ -8,7 +8,7 @@
 
 namespace drape::drawing {
 
-inline constexpr double legend_lines = 3.9;  // its height over the size of its letters
+inline constexpr double legend_lines = 4.4;  // its height over the size of its letters
 
 // In the middle of the strip; size: of the letters, pixels. largest: the value of what is farthest out.
 void draw_legend(Image& image, const PixelBox& strip, const Scale& scale, double largest, int size);

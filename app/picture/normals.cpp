@@ -10,6 +10,8 @@
 namespace drape::drawing {
 namespace {
 
+constexpr int crowd = 1000;  // faces round a vertex
+
 struct PlaceHash {
   std::size_t operator()(const std::array<double, 3>& place) const {
     std::uint64_t hash = 0;
@@ -61,6 +63,10 @@ std::vector<CornerNormals> corner_normals(const std::vector<Vec3>& positions,
     for (std::size_t k = 0; k < 3; ++k) {
       const int v = vertex[triangles[t][k]];
       Vec3 sum = Vec3::Zero();
+      if (start[v + 1] - start[v] > crowd) {  // the hub of a wheel: each with each would take too long
+        normals[t][k] = face[t].cast<float>();
+        continue;
+      }
       for (int i = start[v]; i < start[v + 1]; ++i) {
         const auto [other, corner] = round[i];
         if (other == static_cast<int>(t) || face[other].dot(face[t]) > least)

@@ -13,9 +13,9 @@
 namespace drape::drawing {
 namespace {
 
-constexpr int margin = 4;  // samples round a tile: half of the largest window that is averaged
+constexpr int margin = 4;              // samples round a tile: half of the largest window that is averaged
 constexpr int small_picture = 700000;  // pixels: up to here there is time for four times as many rays
-constexpr int tile = 64;  // pixels
+constexpr int tile = 64;               // pixels
 constexpr int tile_samples = 2 * tile + 2 * margin;
 constexpr double light_spread = 0.16;    // radius of the light over its distance
 constexpr double occlusion_reach = 0.3;  // of the scene's size
@@ -30,7 +30,7 @@ struct Lights {
 };
 constexpr Lights plain = {1.0F, 0.36F, 0.10F}, legible = {0.42F, 0.50F, 0.20F};
 constexpr float occluded = 0.88F;  // the rest is light that walls throw back
-constexpr double border = 0.2;  // of the sides
+constexpr double border = 0.2;     // of the sides
 constexpr float ground_tone = 0.96F, ground_key = 0.45F;
 
 // Directions and places of the light that the samples of a window ask for: 64 points spread over the unit
@@ -129,8 +129,7 @@ class Painter {
     const Vec3 normal = sample.seen.normal.cast<double>();
     const Eigen::Vector2d off = light_spread * pattern.disc[place];
     const Vec3 to_light = key_ + off.x() * across_ + off.y() * along_;
-    if (normal.dot(to_light) > 0 &&
-        surface_.blocked(sample.seen.from, to_light.normalized(), 4 * look_.size))
+    if (normal.dot(to_light) > 0 && surface_.blocked(sample.seen.from, to_light.normalized(), 4 * look_.size))
       sample.shadow += share;
     const Vec3 outwards = frame_of(normal) * pattern.half_sphere[place];
     if (surface_.covered(sample.seen.from, outwards, occlusion_reach * look_.size)) sample.occlusion += share;
@@ -196,7 +195,7 @@ class Painter {
   const Look& look_;
   Image& image_;
   int left_, top_, width_, height_;
-  int window_;  // samples: what is averaged, and the period of the pattern
+  int window_;                 // samples: what is averaged, and the period of the pattern
   Vec3 key_, across_, along_;  // to the light, unit, and across
 };
 
