@@ -1,6 +1,7 @@
 // Laws of pictures: what is where on them, what hides what, which colours; as drawn in memory.
 //   a ball that a square picture frames is a disc that touches the frame
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -221,6 +222,13 @@ TEST_CASE("a body throws a shadow on the ground, which ends in the background", 
         lightest = std::max(lightest, brightness(image.at(x, y)));
       }
   CHECK(darkest < 0.65 * lightest);
+  int changed = 0, covered = 0;  // the ground is behind the ball, and only takes some light from below it
+  for (std::size_t k = 0; k < bare.pixels.size(); ++k) {
+    if (empty(bare.pixels[k])) continue;
+    ++covered;
+    changed += std::abs(brightness(image.pixels[k]) - brightness(bare.pixels[k])) > 0.1;
+  }
+  CHECK(changed < 0.3 * covered);
   for (int k = 0; k < 300; ++k)
     for (const Pixel& p : {image.at(k, 0), image.at(k, 299), image.at(0, k), image.at(299, k)})
       CHECK(empty(p));
@@ -230,6 +238,32 @@ TEST_CASE("a body throws a shadow on the ground, which ends in the background", 
   Image from_below(60, 60, background);
   render(scene.still, below.camera(), look, from_below, {0, 0, 60, 60});
   CHECK(greyish(from_below.at(30, 30)));
+}
+
+TEST_CASE("a wall in front of a body hides it, one behind does not", "[picture]") {
+  for (double at : {0.5, -0.5}) {
+    Scene scene;
+    scene.add(sphere(3, 0.2), false);
+    scene.still.planes.push_back({"wall", {0, 0, at}, {0, 0, 1}});
+    const Pixel middle = scene.draw({0, 0}, 80, 80).at(40, 40);
+    CHECK(bluish(middle) == (at < 0));
+  }
+}
+
+TEST_CASE("the maps of colours go the usual way", "[picture]") {
+  const Scale strain{Field::strain, -0.1, 0.1}, speed{Field::speed, 0, 2};
+  const Pixel shorter = colour_of(strain, -0.08), none = colour_of(strain, 0),
+              longer = colour_of(strain, 0.08);
+  CHECK(shorter[2] > shorter[0] + 80);
+  CHECK(longer[0] > longer[2] + 80);
+  CHECK(*std::min_element(none.begin(), none.end()) > 240);
+  CHECK(colour_of(strain, 7) == colour_of(strain, 0.1));
+  CHECK(colour_of(strain, std::nan("")) != none);
+  double before = 0;  // faster is lighter
+  for (double v = 0; v <= 2; v += 0.25) {
+    CHECK(brightness(colour_of(speed, v)) > before);
+    before = brightness(colour_of(speed, v));
+  }
 }
 
 TEST_CASE("edges of triangles are darker lines", "[picture]") {
