@@ -44,7 +44,7 @@ keyframes = [{ time = 0 }, { time = "0.4 s", translate = [0.1, 0.05, 0], rotate 
 name = "stand"
 shape = "box"
 centre = [1, -0.1, 0]
-half_extents = [0.1, 0.1, 0.1]
+size = [0.2, 0.2, 0.2]
 [[obstacle]]
 name = "blob"
 shape = "mesh"
