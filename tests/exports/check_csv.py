@@ -4,9 +4,8 @@ import pathlib
 import sys
 
 sys.dont_write_bytecode = True
-import numpy as np
-
 import short_run
+from short_run import np
 
 folder = pathlib.Path(sys.argv[1])
 times, shapes = short_run.shapes(folder / "run")

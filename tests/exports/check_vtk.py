@@ -5,16 +5,17 @@ import sys
 import xml.etree.ElementTree as ElementTree
 
 try:
-    import numpy as np
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOGeometry import vtkOBJReader
     from vtkmodules.vtkIOPLY import vtkPLYReader
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 except ImportError as error:
-    print("skipped:", error, "(Debian: python3-vtk9)")
+    print(f"skipped: {error}; ./build.sh test installs python3-vtk9 on Debian")
     sys.exit(77)
 
 sys.dont_write_bytecode = True
+import numpy as np
+
 import short_run
 
 folder = pathlib.Path(sys.argv[1])

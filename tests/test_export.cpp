@@ -1,0 +1,331 @@
+// What `drape export` writes is what the run computed, in every format; and what it refuses.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <sstream>
+
+#include "app/export/export.h"
+#include "app/export/faces.h"
+#include "app/export/files.h"
+#include "app/export/gltf_buffer.h"
+#include "app/export/mdd.h"
+#include "app/export/ply.h"
+#include "app/export/rigid.h"
+#include "app/export/source.h"
+#include "app/export/usda.h"
+#include "app/export/vtk.h"
+#include "app/recording.h"
+#include "export_readers.h"
+#include "folder.h"
+#include "mesh/obj.h"
+
+using namespace drape;
+using namespace drape::test;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+// Quads with uv; the names are as bad as names may be. A ball moves and turns, a box stands, a mesh deforms.
+constexpr const char* scene = R"(
+[simulation]
+duration = "0.2 s"
+frame_rate = "25 Hz"
+[[cloth]]
+name = 'a & "b" <c> é'
+mesh = "sheet.obj"
+fabric = "cotton-poplin"
+[[obstacle]]
+name = "ball"
+shape = "sphere"
+radius = 0.2
+centre = [0, -0.21, 0]
+friction = 0.5
+motion = { spin = [0, 9, 0], velocity = [0.1, 0, 0] }
+[[obstacle]]
+name = "box"
+shape = "box"
+size = [0.1, 0.1, 0.1]
+centre = [1, 0, 0]
+[[obstacle]]
+name = "wall"
+shape = "mesh"
+mesh = "wall_1.obj"
+frames = "wall_%d.obj"
+frame_rate = "10 Hz"
+)";
+const std::string cloth = "a & \"b\" <c> é";
+
+struct Exported : Folder {
+  Exported() {
+    std::string text;
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; ++i)
+        text += "v " + shortest(0.1 * i - 0.15) + " 0 " + shortest(0.1 * j - 0.15) + "\nvt " +
+                shortest(i / 3.0) + " " + shortest(j / 3.0) + "\n";
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) {
+        text += "f";
+        for (const int v : {4 * j + i + 1, 4 * j + i + 5, 4 * j + i + 6, 4 * j + i + 2})
+          text += " " + std::to_string(v) + "/" + std::to_string(v);
+        text += "\n";
+      }
+    write("sheet.obj", text);
+    for (int k = 1; k < 4; ++k)
+      write("wall_" + std::to_string(k) + ".obj", "v -2 0 0\nv -2 1 0\nv -2 0 1\nv -3 0 " +
+                                                      std::to_string(k) +
+                                                      "\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n");
+    write("scene.toml", scene);
+    REQUIRE(drape("simulate scene.toml --out run --quiet").exit_code == 0);
+  }
+  std::string file(const std::string& name) const {
+    INFO(name);
+    REQUIRE(fs::exists(path / name));
+    return content(path / name);
+  }
+  void refused(const std::string& words, const std::string& message) const {
+    INFO(words);
+    const Outcome outcome = drape("export " + words);
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains(message));
+    CHECK(outcome.out.empty());
+  }
+};
+
+// In float32, in the same order.
+void check_same(const Places& found, const Recording& recording, std::size_t shape, double tolerance) {
+  REQUIRE(found.size() == static_cast<std::size_t>(recording.frames()));
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const std::vector<Vec3> expected = recording.positions(shape, static_cast<int>(k));
+    REQUIRE(found[k].size() == expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      INFO("frame " << k << ", vertex " << i);
+      REQUIRE((found[k][i] - expected[i]).cwiseAbs().maxCoeff() <= tolerance);
+    }
+  }
+}
+
+std::size_t number_of(const Recording& recording, const std::string& name) {
+  for (std::size_t s = 0; s < recording.shapes().size(); ++s)
+    if (recording.shapes()[s].name == name) return s;
+  FAIL("no shape " + name);
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("a LightWave point cache has the published layout", "[export]") {
+  const std::string bytes = mdd_header({0, 0.5}, 3) + mdd_frame({{1, -2, 0.1}});
+  const std::string expected(
+      "\x00\x00\x00\x02\x00\x00\x00\x03"  // frames, points
+      "\x00\x00\x00\x00\x3f\x00\x00\x00"  // 0 s, 0.5 s
+      "\x3f\x80\x00\x00\xc0\x00\x00\x00\x3d\xcc\xcc\xcd",
+      28);
+  CHECK(bytes == expected);
+}
+
+TEST_CASE("every format holds every vertex of every frame in order", "[export]") {
+  const Exported folder;
+  for (const std::string& format : export_formats())
+    REQUIRE(folder.drape("export run --to " + format + " -o " + format).exit_code == 0);
+  const Recording recording(folder.path / "run");
+  const double half_ulp = 1e-7;  // of places within 2 m
+  REQUIRE(recording.frames() == 6);
+  const std::vector<std::vector<int>> quad_rows{{0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}};
+  for (const std::string& name : {cloth, std::string("wall")}) {
+    const std::size_t s = number_of(recording, name);
+    check_same(read_mdd(folder.file("mdd/" + name + ".mdd")), recording, s, half_ulp);
+    check_same(read_glb(folder.file("gltf/run.glb"), name), recording, s, half_ulp);
+    check_same(read_usda(folder.file("usda/run.usda"), usd_names({name}).front()), recording, s, half_ulp);
+    Places obj, ply, vtp;
+    for (std::size_t k = 1; k <= 6; ++k) {
+      obj.push_back(read_obj(folder.path / "obj" / sequence_name(name, k, ".obj")).positions);
+      const ReadPolygons of_ply = read_ply(folder.file("ply/" + sequence_name(name, k, ".ply")));
+      const ReadPolygons of_vtp = read_vtp(folder.file("vtk/" + sequence_name(name, k, ".vtp")));
+      ply.push_back(of_ply.places);
+      vtp.push_back(of_vtp.places);
+      CHECK(of_ply.faces == of_vtp.faces);
+      if (name != cloth) continue;
+      CHECK(of_ply.faces.size() == 9);
+      CHECK(std::equal(quad_rows.begin(), quad_rows.end(), of_ply.faces.begin()));
+      REQUIRE(of_ply.uv.size() == 16);
+      CHECK(of_ply.uv[6] == std::array<float, 2>{2 / 3.0f, 1 / 3.0f});
+    }
+    for (const Places* places : {&obj, &ply, &vtp}) check_same(*places, recording, s, half_ulp);
+  }
+  check_same(read_table(folder.file("csv/" + cloth + ".csv")), recording, 0, half_ulp);
+  check_same(read_mdd(folder.file("mdd/ball.mdd")), recording, number_of(recording, "ball"), half_ulp);
+  CHECK_FALSE(fs::exists(folder.path / "mdd/box.mdd"));  // it stands
+  CHECK(fs::exists(folder.path / "ply/box.ply"));
+}
+
+TEST_CASE("what an export says it writes is all that it writes", "[export]") {
+  const Exported folder;
+  for (const std::string& format : export_formats()) {
+    const Outcome outcome = folder.drape("export run --to " + format + " --every 2 -o " + format);
+    INFO(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    std::size_t told = 0;
+    std::istringstream lines(outcome.out);
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("wrote ")) continue;
+      const std::size_t several = line.find(", 3 files");
+      told += several == line.npos ? 1 : 3;
+      const std::string first = line.substr(6, line.find(several == line.npos ? "\n" : " to ") - 6);
+      CHECK(fs::exists(folder.path / first));
+    }
+    CHECK(told == folder.files(format).size());
+  }
+  // The first, third and fifth frame of six.
+  const Recording recording(folder.path / "run");
+  const Places places = read_mdd(folder.file("mdd/wall.mdd"));
+  REQUIRE(places.size() == 3);
+  CHECK((places[2][3] - recording.positions(number_of(recording, "wall"), 4)[3]).norm() < 1e-6);
+  CHECK(Bytes{folder.file("mdd/wall.mdd"), true}.number(16) == Approx(0.16));
+}
+
+TEST_CASE("names are escaped in XML, USD and JSON", "[export]") {
+  CHECK(xml_text("a&b<c>\"d\"é") == "a&amp;b&lt;c&gt;&quot;d&quot;é");
+  CHECK(usd_string("a\"b\\c") == "\"a\\\"b\\\\c\"");
+  CHECK(usd_names({"a b", "a_b", "7", "", "a b"}) == Names{"a_b", "a_b_2", "_7", "_", "a_b_3"});
+  const Exported folder;
+  REQUIRE(folder.drape("export run --to vtk -o e").exit_code == 0);
+  const std::string pvd = folder.file("e/run.pvd");
+  CHECK_THAT(pvd, Contains("file=\"a &amp; &quot;b&quot; &lt;c&gt; é_0001.vtp\""));
+  CHECK(fs::exists(folder.path / "e" / (cloth + "_0001.vtp")));
+}
+
+TEST_CASE("a run that kept no frames is exported as one", "[export]") {
+  const Exported folder;
+  REQUIRE(folder.drape("simulate scene.toml --out still --frames none --quiet").exit_code == 0);
+  for (const std::string& format : export_formats()) {
+    const Outcome outcome = folder.drape("export still --to " + format + " -o " + format);
+    INFO(format << outcome.err);
+    CHECK(outcome.exit_code == 0);
+  }
+  const std::string glb = folder.file("gltf/still.glb");
+  CHECK_THAT(glb, !Contains("animations") && !Contains("targets"));
+  const Recording recording(folder.path / "still");
+  check_same(read_glb(glb, cloth), recording, 0, 1e-7);
+  check_same(read_mdd(folder.file("mdd/" + cloth + ".mdd")), recording, 0, 1e-7);
+}
+
+TEST_CASE("a body that moves as a whole gives its motion, one that deforms gives none", "[export]") {
+  const Exported folder;
+  const Recording recording(folder.path / "run");
+  const ExportSource source = export_source(recording, 1);
+  CHECK_FALSE(rigid_places(source, number_of(recording, "wall")));
+  const std::size_t ball = number_of(recording, "ball");
+  const auto places = rigid_places(source, ball);
+  REQUIRE(places);
+  const std::vector<Vec3> first = source.positions(ball, 0);
+  for (std::size_t k = 0; k < source.frame_count(); ++k) {
+    const RigidPlace& place = (*places)[k];
+    if (k > 0) CHECK(place.turn.dot((*places)[k - 1].turn) > 0);
+    const std::vector<Vec3> now = source.positions(ball, k);
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      REQUIRE((place.turn * (first[i] - places->front().centre) + place.centre - now[i]).norm() < 1e-6);
+    }
+  }
+  CHECK(2 * std::acos((*places)[5].turn.w()) == Approx(9 * 0.2).epsilon(1e-3));
+}
+
+TEST_CASE("a vertex with two uv is doubled after the others, and no uv is lost", "[export]") {
+  // Two quads with a common edge, whose uv there differ; vertex 6 is in no face.
+  const TriangleMesh mesh = parse_obj(
+      "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 9 9 9\nvt 0 0\nvt 0.5 0\nvt 0 1\nvt 0.5 1\nvt "
+      "0.6 0\nvt 1 0\n"
+      "vt 0.6 1\nvt 1 1\nf 1/1 2/2 5/4 4/3\nf 2/5 3/6 6/8 5/7\nf 1/1 1/1 2/2\n",
+      "seam.obj");
+  const Faces faces = faces_of(mesh);
+  CHECK(faces.counts == std::vector<int>{4, 4, 3});
+  CHECK(faces.corners == std::vector<int>{0, 1, 4, 3, 1, 2, 5, 4, 0, 0, 1});
+  CHECK(uv_by_vertex(faces, 7).empty());
+  const Corners split = split_by_uv(mesh, faces);
+  REQUIRE(split.origin.size() == 9);
+  for (int v = 0; v < 7; ++v) CHECK(split.origin[static_cast<std::size_t>(v)] == v);
+  REQUIRE(split.triangles.size() == mesh.triangles.size());
+  for (std::size_t t = 0; t < split.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto v = static_cast<std::size_t>(split.triangles[t][k]);
+      CHECK(split.origin[v] == mesh.triangles[t][k]);
+      const double x = mesh.positions[static_cast<std::size_t>(split.origin[v])][0];
+      const double right = t < 2 ? 0.5 * x : 0.6 + 0.4 * (x - 1);
+      CHECK(split.uv[v][0] == Approx(right));
+    }
+}
+
+TEST_CASE("a polygon of more corners than a byte counts is kept", "[export]") {
+  Faces faces;
+  std::vector<Vec3> places;
+  for (int v = 0; v < 300; ++v) {
+    faces.corners.push_back(v);
+    places.emplace_back(v, 0, 0);
+  }
+  faces.counts = {300};
+  const ReadPolygons read = read_ply(ply_bytes(places, {}, faces, 0));
+  REQUIRE(read.faces.size() == 1);
+  CHECK(read.faces[0] == faces.corners);
+}
+
+TEST_CASE("a glTF file that would not fit its own header is refused", "[export]") {
+  CHECK_NOTHROW(glb_start("{}", 1000, "a.glb"));
+  CHECK_THROWS_WITH(glb_start("{}", 4'294'967'290u, "a.glb"), Contains("a.glb") && Contains("--every"));
+}
+
+TEST_CASE("an export that fails leaves nothing behind", "[export]") {
+  const Folder folder;
+  {
+    ExportFiles files(folder.path / "a/b", {"x.mdd", "y.mdd"}, false, folder.path);
+    files.write("x.mdd", "1");
+    files.write("y.mdd", "2");
+    CHECK_FALSE(fs::exists(folder.path / "a/b/x.mdd"));
+  }
+  CHECK(folder.files().empty());
+  {
+    ExportFiles files(folder.path / "a/b", {"x.mdd", "y.mdd"}, false, folder.path);
+    files.write("x.mdd", "1");
+    files.write("y.mdd", "2");
+    files.keep();
+  }
+  CHECK(folder.files("a/b") == std::set<std::string>{"x.mdd", "y.mdd"});
+}
+
+TEST_CASE("exports replace nothing unless they are told to", "[export]") {
+  const Exported folder;
+  REQUIRE(folder.drape("export run --to ply").exit_code == 0);
+  folder.refused("run --to ply", "_0001.ply: is there already; --force replaces it");
+  REQUIRE(folder.drape("export run --to ply --every 3 --force").exit_code == 0);
+  CHECK(fs::exists(folder.path / "run/export" / (cloth + "_0002.ply")));
+  CHECK_FALSE(
+      fs::exists(folder.path / "run/export" / (cloth + "_0003.ply")));  // of the longer sequence before
+  CHECK_FALSE(fs::exists(folder.path / "run/export" / (cloth + "_0006.ply")));
+  CHECK(fs::exists(folder.path / "run/export/box.ply"));
+  // What the run wrote is never replaced.
+  const std::string box = folder.file("run/bodies/box.obj");
+  folder.refused("run --to obj -o run/bodies --force", "box.obj: is a file of the run itself");
+  CHECK(folder.file("run/bodies/box.obj") == box);
+  CHECK(folder.drape("export run --to mdd -o run").exit_code == 0);  // beside the point caches
+}
+
+TEST_CASE("exports refuse what they cannot do", "[export]") {
+  const Exported folder;
+  folder.refused("run --to mmd", "there is no such format; did you mean 'mdd'?");
+  folder.refused("none --to mdd", "none");
+  folder.refused("run --to mdd --every 0", "--every");
+  folder.write("file", "");
+  folder.refused("run --to mdd -o file", "file: is a file; -o names a folder");
+  folder.refused("run --to mdd -o file/below", "file/below: cannot be made: Not a directory");
+  CHECK(folder.files().count("file") == 1);
+
+  fs::copy(folder.path / "run", folder.path / "cut", fs::copy_options::recursive);
+  fs::resize_file(folder.path / "cut" / (cloth + ".pc2"), 700);
+  folder.refused("cut --to mdd", ".pc2");
+  CHECK_FALSE(fs::exists(folder.path / "cut/export"));
+  fs::copy(folder.path / "run", folder.path / "blind", fs::copy_options::recursive);
+  fs::remove(folder.path / "blind/run.json");
+  folder.refused("blind --to gltf -o out", "run.json");
+  fs::create_directory(folder.path / "empty");
+  folder.refused("empty --to csv -o out", "empty");
+  CHECK_FALSE(fs::exists(folder.path / "out"));
+}
