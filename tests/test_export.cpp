@@ -41,7 +41,7 @@ shape = "sphere"
 radius = 0.2
 centre = [0, -0.21, 0]
 friction = 0.5
-motion = { spin = [0, 9, 0], velocity = [0.1, 0, 0] }
+motion = { spin = { axis = [0, 1, 0], rate = "9 rad/s" }, velocity = [0.1, 0, 0] }
 [[obstacle]]
 name = "box"
 shape = "box"
@@ -76,7 +76,9 @@ struct Exported : Folder {
                                                       std::to_string(k) +
                                                       "\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n");
     write("scene.toml", scene);
-    REQUIRE(drape("simulate scene.toml --out run --quiet").exit_code == 0);
+    const Outcome run = drape("simulate scene.toml --out run --quiet");
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
   }
   std::string file(const std::string& name) const {
     INFO(name);
