@@ -45,7 +45,7 @@ def evaluated(thing):
 def check(found, expected, what):
     assert found.shape == expected.shape, (what, found.shape, expected.shape)
     error = np.abs(found - expected).max()
-    assert error < 2e-6, (what, error)
+    assert error < 3e-7, (what, error)
     return error
 
 

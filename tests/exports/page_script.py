@@ -22,7 +22,7 @@ folder.mkdir(parents=True)
 (folder / "bin" / "drape").symlink_to(program)
 environment = dict(os.environ, PATH=f"{(folder / 'bin').resolve()}:{os.environ['PATH']}")
 ran = 0
-for file, language, text in re.findall(r"(?:<!-- file: (\S+) -->\n)?(?:<!-- .* -->\n)*```(\w+)\n(.*?)```", page.read_text(), re.S):
+for file, language, text in re.findall(r"(?:<!-- file: (\S+) -->\n)?(?:<!-- [^\n]* -->\n)*```(\w+)\n(.*?)```", page.read_text(), re.S):
     if language == "sh":
         subprocess.run(["bash", "-euc", text], cwd=folder, env=environment, check=True)
         ran += 1
