@@ -36,7 +36,7 @@ required=(g++ cmake ninja-build libeigen3-dev libspectra-dev libembree-dev libto
   libboost-dev libsvgpp-dev libpugixml-dev)
 optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev)
 for_tests=(catch2 libtinyobjloader-dev)
-for_export_tests=(python3-numpy python3-vtk9 blender nodejs npm)  # readers of what is exported
+for_export_tests=(python3-numpy python3-vtk9 blender chromium-headless-shell nodejs npm)  # readers of what is exported
 for_format=(clang-format)
 for_lint=(clang-tidy)
 

@@ -137,7 +137,10 @@ TEST_CASE("every format holds every vertex of every frame in order", "[export]")
   for (const std::string& name : {cloth, std::string("wall")}) {
     const std::size_t s = number_of(recording, name);
     check_same(read_mdd(folder.file("mdd/" + name + ".mdd")), recording, s, half_ulp);
-    check_same(read_glb(folder.file("gltf/run.glb"), name), recording, s, half_ulp);
+    Places glb = read_glb(folder.file("gltf/run.glb"), name);
+    CHECK(glb.front().size() == (name == "wall" ? 10 : 16));  // its edges are hard
+    for (std::vector<Vec3>& places : glb) places.resize(recording.shapes()[s].mesh.positions.size());
+    check_same(glb, recording, s, half_ulp);
     check_same(read_usda(folder.file("usda/run.usda"), usd_names({name}).front()), recording, s, half_ulp);
     Places obj, ply, vtp;
     for (std::size_t k = 1; k <= 6; ++k) {
@@ -243,7 +246,7 @@ TEST_CASE("a vertex with two uv is doubled after the others, and no uv is lost",
   CHECK(faces.counts == std::vector<int>{4, 4, 3});
   CHECK(faces.corners == std::vector<int>{0, 1, 4, 3, 1, 2, 5, 4, 0, 0, 1});
   CHECK(uv_by_vertex(faces, 7).empty());
-  const Corners split = split_by_uv(mesh, faces);
+  const Corners split = split_corners(mesh, faces, M_PI);
   REQUIRE(split.origin.size() == 9);
   for (int v = 0; v < 7; ++v) CHECK(split.origin[static_cast<std::size_t>(v)] == v);
   REQUIRE(split.triangles.size() == mesh.triangles.size());
@@ -255,6 +258,41 @@ TEST_CASE("a vertex with two uv is doubled after the others, and no uv is lost",
       const double right = t < 2 ? 0.5 * x : 0.6 + 0.4 * (x - 1);
       CHECK(split.uv[v][0] == Approx(right));
     }
+}
+
+TEST_CASE("hard edges of a body keep a normal on each side, smooth ones share it", "[export]") {
+  const TriangleMesh cube = parse_obj(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\nf 1 3 4 2\nf 5 6 8 7\nf 1 2 6 "
+      "5\nf 3 7 8 4\n"
+      "f 1 5 7 3\nf 2 4 8 6\n",
+      "cube.obj");
+  const Corners hard = split_corners(cube, faces_of(cube), crease_of(true));
+  CHECK(hard.size() == 24);
+  const std::vector<Vec3> normals = normals_of(hard, cube.positions);
+  for (const Triangle& t : hard.triangles) {
+    const auto x = [&](int v) {
+      return cube.positions[static_cast<std::size_t>(hard.origin[static_cast<std::size_t>(v)])];
+    };
+    const Vec3 face = (x(t[1]) - x(t[0])).cross(x(t[2]) - x(t[0])).normalized();
+    for (const int v : t) CHECK((normals[static_cast<std::size_t>(v)] - face).norm() < 1e-12);
+  }
+  const Corners smooth = split_corners(cube, faces_of(cube), crease_of(false));
+  CHECK(smooth.size() == 8);
+  const std::vector<Vec3> outwards = normals_of(smooth, cube.positions);
+  for (std::size_t v = 0; v < 8; ++v) CHECK(outwards[v].dot(cube.positions[v] - Vec3(0.5, 0.5, 0.5)) > 0.5);
+}
+
+TEST_CASE("a normal does not break where the uv do", "[export]") {
+  const TriangleMesh bent = parse_obj(
+      "v 0 0 0\nv 1 0 1\nv 2 0 0\nv 0 1 0\nv 1 1 1\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\nf 1/1 2/2 5/4 "
+      "4/3\nf 2/1 3/2 6/4 "
+      "5/3\n",
+      "bent.obj");
+  const Corners split = split_corners(bent, faces_of(bent), crease_of(false));
+  REQUIRE(split.size() == 8);
+  const std::vector<Vec3> normals = normals_of(split, bent.positions);
+  for (std::size_t v = 6; v < 8; ++v)
+    CHECK((normals[v] - normals[static_cast<std::size_t>(split.origin[v])]).norm() == 0);
 }
 
 TEST_CASE("a polygon of more corners than a byte counts is kept", "[export]") {

@@ -41,26 +41,17 @@ class GltfWriter {
     file.write(glb_start(compact_json_text(json()), buffer_.size(), file.path().string()));
     for (const Shape& shape : shapes_) {
       write_mesh(file, shape);
-      const std::size_t own = mesh(shape).positions.size(), doubled = shape.corners.origin.size() - own;
+      const std::size_t own = mesh(shape).positions.size(), doubled = shape.corners.size() - own;
       if (doubled > 0)
         notes.push_back(source_.shape(shape.number).name + ": " +
-                        counted(static_cast<long>(doubled), "vertex") +
-                        " with more than one uv doubled after the first " + std::to_string(own));
+                        counted(static_cast<long>(doubled), "double") +
+                        " of vertices with several uv or normals, after the first " + std::to_string(own));
     }
     write_animation(file);
   }
 
  private:
   const TriangleMesh& mesh(const Shape& shape) const { return source_.shape(shape.number).mesh; }
-
-  // One for each vertex of the file.
-  template <class T>
-  static std::vector<T> doubled(const Shape& shape, const std::vector<T>& values) {
-    std::vector<T> all;
-    all.reserve(shape.corners.origin.size());
-    for (const int v : shape.corners.origin) all.push_back(values[static_cast<std::size_t>(v)]);
-    return all;
-  }
 
   // Places of the mesh's vertices; those of a body that is moved by its node about its centre.
   std::vector<Vec3> positions(const Shape& shape, std::size_t k) const {
@@ -69,18 +60,16 @@ class GltfWriter {
       for (Vec3& point : x) point -= shape.places->front().centre;
     return x;
   }
-  std::vector<Vec3> normals(const Shape& shape, const std::vector<Vec3>& x) const {
-    return vertex_normals(mesh(shape).triangles, x);
-  }
 
   void plan(std::size_t s) {
+    const TriangleMesh& mesh = source_.shape(s).mesh;
     Shape shape;
     shape.number = s;
-    shape.corners = split_by_uv(source_.shape(s).mesh, faces_of(source_.shape(s).mesh));
+    shape.corners = split_corners(mesh, faces_of(mesh), crease_of(source_.shape(s).body));
     const bool moves = source_.moves(s) && source_.frame_count() > 1;
     if (moves && source_.shape(s).body) shape.places = rigid_places(source_, s);
     shape.morphs = moves && !shape.places;
-    const std::size_t vertices = shape.corners.origin.size();
+    const std::size_t vertices = shape.corners.size();
     shape.indices = buffer_.add(GltfUse::indices, 3 * shape.corners.triangles.size(), "SCALAR");
     const std::vector<Vec3> first = positions(shape, 0);
     shape.positions = add_positions(shape, first);
@@ -94,7 +83,7 @@ class GltfWriter {
   }
 
   int add_positions(const Shape& shape, const std::vector<Vec3>& x) {
-    const int accessor = buffer_.add(GltfUse::vertices, shape.corners.origin.size(), "VEC3");
+    const int accessor = buffer_.add(GltfUse::vertices, shape.corners.size(), "VEC3");
     const FloatRange range = float_range(x);
     buffer_.set_range(accessor, {range.low[0], range.low[1], range.low[2]},
                       {range.high[0], range.high[1], range.high[2]});
@@ -196,10 +185,17 @@ class GltfWriter {
     return all;
   }
 
-  void write_vectors(AtomicFile& file, const Shape& shape, const std::vector<Vec3>& vectors) const {
+  static void write_vectors(AtomicFile& file, const std::vector<Vec3>& vectors) {
     std::string bytes;
-    append_floats<little>(bytes, doubled(shape, vectors));
+    append_floats<little>(bytes, vectors);
     file.write(bytes);
+  }
+  // Of the mesh's vertices, one for each of the file's.
+  static void write_doubled(AtomicFile& file, const Shape& shape, const std::vector<Vec3>& vectors) {
+    std::vector<Vec3> all;
+    all.reserve(shape.corners.size());
+    for (const int v : shape.corners.origin) all.push_back(vectors[static_cast<std::size_t>(v)]);
+    write_vectors(file, all);
   }
 
   // In the order of plan().
@@ -208,9 +204,9 @@ class GltfWriter {
     for (const Triangle& t : shape.corners.triangles)
       for (const int v : t) append_int<little>(bytes, v);
     file.write(bytes);
-    const std::vector<Vec3> first = positions(shape, 0), first_normals = normals(shape, first);
-    write_vectors(file, shape, first);
-    write_vectors(file, shape, first_normals);
+    const std::vector<Vec3> first = positions(shape, 0), first_normals = normals_of(shape.corners, first);
+    write_doubled(file, shape, first);
+    write_vectors(file, first_normals);
     bytes.clear();
     for (const Uv& uv : shape.corners.uv) {
       append_float<little>(bytes, uv[0]);
@@ -219,8 +215,8 @@ class GltfWriter {
     file.write(bytes);
     for (std::size_t k = 1; k <= shape.targets.size(); ++k) {
       const std::vector<Vec3> now = positions(shape, k);
-      write_vectors(file, shape, from(first, now));
-      write_vectors(file, shape, from(first_normals, normals(shape, now)));
+      write_doubled(file, shape, from(first, now));
+      write_vectors(file, from(first_normals, normals_of(shape.corners, now)));
     }
   }
 

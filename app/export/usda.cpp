@@ -92,9 +92,11 @@ class UsdaWriter {
     attribute("float3[] extent", s, [&](std::size_t k) { return extent(source_.positions(s, k)); });
     line("int[] faceVertexCounts = " + integers(faces.counts));
     line("int[] faceVertexIndices = " + integers(faces.corners));
-    attribute("normal3f[] normals", s, [&](std::size_t k) {
-      return tuples(vertex_normals(shape.mesh.triangles, source_.positions(s, k)));
-    });
+    const Corners corners = split_corners(shape.mesh, {}, crease_of(shape.body));
+    if (corners.size() == shape.mesh.positions.size()) {  // else it has hard edges: flat faces show them
+      attribute("normal3f[] normals", s,
+                [&](std::size_t k) { return tuples(normals_of(corners, source_.positions(s, k))); });
+    }
     attribute("point3f[] points", s, [&](std::size_t k) { return tuples(source_.positions(s, k)); });
     if (!faces.uv.empty()) {
       line("texCoord2f[] primvars:st = " + tuples(faces.uv) + " (");
