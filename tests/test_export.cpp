@@ -16,7 +16,7 @@
 #include "app/export/vtk.h"
 #include "app/recording.h"
 #include "export_readers.h"
-#include "folder.h"
+#include "exported.h"
 #include "mesh/obj.h"
 
 using namespace drape;
@@ -26,73 +26,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Quads with uv; the names are as bad as names may be. A ball moves and turns, a box stands, a mesh deforms.
-constexpr const char* scene = R"(
-[simulation]
-duration = "0.2 s"
-frame_rate = "25 Hz"
-[[cloth]]
-name = 'a & "b" <c> é'
-mesh = "sheet.obj"
-fabric = "cotton-poplin"
-[[obstacle]]
-name = "ball"
-shape = "sphere"
-radius = 0.2
-centre = [0, -0.21, 0]
-friction = 0.5
-motion = { spin = { axis = [0, 1, 0], rate = "9 rad/s" }, velocity = [0.1, 0, 0] }
-[[obstacle]]
-name = "box"
-shape = "box"
-size = [0.1, 0.1, 0.1]
-centre = [1, 0, 0]
-[[obstacle]]
-name = "wall"
-shape = "mesh"
-mesh = "wall_1.obj"
-frames = "wall_%d.obj"
-frame_rate = "10 Hz"
-)";
-const std::string cloth = "a & \"b\" <c> é";
-
-struct Exported : Folder {
-  Exported() {
-    std::string text;
-    for (int j = 0; j < 4; ++j)
-      for (int i = 0; i < 4; ++i)
-        text += "v " + shortest(0.1 * i - 0.15) + " 0 " + shortest(0.1 * j - 0.15) + "\nvt " +
-                shortest(i / 3.0) + " " + shortest(j / 3.0) + "\n";
-    for (int j = 0; j < 3; ++j)
-      for (int i = 0; i < 3; ++i) {
-        text += "f";
-        for (const int v : {4 * j + i + 1, 4 * j + i + 5, 4 * j + i + 6, 4 * j + i + 2})
-          text += " " + std::to_string(v) + "/" + std::to_string(v);
-        text += "\n";
-      }
-    write("sheet.obj", text);
-    for (int k = 1; k < 4; ++k)
-      write("wall_" + std::to_string(k) + ".obj", "v -2 0 0\nv -2 1 0\nv -2 0 1\nv -3 0 " +
-                                                      std::to_string(k) +
-                                                      "\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n");
-    write("scene.toml", scene);
-    const Outcome run = drape("simulate scene.toml --out run --quiet");
-    INFO(run.err);
-    REQUIRE(run.exit_code == 0);
-  }
-  std::string file(const std::string& name) const {
-    INFO(name);
-    REQUIRE(fs::exists(path / name));
-    return content(path / name);
-  }
-  void refused(const std::string& words, const std::string& message) const {
-    INFO(words);
-    const Outcome outcome = drape("export " + words);
-    CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.err, Contains(message));
-    CHECK(outcome.out.empty());
-  }
-};
+const std::string& cloth = exported_cloth;
 
 // In float32, in the same order.
 void check_same(const Places& found, const Recording& recording, std::size_t shape, double tolerance) {
@@ -311,61 +245,4 @@ TEST_CASE("a polygon of more corners than a byte counts is kept", "[export]") {
 TEST_CASE("a glTF file that would not fit its own header is refused", "[export]") {
   CHECK_NOTHROW(glb_start("{}", 1000, "a.glb"));
   CHECK_THROWS_WITH(glb_start("{}", 4'294'967'290u, "a.glb"), Contains("a.glb") && Contains("--every"));
-}
-
-TEST_CASE("an export that fails leaves nothing behind", "[export]") {
-  const Folder folder;
-  {
-    ExportFiles files(folder.path / "a/b", {"x.mdd", "y.mdd"}, false, folder.path);
-    files.write("x.mdd", "1");
-    files.write("y.mdd", "2");
-    CHECK_FALSE(fs::exists(folder.path / "a/b/x.mdd"));
-  }
-  CHECK(folder.files().empty());
-  {
-    ExportFiles files(folder.path / "a/b", {"x.mdd", "y.mdd"}, false, folder.path);
-    files.write("x.mdd", "1");
-    files.write("y.mdd", "2");
-    files.keep();
-  }
-  CHECK(folder.files("a/b") == std::set<std::string>{"x.mdd", "y.mdd"});
-}
-
-TEST_CASE("exports replace nothing unless they are told to", "[export]") {
-  const Exported folder;
-  REQUIRE(folder.drape("export run --to ply").exit_code == 0);
-  folder.refused("run --to ply", "_0001.ply: is there already; --force replaces it");
-  REQUIRE(folder.drape("export run --to ply --every 3 --force").exit_code == 0);
-  CHECK(fs::exists(folder.path / "run/export" / (cloth + "_0002.ply")));
-  CHECK_FALSE(
-      fs::exists(folder.path / "run/export" / (cloth + "_0003.ply")));  // of the longer sequence before
-  CHECK_FALSE(fs::exists(folder.path / "run/export" / (cloth + "_0006.ply")));
-  CHECK(fs::exists(folder.path / "run/export/box.ply"));
-  // What the run wrote is never replaced.
-  const std::string box = folder.file("run/bodies/box.obj");
-  folder.refused("run --to obj -o run/bodies --force", "box.obj: is a file of the run itself");
-  CHECK(folder.file("run/bodies/box.obj") == box);
-  CHECK(folder.drape("export run --to mdd -o run").exit_code == 0);  // beside the point caches
-}
-
-TEST_CASE("exports refuse what they cannot do", "[export]") {
-  const Exported folder;
-  folder.refused("run --to mmd", "there is no such format; did you mean 'mdd'?");
-  folder.refused("none --to mdd", "none");
-  folder.refused("run --to mdd --every 0", "--every");
-  folder.write("file", "");
-  folder.refused("run --to mdd -o file", "file: is a file; -o names a folder");
-  folder.refused("run --to mdd -o file/below", "file/below: cannot be made: Not a directory");
-  CHECK(folder.files().count("file") == 1);
-
-  fs::copy(folder.path / "run", folder.path / "cut", fs::copy_options::recursive);
-  fs::resize_file(folder.path / "cut" / (cloth + ".pc2"), 700);
-  folder.refused("cut --to mdd", ".pc2");
-  CHECK_FALSE(fs::exists(folder.path / "cut/export"));
-  fs::copy(folder.path / "run", folder.path / "blind", fs::copy_options::recursive);
-  fs::remove(folder.path / "blind/run.json");
-  folder.refused("blind --to gltf -o out", "run.json");
-  fs::create_directory(folder.path / "empty");
-  folder.refused("empty --to csv -o out", "empty");
-  CHECK_FALSE(fs::exists(folder.path / "out"));
 }

@@ -13,6 +13,7 @@
 #include "app/export/source.h"
 #include "app/export/usda.h"
 #include "app/export/vtk.h"
+#include "app/interrupt.h"
 #include "app/recording.h"
 #include "mesh/obj.h"
 
@@ -78,7 +79,13 @@ int export_folder(const ExportWords& words) {
   const Names names = format.files(source);
   Names notes;
   ExportFiles files(folder, names, words.force, recording.folder());
-  format.write(source, files, notes);
+  catch_interrupts();
+  try {
+    format.write(source, files, notes);
+  } catch (const ExportInterrupted&) {
+    std::fprintf(stderr, "interrupted: nothing was exported\n");
+    return 130;
+  }
   files.keep();
   tell(folder, names, source);
   for (const std::string& note : notes) std::printf("%s\n", one_line(note).c_str());

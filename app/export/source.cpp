@@ -2,9 +2,15 @@
 
 #include <algorithm>
 
+#include "app/interrupt.h"
 #include "mesh/obj.h"
 
 namespace drape {
+
+std::vector<Vec3> ExportSource::positions(std::size_t s, std::size_t k) const {
+  if (interrupted()) throw ExportInterrupted();
+  return recording.positions(s, frames[k]);
+}
 
 ExportSource export_source(const Recording& recording, int every) {
   const std::filesystem::path folder = std::filesystem::weakly_canonical(recording.folder());

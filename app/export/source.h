@@ -8,6 +8,8 @@
 
 namespace drape {
 
+struct ExportInterrupted {};  // by Ctrl-C
+
 struct ExportSource {
   const Recording& recording;
   std::vector<int> frames;  // of the recording, ascending; at least one
@@ -17,9 +19,8 @@ struct ExportSource {
   std::size_t shape_count() const { return recording.shapes().size(); }
   const RecordedShape& shape(std::size_t s) const { return recording.shapes()[s]; }
   double time(std::size_t k) const { return recording.time(frames[k]); }  // s
-  std::vector<Vec3> positions(std::size_t s, std::size_t k) const {       // m
-    return recording.positions(s, frames[k]);
-  }
+  // m. Throws ExportInterrupted: every format asks for this, frame by frame.
+  std::vector<Vec3> positions(std::size_t s, std::size_t k) const;
   // Cloths and soft bodies always do: there is no use in a sequence for some and not for others.
   bool moves(std::size_t s) const { return !shape(s).body || shape(s).moves; }
 };
