@@ -3,7 +3,7 @@
 What is said of a block stands in HTML comments right above its fence, which no reader of the page sees:
     <!-- before: COMMAND -->     sh, run first
     <!-- file: NAME -->          the block is this file
-    <!-- shorter: WORDS -->      sh: words added to each command, so that the tests do not wait
+    <!-- shorter: WORDS -->      sh: words added to each run, so that the tests do not wait
     <!-- exit: N -->             how the command ends, when not with 0
     <!-- output -->              a text block: what the sh block before it printed; ... stands for anything
     <!-- output: numbers may differ -->

@@ -96,7 +96,7 @@ class Runner:
     def sh(self, block):
         text = block.text
         if "shorter" in block.said:
-            text = "".join(f"{line.split('  #')[0]} {block.said['shorter']}\n" for line in text.splitlines())
+            text = re.sub(r"^(.*\bdrape (?:simulate|drop) .*?)(?=  #|$)", rf"\1 {block.said['shorter']}", text, flags=re.M)
         self.run(block, ["bash", "-eu", "-o", "pipefail", "-c", text], "bash")
 
     def compare(self, block):
