@@ -33,9 +33,9 @@ die() {
 # --- packages ---------------------------------------------------------------------------------------------------------------
 
 required=(g++ cmake ninja-build libeigen3-dev libspectra-dev libembree-dev libtoml11-dev libcli11-dev nlohmann-json3-dev libudunits2-dev libcsv-dev
-  libboost-dev libsvgpp-dev libpugixml-dev)
+  libboost-dev libsvgpp-dev libpugixml-dev libpng-dev libfreetype-dev fonts-dejavu-core)
 optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev)
-for_tests=(catch2 libtinyobjloader-dev)
+for_tests=(catch2 libtinyobjloader-dev libstb-dev)
 for_export_tests=(python3-numpy python3-vtk9 blender chromium-headless-shell nodejs npm)  # readers of what is exported
 for_format=(clang-format)
 for_lint=(clang-tidy)
@@ -239,15 +239,37 @@ compare() {
 pictures() {
   local out=out/pictures python=/usr/bin/python3 scene
   build
-  get_required python3-numpy python3-scipy python3-pil
+  get_required python3-scipy
   say "making the motion of a body"
   "$python" data/meshes/make_motion.py || die "the motion could not be made, see above"
-  for scene in $("$python" data/pictures/make_pictures.py --scenes); do
+  for scene in choi-ko-{100,200} dressed-turn ls-ball-{0,09} net noh-jung-{100,200} poncho poncho-sewn rotating-ball skirt-sewn \
+    soft-{bowl,sphere} tablecloth-pull tee; do
     say "running $scene into $out/$scene"
-    build/release/drape simulate "data/scenes/$scene.toml" --frames obj --out "$out/$scene" || die "$scene failed, see above"
+    build/release/drape simulate "data/scenes/$scene.toml" --out "$out/$scene" || die "$scene failed, see above"
   done
   say "drawing into data/pictures"
-  "$python" data/pictures/make_pictures.py "$out" || die "drawing failed, see above"
+  draw poncho 1100x580 -25,10 '' tee poncho
+  draw noh-jung 900x400 -25,18 '' noh-jung-{200,100}
+  draw choi-ko 900x400 -25,18 '' choi-ko-{200,100}
+  draw poncho-sewn 1280x420 -25,14 1,6,13,last poncho-sewn
+  draw skirt-sewn 1280x300 -25,20 1,6,13,last skirt-sewn
+  draw soft 800x700 -25,18 12,24 soft-{sphere,bowl}
+  draw net 1280x330 -20,14 1,18,25,last net
+  draw rotating-ball 1200x340 -20,10 76,101,114,last rotating-ball
+  draw tablecloth-pull 1100x440 -20,14 50,80,90,last tablecloth-pull
+  draw ls-ball 800x600 -20,14 14,20 ls-ball-{0,09}
+  draw dressed-turn 1100x420 15,8 1,41,59,last dressed-turn
+  draw strain 640x480 -25,14 last poncho --color strain
+}
+
+# draw NAME SIZE VIEW FRAMES RUN... [OPTION...]: several frames or runs side by side
+draw() {
+  local name=$1 size=$2 view=$3 frames=$4
+  shift 4
+  local -a words=(--size "$size" "--view=$view" --force -o "../../data/pictures/$name.png")
+  [[ -z "$frames" ]] || words+=(--frame "$frames")
+  [[ "$frames" != *,* ]] || words+=(--grid)
+  (cd out/pictures && ../../build/release/drape picture "$@" "${words[@]}") || die "drawing $name failed, see above"
 }
 
 install_into() {
