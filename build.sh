@@ -36,6 +36,7 @@ required=(g++ cmake ninja-build libeigen3-dev libspectra-dev libembree-dev libto
   libboost-dev libsvgpp-dev libpugixml-dev libpng-dev libfreetype-dev fonts-dejavu-core)
 optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev)
 for_tests=(catch2 libtinyobjloader-dev libstb-dev)
+for_export_tests=(python3-numpy python3-vtk9 blender chromium-headless-shell nodejs npm)  # readers of what is exported
 for_format=(clang-format)
 for_lint=(clang-tidy)
 
@@ -44,6 +45,8 @@ installed() {
     g++) [[ -n "${CXX:-}" ]] || command -v g++ >/dev/null ;;
     cmake | clang-format | clang-tidy) command -v "$1" >/dev/null ;;
     ninja-build) command -v ninja >/dev/null ;;
+    nodejs) command -v node >/dev/null ;;
+    npm | blender) command -v "$1" >/dev/null ;;
     *) command -v dpkg-query >/dev/null && [[ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" == installed ]] ;;
   esac
 }
@@ -105,6 +108,21 @@ get_required() {
 get_for_build() {
   get_required "${required[@]}"
   get "${optional[@]}" || warn "going on without: $(missing "${optional[@]}" | tr '\n' ' ')"
+}
+
+# The packages of the folder's package-lock.json, when they are not there yet.
+get_from_npm() {
+  local installed=$1/node_modules/.package-lock.json
+  command -v npm >/dev/null || { warn "there is no npm: tests that need $1/node_modules are skipped"; return 0; }
+  [[ -f "$installed" && ! "$1/package-lock.json" -nt "$installed" ]] && return 0
+  say "installing the packages of $1/package-lock.json"
+  npm ci --prefix "$1" --no-audit --no-fund || warn "npm could not install them: tests that need them are skipped"
+}
+
+# What only reads what is exported: a test whose reader is missing is skipped and says so.
+get_for_export_tests() {
+  get "${for_export_tests[@]}" || warn "going on without: $(missing "${for_export_tests[@]}" | tr '\n' ' ')"
+  get_from_npm tests/exports
 }
 
 # --- building ---------------------------------------------------------------------------------------------------------------
@@ -174,6 +192,7 @@ demo() {
 run_all_tests() {
   get_for_build
   get_required "${for_tests[@]}"
+  get_for_export_tests
   configure release -DDRAPE_TESTS=ON
   compile release
   run_tests release
