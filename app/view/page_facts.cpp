@@ -46,7 +46,7 @@ std::string state_of(const Json& run) {
 
 void add_times(Facts& facts, const Json& run) {
   const Json &step = run["ms_per_step"], &phases = run["phases_ms"];
-  facts.add("Time of a step", joined({named(number(step["median"], "ms"), "in the middle"),
+  facts.add("Time of a step", joined({named(number(step["median"], "ms"), "median"),
                                       named(number(step["p95"], "ms"), "at 95 %"),
                                       named(number(step["max"], "ms"), "at most")}));
   facts.add("Phases", joined({named(number(phases["assemble"], "s", 1e-3), "assemble"),

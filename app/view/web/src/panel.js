@@ -58,8 +58,8 @@ export class VertexPanel {
 
   show(frame) {
     if (!this.picked) return;
-    const { shape, vertex } = this.picked, { step } = shape.track;
-    const position = shape.position(frame, vertex).map((x, c) => fixed(x, step[c])).join(", ");
+    const { shape, vertex } = this.picked, step = Math.max(...shape.track.step);
+    const position = shape.position(frame, vertex).map((x) => fixed(x, step)).join(", ");
     const rows = [["position [m]", position]];
     if (!shape.body) {
       const speed = shape.value("speed", frame, vertex), strain = shape.value("strain", frame, vertex);

@@ -21,6 +21,7 @@ export class Picking {
   at(x, y) {
     const { canvas, camera, drawn } = this.stage, area = canvas.getBoundingClientRect();
     const place = new Vector2((2 * (x - area.left)) / area.width - 1, 1 - (2 * (y - area.top)) / area.height);
+    camera.updateMatrixWorld();
     this.ray.setFromCamera(place, camera);
     const seen = drawn.filter(({ mesh }) => mesh.visible);
     const [hit] = this.ray.intersectObjects(seen.map(({ mesh }) => mesh), false);

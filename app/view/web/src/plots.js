@@ -104,16 +104,24 @@ function options(plot, names, width) {
   return {
     width,
     height,
-    padding: [6, 8, 0, 0],
+    padding: [6, 16, 0, 0],
     legend: { show: false },
     cursor: { y: false, points: { show: false }, drag: { x: false, y: false } },
     scales: { x: { time: false }, y: plot.log ? { distr: 3 } : { range: linear_range } },
     axes: [
       { ...axis, size: 22, gap: 3, space: 60, values: (u, ticks) => ticks.map((x) => short(x) + " s") },
-      { ...axis, size: 50, gap: 4, space: 24, values: (u, ticks) => ticks.map((y) => (y === null ? "" : short(y))) },
+      { ...axis, size: 50, gap: 4, space: 24, ...(plot.log ? { splits: decades } : {}), values: (u, ticks) => ticks.map((y) => (y === null ? "" : plot.log ? `1e${Math.round(Math.log10(y))}` : short(y))) },
     ],
     series: [{}, ...names.map((name, k) => ({ stroke: () => css(`--series-${k}`), width: 1.5, points: { show: false } }))],
   };
+}
+
+// A few powers of ten.
+function decades(u, axis, low, high) {
+  const first = Math.ceil(Math.log10(low) - 1e-9), last = Math.floor(Math.log10(high) + 1e-9), stride = Math.ceil((last - first + 1) / 4);
+  const splits = [];
+  for (let k = last; k >= first; k -= stride) splits.unshift(10 ** k);
+  return splits;
 }
 
 // With zero where that does not hide what happens.

@@ -9,7 +9,7 @@ import { floor_of } from "./floor.js";
 import { view_box } from "./view_box.js";
 
 const cloth_tones = ["#4f8fc9", "#c9724f", "#5aa57a", "#a678c2", "#c2a24a", "#4fa9b8"];
-const white = new Color("white");
+const white = new Color("white"), dark = new Color("#565e68");
 const body_tone = "#b5aea4";
 const crease = (40 / 180) * Math.PI;
 
@@ -47,12 +47,13 @@ class Drawn {
     this.geometry.setIndex(new BufferAttribute(triangles, 1));
     this.geometry.boundingSphere = sphere;
     if (!shape.body) this.geometry.setAttribute("color", (this.colour = dynamic(count)));
-    const material = new MeshLambertMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+    const material = new MeshLambertMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2 });
     this.mesh = new Mesh(this.geometry, shape.body ? material : two_tones(material));
     this.mesh.frustumCulled = false;
     this.lines = this.#wireframe();
     this.frame = -1;
-    this.#use_vertex_colours(false);
+    this.fill = new Color(dark);
+    this.set_look({ painted: false, wireframe: false });
   }
 
   // The edges of the faces as the file has them, over the vertices of the shape itself.
@@ -66,11 +67,14 @@ class Drawn {
     return lines;
   }
 
-  // One colour for all of it, or one for every vertex.
-  #use_vertex_colours(use) {
+  // One colour for all of it, or one for every vertex; as a wireframe the lines have them, and the faces are grey.
+  set_look({ painted = this.painted, wireframe = this.wireframe }) {
+    if (painted === this.painted && wireframe === this.wireframe) return;
+    Object.assign(this, { painted, wireframe });
     for (const { material } of [this.mesh, this.lines]) {
-      material.vertexColors = use;
-      material.color.copy(use ? white : this.tone);
+      const grey = wireframe && material === this.mesh.material;
+      material.vertexColors = painted && !grey;
+      material.color.copy(grey ? (painted ? dark : this.fill) : painted ? white : this.tone);
       material.needsUpdate = true;
     }
   }
@@ -93,7 +97,7 @@ class Drawn {
   paint(colouring, frame) {
     if (!this.colour) return;
     const painted = colouring.paint(this.colour.array, this.shape, frame);
-    if (painted !== this.mesh.material.vertexColors) this.#use_vertex_colours(painted);
+    this.set_look({ painted });
     this.colour.needsUpdate = painted;
   }
 }
@@ -129,7 +133,6 @@ export class Stage {
     this.controls.dampingFactor = 0.15;
     this.controls.addEventListener("change", () => (this.dirty = true));
     this.update_ms = 0;
-    this.wireframe = false;
     this.dirty = true;
     this.reset_view();
   }
@@ -154,16 +157,28 @@ export class Stage {
 
   reset_view() {
     const { middle, radius, up } = this.box, { camera } = this;
+    const towards = new Vector3(...(up[1] > 0.5 ? [0.5, 0.42, 1] : [0.5, -1, 0.42])).normalize();
     camera.up.set(...up);
-    const side = up[1] > 0.5 ? [0.5, 0.42, 1] : [0.5, -1, 0.42];
-    const fit = Math.sin((camera.fov * Math.PI) / 360) * Math.min(1, camera.aspect);
-    camera.position.set(...side).normalize().multiplyScalar((0.95 * radius) / fit).add(new Vector3(...middle));
+    camera.position.copy(towards).multiplyScalar(this.#distance(towards)).add(new Vector3(...middle));
     camera.near = radius / 100;
     camera.far = radius * 200;
     camera.updateProjectionMatrix();
     this.controls.target.set(...middle);
     this.controls.update();
     this.dirty = true;
+  }
+
+  // From which all corners of the box are seen, with a rim.
+  #distance(towards) {
+    const { low, high, middle, up } = this.box, room = 0.94 * Math.tan((this.camera.fov * Math.PI) / 360);
+    const across = new Vector3(...up).cross(towards).normalize(), upward = towards.clone().cross(across);
+    let distance = 0;
+    for (let k = 0; k < 8; ++k) {
+      const corner = new Vector3(...low.map((x, c) => ((k >> c) & 1 ? high[c] : x) - middle[c]));
+      const wide = Math.abs(corner.dot(across)) / this.camera.aspect, tall = Math.abs(corner.dot(upward));
+      distance = Math.max(distance, corner.dot(towards) + Math.max(wide, tall) / room);
+    }
+    return distance || 1;
   }
 
   // Round the target, by keys.
@@ -193,11 +208,11 @@ export class Stage {
   }
 
   set_visible({ wireframe, bodies }) {
-    this.wireframe = wireframe;
-    for (const { mesh, lines, shape } of this.drawn) {
+    for (const drawn of this.drawn) {
+      const { mesh, lines, shape } = drawn;
       mesh.visible = bodies || !shape.body;
       lines.visible = wireframe && (bodies || !shape.body);
-      mesh.material.colorWrite = !wireframe; // what is behind the cloth stays hidden
+      drawn.set_look({ wireframe });
     }
     for (const floor of this.floors) floor.group.visible = bodies;
     this.dirty = true;
@@ -206,6 +221,10 @@ export class Stage {
   set_theme({ background, floor, grid }) {
     this.scene.background = new Color(background);
     for (const each of this.floors) each.set_colours(floor, grid);
+    for (const { fill, mesh, wireframe, painted } of this.drawn) {
+      fill.set(floor);
+      if (wireframe && !painted) mesh.material.color.copy(fill);
+    }
     this.dirty = true;
   }
 

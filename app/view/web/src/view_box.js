@@ -14,7 +14,7 @@ export function view_box(shapes, planes) {
   }
   const middle = box.low.map((x, c) => (x + box.high[c]) / 2);
   const radius = Math.max(1e-6, Math.hypot(...box.low.map((x, c) => box.high[c] - x)) / 2);
-  return { middle, radius, up: up_of(planes) };
+  return { ...box, middle, radius, up: up_of(planes) };
 }
 
 function reach({ track }) {
