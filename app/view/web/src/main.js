@@ -29,10 +29,11 @@ function make_plots(steps, seek) {
 function start() {
   const head = read_head(), { times } = head;
   fill_banner(head.missing);
-  fill_run(head.facts, head.warnings, head.notes);
   const shapes = head.shapes.map((shape) => new Shape(shape, times));
   const colouring = new Colouring(shapes);
   const stage = make_stage(shapes, head.planes, colouring);
+  if (stage && head.planes.length > 0) head.notes.push(`A square of the grid is ${stage.grid_spacing} m wide.`);
+  fill_run(head.facts, head.warnings, head.notes);
 
   const vertex = new VertexPanel(shapes, (picked) => (picking ? picking.take(picked) : chosen(picked)));
   const chosen = (picked) => {

@@ -5,7 +5,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { smooth_normals, creased } from "./normals.js";
-import { floor_of } from "./floor.js";
+import { floor_of, grid_spacing } from "./floor.js";
 import { view_box } from "./view_box.js";
 
 const cloth_tones = ["#4f8fc9", "#c9724f", "#5aa57a", "#a678c2", "#c2a24a", "#4fa9b8"];
@@ -125,8 +125,9 @@ export class Stage {
     let cloths = 0;
     this.drawn = shapes.map((shape) => new Drawn(shape, shape.body ? body_tone : cloth_tones[cloths++ % cloth_tones.length], sphere));
     for (const drawn of this.drawn) this.scene.add(drawn.mesh, drawn.lines);
+    this.grid_spacing = Number(grid_spacing(this.box.radius).toPrecision(1));
     this.floors = planes.map((plane) => floor_of(plane, this.box));
-    for (const floor of this.floors) this.scene.add(floor.group);
+    for (const floor of this.floors) this.scene.add(floor.mesh);
     this.marker = this.#make_marker();
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = true;
@@ -214,7 +215,7 @@ export class Stage {
       lines.visible = wireframe && (bodies || !shape.body);
       drawn.set_look({ wireframe });
     }
-    for (const floor of this.floors) floor.group.visible = bodies;
+    for (const floor of this.floors) floor.mesh.visible = bodies;
     this.dirty = true;
   }
 
