@@ -33,17 +33,20 @@ die() {
 # --- packages ---------------------------------------------------------------------------------------------------------------
 
 required=(g++ cmake ninja-build libeigen3-dev libspectra-dev libembree-dev libtoml11-dev libcli11-dev nlohmann-json3-dev libudunits2-dev libcsv-dev
-  libboost-dev libsvgpp-dev libpugixml-dev)
-optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev)
+  libboost-dev libsvgpp-dev libpugixml-dev zlib1g-dev)
+optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev nodejs npm)
 for_tests=(catch2 libtinyobjloader-dev)
+for_browser_tests=(chromium-headless-shell)
 for_format=(clang-format)
 for_lint=(clang-tidy)
 
 installed() {
   case "$1" in  # a tool counts wherever it comes from
     g++) [[ -n "${CXX:-}" ]] || command -v g++ >/dev/null ;;
-    cmake | clang-format | clang-tidy) command -v "$1" >/dev/null ;;
+    cmake | clang-format | clang-tidy | npm) command -v "$1" >/dev/null ;;
     ninja-build) command -v ninja >/dev/null ;;
+    nodejs) command -v node >/dev/null || command -v nodejs >/dev/null ;;
+    chromium-headless-shell) command -v chromium-headless-shell chromium chromium-browser google-chrome >/dev/null ;;
     *) command -v dpkg-query >/dev/null && [[ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" == installed ]] ;;
   esac
 }
@@ -174,6 +177,7 @@ demo() {
 run_all_tests() {
   get_for_build
   get_required "${for_tests[@]}"
+  get "${for_browser_tests[@]}" || warn "going on without a browser: the tests of the viewer will be skipped"
   configure release -DDRAPE_TESTS=ON
   compile release
   run_tests release

@@ -125,6 +125,21 @@ test("every colouring changes pixels and has its legend", async () => {
   assert.equal(await page.locator("#legend").isVisible(), false);
 });
 
+test("the faster a vertex is, the brighter it is", async () => {
+  await seek(20);
+  await page.locator("#colour-speed + span").click();
+  const vertices = await page.evaluate(() => {
+    const [{ shape, colour }] = window.drape.stage.drawn, bright = (i) => [0.2126, 0.7152, 0.0722].reduce((sum, w, c) => sum + w * colour.array[3 * i + c], 0);
+    return Array.from({ length: shape.vertices }, (_, i) => ({ speed: shape.value("speed", 20, i), bright: bright(i) }));
+  });
+  vertices.sort((a, b) => a.speed - b.speed);
+  for (let i = 1; i < vertices.length; ++i) {
+    const [slower, faster] = vertices.slice(i - 1, i + 1); // the map's colours are rounded to 8 bits
+    assert.ok(faster.bright >= slower.bright - 0.002, JSON.stringify([slower, faster]));
+  }
+  assert.ok(vertices.at(-1).bright > vertices[0].bright + 0.05);
+});
+
 test("wireframe, bodies and turning change pixels", async () => {
   await seek(20);
   assert.ok((await differing(() => page.locator("#wireframe + span").click())) > 1000);
