@@ -34,7 +34,8 @@ die() {
 
 required=(g++ cmake ninja-build libeigen3-dev libspectra-dev libembree-dev libtoml11-dev libcli11-dev nlohmann-json3-dev libudunits2-dev libcsv-dev
   libboost-dev libsvgpp-dev libpugixml-dev zlib1g-dev)
-optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev nodejs npm)
+optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev)
+for_viewer=(nodejs npm)
 for_tests=(catch2 libtinyobjloader-dev)
 for_browser_tests=(chromium-headless-shell)
 for_format=(clang-format)
@@ -108,6 +109,7 @@ get_required() {
 get_for_build() {
   get_required "${required[@]}"
   get "${optional[@]}" || warn "going on without: $(missing "${optional[@]}" | tr '\n' ' ')"
+  get "${for_viewer[@]}" || warn "going on without the viewer, for there is no $(missing "${for_viewer[@]}" | tr '\n' ' ')"
 }
 
 # --- building ---------------------------------------------------------------------------------------------------------------
