@@ -140,7 +140,7 @@ Names notes_of(const Json::List& shapes, int frames, long not_finite) {
   for (const Json& shape : shapes)
     for (const Json& component : shape["positions"]["step"].items())
       step = std::max(step, component.number(0));
-  notes.push_back("Positions are shown to " + rounded(500 * step, 2) + " mm.");
+  notes.push_back("Positions are kept to " + rounded(500 * step, 2) + " mm.");
   if (!known_of_cloths(shapes, "speed"))
     notes.push_back(frames > 1 ? "Velocities were not recorded: speeds are from the frames before and after."
                                : "Velocities were not recorded.");

@@ -107,7 +107,7 @@ function options(plot, names, width) {
     padding: [6, 16, 0, 0],
     legend: { show: false },
     cursor: { y: false, points: { show: false }, drag: { x: false, y: false } },
-    scales: { x: { time: false }, y: plot.log ? { distr: 3 } : { range: linear_range } },
+    scales: { x: { time: false }, y: plot.log ? { distr: 3, range: whole_decades } : { range: linear_range } },
     axes: [
       { ...axis, size: 22, gap: 3, space: 60, values: (u, ticks) => ticks.map((x) => short(x) + " s") },
       { ...axis, size: 50, gap: 4, space: 24, ...(plot.log ? { splits: decades } : {}), values: (u, ticks) => ticks.map((y) => (y === null ? "" : plot.log ? `1e${Math.round(Math.log10(y))}` : short(y))) },
@@ -124,9 +124,15 @@ function decades(u, axis, low, high) {
   return splits;
 }
 
+function whole_decades(u, low, high) {
+  if (low === null || high === null) return [0.1, 1];
+  const first = Math.floor(Math.log10(low)), last = Math.ceil(Math.log10(high));
+  return [10 ** first, 10 ** Math.max(last, first + 1)];
+}
+
 // With zero where that does not hide what happens.
 function linear_range(u, low, high) {
-  if (low === null || high === null) return [0, 1];
+  if (low === null || high === null || (low === 0 && high === 0)) return [0, 1];
   if (low >= 0 && low < 0.5 * high) low = 0;
   const room = 0.06 * (high - low || Math.abs(high) || 1);
   return [low === 0 ? 0 : low - room, high + room];

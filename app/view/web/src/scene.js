@@ -18,7 +18,7 @@ function two_tones(material) {
   material.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader.replace(
       "#include <color_fragment>",
-      "#include <color_fragment>\n  if (!gl_FrontFacing) diffuseColor.rgb *= vec3(0.80, 0.72, 0.64);",
+      "#include <color_fragment>\n  if (!gl_FrontFacing) diffuseColor.rgb *= vec3(0.92, 0.80, 0.68);",
     );
   };
   return material;
