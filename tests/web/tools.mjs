@@ -42,9 +42,9 @@ export function drape(program, words, cwd) {
   return { code: run.status, out: run.stdout, err: run.stderr };
 }
 
-const scene = `[simulation]
-duration = "0.5 s"
-frame_rate = "50 Hz"
+const scene = (duration, frame_rate) => `[simulation]
+duration = ${duration}
+frame_rate = ${frame_rate}
 tolerance = 1e-4
 [[cloth]]
 name = "sheet"
@@ -64,16 +64,16 @@ point = [0, -0.2, 0]
 normal = [0, 1, 0]
 `;
 
-// A sheet over a ball that moves, on a floor.
-export function simulate(program, work) {
+// A sheet of n x n vertices over a ball that moves, on a floor.
+export function simulate(program, work, { n = 20, duration = 0.5, frame_rate = 50 } = {}) {
   rmSync(work, { recursive: true, force: true });
   mkdirSync(work, { recursive: true });
-  const n = 20, lines = [];
+  const lines = [];
   for (let j = 0; j < n; ++j) for (let i = 0; i < n; ++i) lines.push(`v ${i / (n - 1) - 0.5} 0 ${j / (n - 1) - 0.5}`);
   for (let j = 1; j < n; ++j)
     for (let i = 1; i < n; ++i) lines.push(`f ${(j - 1) * n + i} ${j * n + i} ${j * n + i + 1} ${(j - 1) * n + i + 1}`);
   writeFileSync(join(work, "sheet.obj"), lines.join("\n") + "\n");
-  writeFileSync(join(work, "scene.toml"), scene);
+  writeFileSync(join(work, "scene.toml"), scene(duration, frame_rate));
   execFileSync(program, ["simulate", "scene.toml", "--out", "run", "--quiet", "--threads", "1"], { cwd: work });
   return join(work, "run");
 }

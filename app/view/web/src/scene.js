@@ -134,6 +134,7 @@ export class Stage {
     this.controls.dampingFactor = 0.15;
     this.controls.addEventListener("change", () => (this.dirty = true));
     this.update_ms = 0;
+    this.scale = 1;
     this.dirty = true;
     this.reset_view();
   }
@@ -232,11 +233,18 @@ export class Stage {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (!width || !height) return;
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.renderer.setPixelRatio(this.scale * Math.min(2, window.devicePixelRatio));
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     this.dirty = true;
+  }
+
+  // So many pixels a side, of those that the window has.
+  set_scale(scale) {
+    if (scale === this.scale) return;
+    this.scale = scale;
+    this.resize();
   }
 
   draw() {
