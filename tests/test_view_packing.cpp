@@ -85,7 +85,8 @@ TEST_CASE("200 frames of 10 000 vertices stay under 20 MB", "[view]") {
   for (int k = 0; k < 200; ++k) {
     std::vector<double> x(3 * vertices), v(vertices), e(vertices), touch(vertices);
     for (std::size_t i = 0; i < vertices; ++i) {
-      const double u = double(i % n) / n - 0.5, w = double(i / n) / n - 0.5, t = 0.01 * k;
+      const std::size_t column = i % n, line = i / n;
+      const double u = double(column) / n - 0.5, w = double(line) / n - 0.5, t = 0.01 * k;
       const double phase = 9 * u + 5 * w + 7 * t;
       x[i] = u + 0.02 * std::sin(phase) + noise(random);
       x[vertices + i] = 0.2 * std::sin(phase) + 0.05 * std::cos(40 * w - 20 * t) + noise(random);
@@ -103,7 +104,7 @@ TEST_CASE("200 frames of 10 000 vertices stay under 20 MB", "[view]") {
 
 TEST_CASE("base64 as the standard has it", "[view]") {
   // RFC 4648, section 10.
-  CHECK(base64("") == "");
+  CHECK(base64("").empty());
   CHECK(base64("f") == "Zg==");
   CHECK(base64("fo") == "Zm8=");
   CHECK(base64("foo") == "Zm9v");

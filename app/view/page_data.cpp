@@ -48,6 +48,7 @@ Json field(PageBlocks& blocks, int frames, std::size_t vertices, const FrameValu
 
 std::vector<double> speeds(const std::vector<Vec3>& velocities) {
   std::vector<double> all;
+  all.reserve(velocities.size());
   for (const Vec3& v : velocities) all.push_back(v.norm());
   return all;
 }
