@@ -243,22 +243,26 @@ void add_view(CLI::App& app, int& exit_code) {
 void add_picture(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand("picture", "draws an output folder or a mesh as PNG");
   auto words = std::make_shared<PictureWords>();
-  command->add_option("INPUT", words->input, "output folder of a run, or an OBJ file")->required();
-  command->add_option("--with", words->with, "a further OBJ file, drawn as a body; as often as needed")
+  command
+      ->add_option("OUT", words->inputs,
+                   "output folder of a run, or an OBJ file drawn as a cloth; several are drawn side by side")
+      ->required();
+  command->add_option("--with", words->with, "an OBJ file, drawn as a body; as often as needed")
       ->type_name("BODY.obj")
       ->take_all()
       ->allow_extra_args(false);
-  command->add_option("-o,--out", words->out, "the picture (picture.png)")->type_name("FILE");
-  command->add_option("--frame", words->frame, "a frame of the run from 1, 'last' or 'all' (last)")
-      ->type_name("N");
-  command
-      ->add_option("--view", words->view,
-                   "front, back, left, right, top, or degrees round and above, such as 30,20 (30,20)")
-      ->type_name("SIDE");
-  command->add_option("--color", words->color, "what colours show: strain, speed or contact")
-      ->type_name("WHAT");
-  command->add_option("--size", words->size, "of the picture in pixels (1280x960)")->type_name("WxH");
-  command->add_flag("--grid", words->grid, "frames side by side on one sheet");
+  const auto option = [&](const char* name, std::string& value, const char* type, const char* help) {
+    command->add_option(name, value, help)->type_name(type);
+  };
+  option("-o,--out", words->out, "FILE", "the picture (OUT/picture.png, or beside the mesh)");
+  option("--frame", words->frame, "N",
+         "a frame of the run from 1, 'last', 'all', or several: 1,5,last (last)");
+  option("--view", words->view, "SIDE",
+         "front, back, left, right, side, top, or degrees round and above, such as 30,20 (30,20)");
+  option("--color", words->color, "WHAT", "what colours show: strain, speed or contact");
+  option("--size", words->size, "WxH", "of the picture in pixels (1280x960)");
+  command->add_flag("--grid", words->grid, "frames side by side on one sheet (12 when none are named)");
+  command->add_flag("--edges", words->edges, "the edges of the triangles, too");
   command->add_flag("--force", words->force, "replace a file that is there");
   command->callback([=, &exit_code] { exit_code = picture(*words); });
 }
