@@ -16,6 +16,7 @@ usage: ./build.sh WORD
   lint            check the formatting, then clang-tidy
   format          format the sources in place; format --check only looks
   sanitize        build with the address and undefined-behaviour sanitizers and run the tests, but for the slow ones
+  docs            make a site of the pages in docs/ and of the C++ interface, build/docs/site, and look for dead links in it
   install PREFIX  build, then install the program, the library and its headers under PREFIX
 
 Missing Debian or Ubuntu packages are installed with apt-get, through sudo when not root; elsewhere they are only named.
@@ -36,7 +37,8 @@ required=(g++ cmake ninja-build libeigen3-dev libspectra-dev libembree-dev libto
   libboost-dev libsvgpp-dev libpugixml-dev libpng-dev libfreetype-dev fonts-dejavu-core zlib1g-dev)
 optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev)
 for_viewer=(nodejs npm)
-for_tests=(catch2 libtinyobjloader-dev libstb-dev)
+for_docs=(python3 python3-sphinx python3-myst-parser furo doxygen linkchecker)
+for_tests=(catch2 libtinyobjloader-dev libstb-dev "${for_docs[@]}")
 for_browser_tests=(chromium-headless-shell)
 for_export_tests=(python3-numpy python3-vtk9 blender chromium-headless-shell nodejs npm)  # readers of what is exported
 for_format=(clang-format)
@@ -277,6 +279,16 @@ draw() {
   (cd out/pictures && ../../build/release/drape picture "$@" "${words[@]}") || die "drawing $name failed, see above"
 }
 
+# The tables of keys, fabrics and solvers are written anew first: the program has them.
+docs() {
+  build
+  get_required "${for_docs[@]}"
+  say "writing what the program knows into docs/"
+  /usr/bin/python3 tests/docs/made.py --program build/release/drape --write docs/*.md || die "docs/ could not be written, see above"
+  say "making build/docs/site"
+  /usr/bin/python3 docs/make.py build/docs/site || die "the site has mistakes, see above"
+}
+
 install_into() {
   [[ $# -eq 1 ]] || { warn "install needs one folder: ./build.sh install PREFIX"; exit 2; }
   build
@@ -332,7 +344,7 @@ tidy() {
 word=${1:-}
 [[ $# -eq 0 ]] || shift
 case "$word" in
-  demo | build | pictures | compare | lint | sanitize)
+  demo | build | docs | pictures | compare | lint | sanitize)
     [[ $# -eq 0 ]] || { warn "'$word' takes nothing more, but got: $*"; exit 2; }
     "$word"
     ;;

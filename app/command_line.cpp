@@ -11,6 +11,7 @@
 #include "app/commands.h"
 #include "app/compare/compare.h"
 #include "app/export/export.h"
+#include "app/keys.h"
 #include "app/picture/picture.h"
 #include "app/stability/stability.h"
 #include "app/triangulate_command.h"
@@ -287,8 +288,23 @@ void add_check_and_list(CLI::App& app, int& exit_code) {
   auto file = std::make_shared<std::string>();
   check->add_option("FILE", *file, "scene (.toml) or mesh (.obj)")->required();
   check->callback([=, &exit_code] { exit_code = check_file(*file); });
-  app.add_subcommand("list", "fabrics, shapes, forces, integrators and linear solvers of this build")
-      ->callback([&exit_code] { exit_code = list_parts(); });
+  CLI::App* const list =
+      app.add_subcommand("list", "fabrics, shapes, forces, integrators and linear solvers of this build");
+  auto which = std::make_shared<std::string>();
+  auto markdown = std::make_shared<bool>(false);
+  list->add_option("KIND", *which, "such as fabrics or \"linear solvers\" (all)");
+  list->add_flag("--markdown", *markdown, "as tables in Markdown");
+  list->callback([=, &exit_code] { exit_code = list_parts(*which, *markdown); });
+}
+
+void add_keys(CLI::App& app, int& exit_code) {
+  CLI::App* const command =
+      app.add_subcommand("keys", "what may stand in scene, fabric and pattern files, and what it means");
+  auto words = std::make_shared<KeysWords>();
+  command->add_option("TABLE", words->table,
+                      "such as cloth or obstacle; or all of a file: scene, fabric, pattern (everything)");
+  command->add_flag("--markdown", words->markdown, "as tables in Markdown");
+  command->callback([=, &exit_code] { exit_code = print_keys(*words); });
 }
 
 void check_command(const CLI::App& app, const std::string& word) {
@@ -326,6 +342,7 @@ int parse_and_run(int argc, char** argv) {
   add_picture(app, exit_code);
   add_export(app, exit_code);
   add_check_and_list(app, exit_code);
+  add_keys(app, exit_code);
   if (argc > 1 && argv[1][0] != '-') check_command(app, argv[1]);
   try {
     app.parse(argc, argv);

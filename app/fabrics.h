@@ -15,8 +15,8 @@ struct NamedFabric {
   Fabric fabric;
 };
 
-Names fabric_names();                              // sorted
-NamedFabric load_fabric(const std::string& name);  // throws InputError
+Names fabric_names();                                                         // sorted
+NamedFabric load_fabric(const std::string& name, KeyNotes* notes = nullptr);  // throws InputError
 
 // Reads the fabric keys that the table has over `fabric`.
 void read_fabric(Table& table, Fabric& fabric);
