@@ -34,10 +34,12 @@ die() {
 # --- packages ---------------------------------------------------------------------------------------------------------------
 
 required=(g++ cmake ninja-build libeigen3-dev libspectra-dev libembree-dev libtoml11-dev libcli11-dev nlohmann-json3-dev libudunits2-dev libcsv-dev
-  libboost-dev libsvgpp-dev libpugixml-dev libpng-dev libfreetype-dev fonts-dejavu-core)
+  libboost-dev libsvgpp-dev libpugixml-dev libpng-dev libfreetype-dev fonts-dejavu-core zlib1g-dev)
 optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev)
+for_viewer=(nodejs npm)
 for_docs=(python3 python3-sphinx python3-myst-parser furo doxygen linkchecker)
 for_tests=(catch2 libtinyobjloader-dev libstb-dev "${for_docs[@]}")
+for_browser_tests=(chromium-headless-shell)
 for_export_tests=(python3-numpy python3-vtk9 blender chromium-headless-shell nodejs npm)  # readers of what is exported
 for_format=(clang-format)
 for_lint=(clang-tidy)
@@ -45,10 +47,11 @@ for_lint=(clang-tidy)
 installed() {
   case "$1" in  # a tool counts wherever it comes from
     g++) [[ -n "${CXX:-}" ]] || command -v g++ >/dev/null ;;
-    cmake | clang-format | clang-tidy) command -v "$1" >/dev/null ;;
+    cmake | clang-format | clang-tidy | npm) command -v "$1" >/dev/null ;;
     ninja-build) command -v ninja >/dev/null ;;
-    nodejs) command -v node >/dev/null ;;
-    npm | blender) command -v "$1" >/dev/null ;;
+    nodejs) command -v node >/dev/null || command -v nodejs >/dev/null ;;
+    chromium-headless-shell) command -v chromium-headless-shell chromium chromium-browser google-chrome >/dev/null ;;
+    blender) command -v "$1" >/dev/null ;;
     *) command -v dpkg-query >/dev/null && [[ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" == installed ]] ;;
   esac
 }
@@ -110,6 +113,7 @@ get_required() {
 get_for_build() {
   get_required "${required[@]}"
   get "${optional[@]}" || warn "going on without: $(missing "${optional[@]}" | tr '\n' ' ')"
+  get "${for_viewer[@]}" || warn "going on without the viewer, for there is no $(missing "${for_viewer[@]}" | tr '\n' ' ')"
 }
 
 # The packages of the folder's package-lock.json, when they are not there yet.
@@ -194,6 +198,7 @@ demo() {
 run_all_tests() {
   get_for_build
   get_required "${for_tests[@]}"
+  get "${for_browser_tests[@]}" || warn "going on without a browser: the tests of the viewer will be skipped"
   get_for_export_tests
   configure release -DDRAPE_TESTS=ON
   compile release

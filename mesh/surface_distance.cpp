@@ -118,6 +118,7 @@ void SurfaceDistance::Tree::measure() {
 
 void SurfaceDistance::Tree::grow() {
   std::vector<Triangle> triangles;
+  triangles.reserve(static_cast<std::size_t>(surface.with_area));
   for (int f = 0; f < surface.with_area; ++f) triangles.push_back(surface.faces[f].v);
   standing.emplace(mesh.positions, triangles, centre);
 }

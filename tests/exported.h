@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "app/words.h"
 #include "tests/folder.h"
@@ -63,6 +64,15 @@ struct Exported : Folder {
     const Outcome run = drape("simulate scene.toml --out run --quiet");
     INFO(run.err);
     REQUIRE(run.exit_code == 0);
+  }
+  // Into a folder of the format's name.
+  Outcome exported(std::string_view run, std::string_view format, std::string_view words = "",
+                   const std::string& before = "") const {
+    std::string line("export ");
+    for (const std::string_view word : {run, std::string_view(" --to "), format, std::string_view(" -o "),
+                                        format, std::string_view(" "), words})
+      line += word;
+    return drape(line, before);
   }
   std::string file(const std::string& name) const {
     INFO(name);

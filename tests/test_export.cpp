@@ -62,8 +62,7 @@ TEST_CASE("a LightWave point cache has the published layout", "[export]") {
 
 TEST_CASE("every format holds every vertex of every frame in order", "[export]") {
   const Exported folder;
-  for (const std::string& format : export_formats())
-    REQUIRE(folder.drape("export run --to " + format + " -o " + format).exit_code == 0);
+  for (const std::string& format : export_formats()) REQUIRE(folder.exported("run", format).exit_code == 0);
   const Recording recording(folder.path / "run");
   const double half_ulp = 1e-7;  // of places within 2 m
   REQUIRE(recording.frames() == 6);
@@ -101,7 +100,7 @@ TEST_CASE("every format holds every vertex of every frame in order", "[export]")
 TEST_CASE("what an export says it writes is all that it writes", "[export]") {
   const Exported folder;
   for (const std::string& format : export_formats()) {
-    const Outcome outcome = folder.drape("export run --to " + format + " --every 2 -o " + format);
+    const Outcome outcome = folder.exported("run", format, "--every 2");
     INFO(outcome.err);
     REQUIRE(outcome.exit_code == 0);
     std::size_t told = 0;
@@ -138,7 +137,7 @@ TEST_CASE("a run that kept no frames is exported as one", "[export]") {
   const Exported folder;
   REQUIRE(folder.drape("simulate scene.toml --out still --frames none --quiet").exit_code == 0);
   for (const std::string& format : export_formats()) {
-    const Outcome outcome = folder.drape("export still --to " + format + " -o " + format);
+    const Outcome outcome = folder.exported("still", format);
     INFO(format << outcome.err);
     CHECK(outcome.exit_code == 0);
   }

@@ -34,10 +34,10 @@ TEST_CASE("an export that fails leaves nothing behind", "[export]") {
   // A file that grows beyond what the system allows.
   const Exported exported;
   for (const std::string format : {"gltf", "csv", "vtk"}) {
-    const Outcome outcome = exported.drape("export run --to " + format + " -o out/deep", "ulimit -f 4;");
+    const Outcome outcome = exported.exported("run", format, "", "ulimit -f 4;");
     CHECK(outcome.exit_code == 2);
     CHECK_THAT(outcome.err, Contains("cannot write: File too large"));
-    CHECK_FALSE(fs::exists(exported.path / "out"));
+    CHECK_FALSE(fs::exists(exported.path / format));
   }
 }
 

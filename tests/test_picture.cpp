@@ -150,6 +150,7 @@ TEST_CASE("a picture has the same bits on any number of threads", "[picture]") {
   scene.still.planes.push_back({"floor", {0, -0.3, 0}, {0, 1, 0}});
   const ThreadsRestored restored;
   std::vector<Image> images;
+  images.reserve(3);
   for (int t : {1, 2, 7}) {
     set_threads(t);
     images.push_back(scene.draw({30, 20}, 300, 200));
@@ -163,6 +164,7 @@ TEST_CASE("colours follow the values of the vertices, times the light that falls
     const Scale scale{field, field == Field::strain ? -0.1 : 0, 0.1};
     const TriangleMesh sheet = grid(21, 21, 1, 1);
     std::vector<double> values;
+    values.reserve(sheet.positions.size());
     for (const Vec3& p : sheet.positions)
       values.push_back(scale.low + (p.x() + 0.5) * (scale.high - scale.low));
     Scene scene;
@@ -187,6 +189,7 @@ TEST_CASE("colours follow the values of the vertices, times the light that falls
 TEST_CASE("contact has the colour of the nearest vertex and none between", "[picture]") {
   const TriangleMesh sheet = grid(3, 3, 1, 1);
   std::vector<double> values;
+  values.reserve(sheet.positions.size());
   for (const Vec3& p : sheet.positions) values.push_back(p.x() < -0.1 ? 0 : p.x() > 0.1 ? 2 : 1);
   Scene scene;
   scene.add(sheet, false, values);

@@ -126,7 +126,7 @@ Names usd_names(const Names& shapes) {
       const bool allowed = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
       start += allowed ? c : '_';
     }
-    if (start.empty() || (start.front() >= '0' && start.front() <= '9')) start = "_" + start;
+    if (start.empty() || (start.front() >= '0' && start.front() <= '9')) start.insert(0, "_");
     std::string name = start;
     for (int n = 2; std::find(names.begin(), names.end(), name) != names.end(); ++n)
       name = start + "_" + std::to_string(n);

@@ -14,10 +14,9 @@ class Appended {
   // <DataArray .../> for a block of these bytes.
   std::string add(const std::string& type, const std::string& name, int components,
                   const std::string& bytes) {
-    const std::string element = "<DataArray type=\"" + type + "\" Name=\"" + name +
-                                "\" NumberOfComponents=\"" + std::to_string(components) +
-                                "\" format=\"appended\" offset=\"" + std::to_string(blocks_.size()) +
-                                "\"/>\n";
+    std::string element = "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+                          std::to_string(components) + "\" format=\"appended\" offset=\"" +
+                          std::to_string(blocks_.size()) + "\"/>\n";
     const std::uint64_t length = bytes.size();
     append_word<little>(blocks_, static_cast<std::uint32_t>(length));
     append_word<little>(blocks_, static_cast<std::uint32_t>(length >> 32));

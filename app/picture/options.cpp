@@ -62,6 +62,7 @@ std::vector<int> frames_named(const std::string& text, int count, int several, c
     std::iota(frames.begin(), frames.end(), 0);
   } else if (text.empty() && several > 1 && count > 1) {
     const int shown = std::min(several, count);
+    frames.reserve(static_cast<std::size_t>(shown));
     for (int k = 0; k < shown; ++k)
       frames.push_back(static_cast<int>(std::lround(double(k) * (count - 1) / (shown - 1))));
   } else if (text.empty()) {

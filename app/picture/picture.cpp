@@ -34,6 +34,7 @@ std::filesystem::path out_path(const PictureWords& words) {
 
 std::vector<Subject> subjects_of(const PictureWords& words) {
   std::vector<Subject> subjects;
+  subjects.reserve(words.inputs.size());
   for (const std::string& input : words.inputs) {
     if (!std::filesystem::exists(input))
       throw InputError(input + ": no such file or folder; give the output folder of a run or an OBJ file");
@@ -62,11 +63,13 @@ std::vector<Output> outputs_of(const PictureWords& words, const std::vector<Subj
   const std::filesystem::path path = out_path(words);
   const bool sheet = words.grid || subjects.size() > 1;
   std::vector<std::vector<int>> frames;
+  frames.reserve(subjects.size());
   for (const Subject& subject : subjects)
     frames.push_back(frames_named(words.frame, subject.frames(), words.grid ? spread : 1, subject.path()));
   if (!sheet && frames[0].size() == 1) return {{path, {{&subjects[0], frames[0][0], ""}}}};
   std::vector<Output> outputs;
   if (!sheet) {
+    outputs.reserve(frames[0].size());
     for (int frame : frames[0]) {
       char number[16];
       std::snprintf(number, sizeof number, "_%04d", frame + 1);

@@ -69,6 +69,7 @@ std::string png(const Image& image) {
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(file.writer, file.info, PNG_sRGB_INTENT_PERCEPTUAL);
   std::vector<png_color> colours;
+  colours.reserve(table.size());
   for (const Pixel& p : table) colours.push_back({p[0], p[1], p[2]});
   if (!colours.empty())
     png_set_PLTE(file.writer, file.info, colours.data(), static_cast<int>(colours.size()));

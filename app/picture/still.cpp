@@ -59,10 +59,16 @@ Names Subject::missing() const { return recording_ ? recording_->missing() : Nam
 std::vector<double> Subject::values(std::size_t shape, int frame, Field field) const {
   std::vector<double> values;
   if (field == Field::strain) values = recording_->strains(shape, frame);
-  if (field == Field::speed)
-    for (const Vec3& v : recording_->velocities(shape, frame)) values.push_back(v.norm());
-  if (field == Field::contact)
-    for (Touch touch : recording_->touches(shape, frame)) values.push_back(static_cast<double>(touch));
+  if (field == Field::speed) {
+    const std::vector<Vec3> velocities = recording_->velocities(shape, frame);
+    values.reserve(velocities.size());
+    for (const Vec3& v : velocities) values.push_back(v.norm());
+  }
+  if (field == Field::contact) {
+    const std::vector<Touch> touches = recording_->touches(shape, frame);
+    values.reserve(touches.size());
+    for (Touch touch : touches) values.push_back(static_cast<double>(touch));
+  }
   return values;
 }
 
