@@ -67,7 +67,7 @@ def check(out):
         settings = Path(folder) / "linkcheckerrc"
         settings.write_text("[checking]\nmaxrequestspersecond=1000\n[AnchorCheck]\n")
         # Links within Doxygen's pages are Doxygen's.
-        run(["linkchecker", "--config", settings, "--no-follow-url", "/api/", "--no-status", "--recursion-level", "3", "--threads", "2",
+        run(["linkchecker", "--config", settings, "--no-follow-url", "/api/", "--no-status", "--threads", "2",
              (site / "index.html").as_uri()])
 
 
