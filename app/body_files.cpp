@@ -82,7 +82,10 @@ std::vector<BodyRecord> body_records(const Simulation& simulation) {
                       std::string(name(body.obstacle().shape)),
                       body.obstacle().motion.moves(),
                       deforms(body),
+                      body.pose(),
+                      {},
                       {}};
+    if (const auto* const plane = std::get_if<Plane>(&body.obstacle().shape)) record.plane = *plane;
     if (const ReactingBody* const r = body.reacting())
       record.reacting = {body.obstacle().rigid->mass, r->centre(), r->velocity(), r->momentum()};
     records.push_back(record);
@@ -100,6 +103,10 @@ BodyFiles::BodyFiles(fs::path folder, const Simulation& simulation, Frames frame
 }
 
 void BodyFiles::open() {
+  if (frames_ == Frames::pc2)
+    for (std::size_t k = 0; k < entries_.size(); ++k)
+      if (entries_[k].deforms)
+        entries_[k].cache.emplace(cache_path(entries_[k]), drawn(body(k).obstacle().shape).vertex_count());
   if (!has_poses()) return;
   poses_.emplace(folder_ / "bodies.csv");
   poses_->write("frame,time,body,x,y,z,qw,qx,qy,qz\n");
@@ -107,6 +114,10 @@ void BodyFiles::open() {
 
 fs::path BodyFiles::shape_path(const Entry& entry) const {
   return folder_ / "bodies" / (entry.name + ".obj");
+}
+
+fs::path BodyFiles::cache_path(const Entry& entry) const {
+  return folder_ / "bodies" / (entry.name + ".pc2");
 }
 
 void BodyFiles::add_pose(int number, double time, std::size_t k) {
@@ -127,6 +138,7 @@ void BodyFiles::add_pose(int number, double time, std::size_t k) {
 void BodyFiles::frame(int number, double time) {
   for (std::size_t k = 0; k < entries_.size(); ++k) {
     if (poses_ && entries_[k].moves) add_pose(number, time, k);
+    if (entries_[k].cache) entries_[k].cache->add(present_mesh(body(k), time).positions);
     if (frames_ == Frames::obj && has_frames(entries_[k]))
       written(frame_path(folder_, entries_[k].name, number), present_mesh(body(k), time)).keep();
   }
@@ -136,6 +148,11 @@ void BodyFiles::finish(double time, std::vector<AtomicFile>& files) {
   for (std::size_t k = 0; k < entries_.size(); ++k)
     if (entries_[k].has_shape && has_shape(body(k)))
       files.push_back(written(shape_path(entries_[k]), present_mesh(body(k), time)));
+  for (Entry& entry : entries_)
+    if (entry.cache) {
+      entry.cache->close();
+      files.push_back(entry.cache->take_file());
+    }
   if (!poses_) return;
   poses_->close();
   files.push_back(std::move(*poses_));
@@ -143,8 +160,10 @@ void BodyFiles::finish(double time, std::vector<AtomicFile>& files) {
 
 std::vector<fs::path> BodyFiles::results() const {
   std::vector<fs::path> paths;
-  for (const Entry& entry : entries_)
+  for (const Entry& entry : entries_) {
     if (entry.has_shape) paths.push_back(shape_path(entry));
+    if (entry.deforms && frames_ == Frames::pc2) paths.push_back(cache_path(entry));
+  }
   if (has_poses()) paths.push_back(folder_ / "bodies.csv");
   return paths;
 }

@@ -1,5 +1,6 @@
 // The bodies of a run in its output folder, so that a result can be looked at with what it lies on.
 //   bodies/NAME.obj        the last shape and place of each body but planes and level sets
+//   bodies/NAME.pc2        every frame of a body that deforms, where frames are PC2
 //   bodies.csv             frame, time [s], body, x y z [m] and the unit quaternion qw qx qy qz, a row for
 //                          each frame and body that is moved or reacts: x = R X + t, X a point of the body
 //                          as it was drawn
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "app/atomic_file.h"
+#include "app/pc2.h"
 #include "app/run_json.h"
 #include "app/simulation.h"
 
@@ -49,11 +51,13 @@ class BodyFiles {
     std::string name;                // of its files
     bool moves, deforms, has_shape;  // moves: also by what acts on it; has_shape: is no plane
     Eigen::Quaterniond turn_before =
-        Eigen::Quaterniond::Identity();  // q and -q are one turn: rows do not jump
+        Eigen::Quaterniond::Identity();   // q and -q are one turn: rows do not jump
+    std::optional<Pc2Writer> cache = {};  // of a body that deforms
   };
   const MovingBody& body(std::size_t k) const { return simulation_.constraints->bodies()[k]; }
   static bool has_frames(const Entry& entry) { return entry.has_shape && (entry.moves || entry.deforms); }
   std::filesystem::path shape_path(const Entry& entry) const;
+  std::filesystem::path cache_path(const Entry& entry) const;
   void add_pose(int number, double time, std::size_t k);
 
   std::filesystem::path folder_;

@@ -73,9 +73,11 @@ Output::Output(fs::path folder, const Scene& scene, const Simulation& simulation
   make_output_folder(folder_, last);
   if (frames_ == Frames::obj) make_output_folder(folder_ / "frames");
   if (bodies_.shapes() > 0) make_output_folder(folder_ / "bodies");
-  if (frames_ == Frames::pc2)
-    for (const Cloth& cloth : simulation.cloths)
-      caches_.emplace_back(cloth_path(cloth, ".pc2"), cloth.mesh.vertex_count());
+  if (frames_ != Frames::none) make_output_folder(folder_ / "fields");
+  for (const Cloth& cloth : simulation.cloths) {
+    if (frames_ == Frames::pc2) caches_.emplace_back(cloth_path(cloth, ".pc2"), cloth.mesh.vertex_count());
+    if (frames_ != Frames::none) fields_.emplace_back(folder_, cloth);
+  }
   bodies_.open();
   steps_.emplace(folder_ / "steps.csv");
 }
@@ -108,22 +110,25 @@ void Output::spare_inputs(const Scene& scene) const {
 
 void Output::frame(const State& state) {
   if (frames_ == Frames::none) return;
-  ++frame_count_;
-  bodies_.frame(frame_count_, state.time);
+  frame_times_.push_back(state.time);
+  bodies_.frame(frame_count(), state.time);
   for (std::size_t k = 0; k < simulation_.cloths.size(); ++k) {
     const Cloth& cloth = simulation_.cloths[k];
+    fields_[k].add(cloth, state, *simulation_.constraints);
     if (frames_ == Frames::pc2) {
       caches_[k].add(cloth.embedding.positions(state.x));
       continue;
     }
-    AtomicFile file(frame_path(folder_, cloth.name, frame_count_));
+    AtomicFile file(frame_path(folder_, cloth.name, frame_count()));
     file.write(format_obj(cloth.mesh, cloth.embedding.positions(state.x)));
     file.keep();
   }
 }
 
-void Output::finish(const State& state, const RunRecord& record) {
+void Output::finish(const State& state, RunRecord record) {
+  record.frame_times = frame_times_;
   for (Pc2Writer& cache : caches_) cache.close();
+  for (FrameFields& fields : fields_) fields.close();
   steps_->close();
   std::vector<AtomicFile> texts;
   for (const Cloth& cloth : simulation_.cloths) {
@@ -136,6 +141,7 @@ void Output::finish(const State& state, const RunRecord& record) {
   texts.back().close();
 
   for (Pc2Writer& cache : caches_) cache.keep();
+  for (FrameFields& fields : fields_) fields.keep();
   steps_->keep();
   for (AtomicFile& text : texts) text.keep();
   if (frames_ == Frames::obj && !record.interrupted && !record.failure) remove_later_frames();
@@ -154,7 +160,7 @@ void Output::remove_later_frames() const {
       if (!file.starts_with(start) ||
           std::from_chars(file.data() + start.size(), file.data() + file.size(), number).ec != std::errc())
         continue;
-      if (number > frame_count_ && entry.path() == frame_path(folder_, name, number) &&
+      if (number > frame_count() && entry.path() == frame_path(folder_, name, number) &&
           entry.is_regular_file())
         later.push_back(entry.path());
     }
@@ -162,10 +168,13 @@ void Output::remove_later_frames() const {
 }
 
 void Output::list_written() {
-  const std::string frames = counted(frame_count_, "frame");
+  const std::string frames = counted(frame_count(), "frame");
   for (const Cloth& cloth : simulation_.cloths) written_.push_back({cloth_path(cloth, ".obj"), ""});
   for (const Pc2Writer& cache : caches_) written_.push_back({cache.path(), frames});
   if (bodies_.shapes() > 0) written_.push_back({folder_ / "bodies", counted(bodies_.shapes(), "shape")});
+  if (!fields_.empty())
+    written_.push_back(
+        {folder_ / "fields", counted(FrameFields::arrays * static_cast<long>(fields_.size()), "array")});
   if (bodies_.has_poses()) written_.push_back({folder_ / "bodies.csv", frames});
   written_.push_back({folder_ / "steps.csv", ""});
   written_.push_back({folder_ / "run.json", ""});

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/body_files.h"
+#include "app/frame_fields.h"
 #include "app/pc2.h"
 #include "app/run_json.h"
 #include "app/simulation.h"
@@ -24,9 +25,9 @@ class Output {
   // a file of it.
   Output(std::filesystem::path folder, const Scene& scene, const Simulation& simulation, Frames frames);
 
-  void frame(const State& state);  // pc2: a sample; obj: a file, from number 1
+  void frame(const State& state);  // pc2: a sample; obj: a file, from number 1; and its fields
   void step(const StepRow& row) { steps_->add(row); }
-  void finish(const State& state, const RunRecord& record);
+  void finish(const State& state, RunRecord record);  // adds to it what was written
 
   // What finish() left, and how much of it: "25 frames", or nothing.
   struct Written {
@@ -39,14 +40,16 @@ class Output {
   std::filesystem::path cloth_path(const Cloth& cloth, const char* extension) const;
   void spare_inputs(const Scene& scene) const;
   void remove_later_frames() const;
+  int frame_count() const { return static_cast<int>(frame_times_.size()); }
   void list_written();
 
   std::filesystem::path folder_;
   const Simulation& simulation_;
   Frames frames_;
   BodyFiles bodies_;
-  int frame_count_ = 0;
+  std::vector<double> frame_times_;  // s
   std::vector<Pc2Writer> caches_;
+  std::vector<FrameFields> fields_;
   std::optional<StepsWriter> steps_;
   std::vector<Written> written_;
 };

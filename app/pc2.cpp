@@ -61,7 +61,8 @@ void Pc2Writer::close() {
   file_.close();
 }
 
-Pc2Reader::Pc2Reader(const std::filesystem::path& path) : path_(path), file_(path, std::ios::binary) {
+Pc2Reader::Pc2Reader(const std::filesystem::path& path, Damaged damaged)
+    : path_(path), file_(path, std::ios::binary) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error || !file_) fail("cannot be read" + (error ? ": " + error.message() : std::string()));
@@ -80,12 +81,15 @@ Pc2Reader::Pc2Reader(const std::filesystem::path& path) : path_(path), file_(pat
   if (!std::isfinite(spacing_) || !(spacing_ > 0)) fail("has a sample rate that is not a number above zero");
   const std::uintmax_t sample_size = 12 * static_cast<std::uintmax_t>(points_);
   const std::uintmax_t whole = (size - header_size) / sample_size;
-  if (whole < static_cast<std::uintmax_t>(samples_))
-    fail("is cut short: it holds " + std::to_string(whole) + " whole samples of the " +
-         std::to_string(samples_) + " that its header tells");
-  if (size != header_size + sample_size * static_cast<std::uintmax_t>(samples_))
-    fail("is longer than the " + std::to_string(samples_) + " samples of " + std::to_string(points_) +
-         " points that its header tells");
+  const auto told = static_cast<std::uintmax_t>(samples_);
+  if (whole < told)
+    damage_ = "is cut short: it holds " + std::to_string(whole) + " whole samples of the " +
+              std::to_string(samples_) + " that its header tells";
+  else if (size != header_size + sample_size * told)
+    damage_ = "is longer than the " + std::to_string(samples_) + " samples of " + std::to_string(points_) +
+              " points that its header tells";
+  if (!damage_.empty() && (damaged == Damaged::refused || whole == 0)) fail(damage_);
+  samples_ = static_cast<int>(std::min(whole, told));
   bytes_.resize(sample_size);
 }
 
@@ -100,6 +104,12 @@ void Pc2Reader::read(std::vector<Vec3>& positions) {
       fail("point " + std::to_string(i) + " of sample " + std::to_string(next_) + " is not a finite number");
   }
   ++next_;
+}
+
+void Pc2Reader::seek(int sample) {
+  file_.clear();
+  file_.seekg(static_cast<std::streamoff>(header_size + bytes_.size() * static_cast<std::size_t>(sample)));
+  next_ = sample;
 }
 
 void Pc2Reader::fail(const std::string& what) const { throw InputError(path_.string() + ": " + what); }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/atomic_file.h"
@@ -21,6 +22,7 @@ class Pc2Writer {
   void add(const std::vector<Vec3>& positions);  // a sample [m]
   void close();                                  // writes the number of samples into the header
   void keep() { file_.keep(); }
+  AtomicFile take_file() { return std::move(file_); }  // closed, to be kept with others
   const std::filesystem::path& path() const { return file_.path(); }
 
  private:
@@ -29,16 +31,19 @@ class Pc2Writer {
   std::vector<unsigned char> bytes_;
 };
 
-// Reads one sample after the other. Throws InputError when the file is no point cache, ends early or holds a
-// number that is not finite.
+// Reads one sample after the other, or any. Throws InputError when the file is no point cache, ends early or
+// holds a number that is not finite.
 class Pc2Reader {
  public:
-  explicit Pc2Reader(const std::filesystem::path& path);
+  enum class Damaged { refused, read };  // read: the whole samples that are there
+  explicit Pc2Reader(const std::filesystem::path& path, Damaged damaged = Damaged::refused);
 
   int points() const { return points_; }
   int samples() const { return samples_; }
-  double spacing() const { return spacing_; }  // frames from one sample to the next
-  void read(std::vector<Vec3>& positions);     // m; there must be a sample left
+  double spacing() const { return spacing_; }            // frames from one sample to the next
+  void read(std::vector<Vec3>& positions);               // m; there must be a sample left
+  void seek(int sample);                                 // the next one to be read
+  const std::string& damage() const { return damage_; }  // what is not as its header tells; empty: nothing
 
  private:
   [[noreturn]] void fail(const std::string& what) const;
@@ -48,6 +53,7 @@ class Pc2Reader {
   int points_ = 0, samples_ = 0, next_ = 0;
   double spacing_ = 1;
   std::vector<unsigned char> bytes_;
+  std::string damage_;
 };
 
 }  // namespace drape

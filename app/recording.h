@@ -6,12 +6,13 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "app/json.h"
 #include "app/words.h"
+#include "constraints/pose.h"
 #include "mesh/triangle_mesh.h"
 
 namespace drape {
@@ -66,7 +67,26 @@ class Recording {
   std::vector<Touch> touches(std::size_t shape, int frame) const;
 
  private:
-  struct Source;  // where a shape's frames are
+  // Where the places of a shape or a plane are.
+  struct Source {
+    std::filesystem::path cache;  // a PC2 file; or empty
+    bool files = false;           // frames/NAME_0001.obj
+    std::vector<Pose> poses;      // of each frame; empty: it is not moved as a whole
+    Pose last;                    // where it is drawn
+    Names fields;                 // that are there and whole
+  };
+
+  void read_run();
+  void read_steps();
+  void add_shape(const std::string& name, const std::filesystem::path& file, bool body);
+  void add_body(const Json& body, const std::map<std::string, std::vector<Pose>>& poses);
+  void find_shapes();
+  void find_frames(std::size_t shape);
+  void find_field(std::size_t shape, const char* name);
+  void settle_frames();
+  std::map<std::string, std::vector<Pose>> read_poses();
+  void miss(const std::filesystem::path& file, const std::string& what);
+  std::vector<float> field(std::size_t shape, const char* name, int frame) const;
 
   std::filesystem::path folder_;
   Names missing_;
@@ -74,6 +94,10 @@ class Recording {
   RecordedSteps steps_;
   std::vector<double> times_;
   std::vector<RecordedShape> shapes_;
+  std::vector<Source> sources_;        // of shapes_
+  std::vector<RecordedPlane> planes_;  // as they were drawn
+  std::vector<std::vector<Pose>> plane_poses_;
+  std::vector<int> frame_counts_;  // of shapes_; 0: it stands
 };
 
 }  // namespace drape

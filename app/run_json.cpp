@@ -1,5 +1,7 @@
 #include "app/run_json.h"
 
+#include <Eigen/Geometry>
+
 #include "app/json.h"
 #include "app/measure.h"
 
@@ -32,12 +34,27 @@ Json softs_json(const std::vector<SoftCounts>& softs) {
 
 Json vector_json(const Vec3& v) { return Json::List{v[0], v[1], v[2]}; }
 
+// The turn as a unit quaternion qw qx qy qz.
+Json place_json(const Pose& place) {
+  const Eigen::Quaterniond q = Eigen::Quaterniond(place.rotation).normalized();
+  return Json::Members{{"translation", vector_json(place.translation)},
+                       {"rotation", Json::List{q.w(), q.x(), q.y(), q.z()}}};
+}
+
 Json bodies_json(const std::vector<BodyRecord>& bodies) {
   Json::List list;
   for (const BodyRecord& b : bodies) {
-    Json::Members json = {{"name", b.name},       {"file", b.file.empty() ? Json() : Json(b.file)},
-                          {"shape", b.shape},     {"moves", b.moves},
-                          {"deforms", b.deforms}, {"reacts", b.reacting.has_value()}};
+    Json::Members json = {{"name", b.name},
+                          {"file", b.file.empty() ? Json() : Json(b.file)},
+                          {"shape", b.shape},
+                          {"moves", b.moves},
+                          {"deforms", b.deforms},
+                          {"reacts", b.reacting.has_value()},
+                          {"place", place_json(b.place)}};
+    if (b.plane) {
+      json.emplace_back("point", vector_json(b.plane->point));
+      json.emplace_back("normal", vector_json(b.plane->normal));
+    }
     if (b.reacting) {
       json.emplace_back("mass", b.reacting->mass);
       json.emplace_back("position", vector_json(b.reacting->position));
@@ -95,6 +112,7 @@ std::string run_json(const RunRecord& record) {
       {"steps_not_converged", record.steps_not_converged},
       {"inner_steps", Json::Members{{"mean", inner_steps.mean}, {"max", static_cast<long>(inner_steps.max)}}},
       {"inner_rejected", record.inner_rejected},
+      {"frame_times", record.frame_times},
       {"state_hash", record.state_hash},
       {"warnings", record.warnings},
   };

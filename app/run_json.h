@@ -26,6 +26,8 @@ struct BodyRecord {
   std::string name, file, shape;  // file: below the output folder, empty for a plane
   bool moves = false;             // is moved, as a motion says
   bool deforms = false;           // goes from frame to frame
+  Pose place;                     // at the end
+  std::optional<Plane> plane;     // as it was drawn
 
   struct Reacting {
     double mass;                        // kg
@@ -59,6 +61,7 @@ struct RunRecord {
   double max_penetration = 0;                                          // m, of the whole run
   bool settled = false, interrupted = false;
   std::string state_hash;
+  std::vector<double> frame_times;  // s, of the states that the frames are of
   std::optional<Failure> failure;
 
   std::string state() const { return failure ? "failed" : settled ? "settled" : "moving"; }

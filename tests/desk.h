@@ -10,11 +10,13 @@
 
 #include "tests/folder.h"
 
+#include "places.h"
+
 namespace drape::test {
 
 using JsonValue = nlohmann::json;
 
-inline const std::string scenes = DRAPE_SOURCE_DIR "/data/scenes/";
+inline const std::string scenes = source_dir() + "/data/scenes/";
 inline const std::string on_ball = scenes + "sheet-on-ball.toml";
 
 inline long count(const std::string& text, const std::string& what) {

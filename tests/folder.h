@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "places.h"
+
 namespace drape::test {
 
 inline std::string content(const std::filesystem::path& path) {
@@ -65,7 +67,7 @@ struct Folder {
 
   // `drape WORDS`; before: shell words in front of the program.
   Outcome drape(const std::string& words, const std::string& before = "") const {
-    return shell(before + " '" DRAPE_PROGRAM "' " + words);
+    return shell(before + " '" + program() + "' " + words);
   }
 };
 

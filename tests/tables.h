@@ -18,7 +18,7 @@ namespace drape::test {
 
 // Rows of numbers of data/reference/NAME: comments and the header are passed over.
 inline std::vector<std::vector<double>> reference_table(const std::string& name) {
-  std::ifstream file(std::string(DRAPE_SOURCE_DIR) + "/data/reference/" + name);
+  std::ifstream file(source_dir() + "/data/reference/" + name);
   if (!file) throw std::runtime_error("no data/reference/" + name);
   std::vector<std::vector<double>> rows;
   bool header = true;

@@ -5,6 +5,8 @@
 
 #include "tests/workshop.h"
 
+#include "places.h"
+
 using namespace drape;
 using namespace drape::test;
 using Catch::Contains;
@@ -133,7 +135,7 @@ TEST_CASE("a frame does not replace the mesh beside which the program stands", "
   shop.write("frames/s.toml",
              "[[cloth]]\nname = \"sheet\"\nmesh = \"sheet_0001.obj\"\nfabric = \"cotton-poplin\"\n");
   const std::string before = content(shop.path / "frames/sheet_0001.obj");
-  const Outcome run = shop.shell("cd frames && '" DRAPE_PROGRAM "' simulate s.toml --frames obj --out ..");
+  const Outcome run = shop.shell("cd frames && '" + program() + "' simulate s.toml --frames obj --out ..");
   CHECK(run.exit_code == 2);
   CHECK_THAT(run.err, Contains("would be overwritten"));
   CHECK(content(shop.path / "frames/sheet_0001.obj") == before);

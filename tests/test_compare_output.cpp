@@ -9,6 +9,8 @@
 #include "app/compare/tables.h"
 #include "tests/desk.h"
 
+#include "places.h"
+
 using namespace drape;
 using namespace drape::test;
 using Catch::Contains;
@@ -67,7 +69,7 @@ TEST_CASE("a long history is thinned out for the plot, not in compare.json", "[c
 
 TEST_CASE("the script plots several compare.json", "[compare]") {
   const std::string python = "/usr/bin/python3 ",
-                    script = python + "'" DRAPE_SOURCE_DIR "/tests/compare/plot_compare.py' ";
+                    script = python + "'" + source_dir() + "/tests/compare/plot_compare.py' ";
   if (std::system((python + "-c 'import matplotlib' 2>/dev/null").c_str()) != 0) {
     WARN("skipped: there is no matplotlib");
     return;

@@ -4,6 +4,8 @@
 #include "tests/integrators.h"
 #include "tests/same_bits.h"
 
+#include "places.h"
+
 using namespace drape;
 using namespace drape::test;
 
@@ -125,7 +127,7 @@ TEST_CASE("newton-kinsol solves its equation on crumpled cloth", "[integrators]"
   // A T-shirt on a body, where |F| alone has false minima in most steps.
   const auto names = integrator_names();
   if (std::find(names.begin(), names.end(), "newton-kinsol") == names.end()) return;
-  Simulation tee = make_simulation(read_scene(DRAPE_SOURCE_DIR "/data/scenes/tee.toml",
+  Simulation tee = make_simulation(read_scene(source_dir() + "/data/scenes/tee.toml",
                                               {parse_setting("simulation.integrator=newton-kinsol")}));
   for (int n = 0; n < 10; ++n) {
     const StepReport report = tee.integrator->advance(tee.state, 0.01);

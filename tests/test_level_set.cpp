@@ -12,6 +12,8 @@
 #include "solver/drape.h"
 #include "tests/shapes.h"
 
+#include "places.h"
+
 using namespace drape;
 using namespace drape::test;
 
@@ -48,7 +50,7 @@ std::vector<Body> bodies() {
   return {{"ball", sphere(4, 0.3), 0.01},
           {"box", turned(box_mesh({0.5, 0.4, 0.3})), 0.01},
           {"torus", torus(0.3, 0.1, 96, 48), 0.01},
-          {"body", read_obj(DRAPE_SOURCE_DIR "/data/meshes/body.obj"), 0.006}};
+          {"body", read_obj(source_dir() + "/data/meshes/body.obj"), 0.006}};
 }
 
 Vec3 in_band(const TriangleMesh& mesh, double band, Random& r) {

@@ -28,7 +28,7 @@ namespace {
 
 std::vector<fs::path> shared_meshes(const std::string& folder) {
   std::vector<fs::path> files;
-  const fs::path root = fs::path(DRAPE_SHARED_DIR) / "meshes";
+  const fs::path root = fs::path(shared_dir()) / "meshes";
   std::error_code missing;
   if (!fs::is_directory(root / folder, missing)) {
     WARN("no shared meshes: skipped");
@@ -142,7 +142,7 @@ TEST_CASE("real files survive a round trip", "[obj][shared]") {
 }
 
 TEST_CASE("files with quirks do what their manifest says", "[obj][shared]") {
-  const fs::path folder = fs::path(DRAPE_SHARED_DIR) / "meshes" / "quirks";
+  const fs::path folder = fs::path(shared_dir()) / "meshes" / "quirks";
   if (shared_meshes("quirks").empty()) return;
   struct Refused {
     std::string name, message;

@@ -249,7 +249,7 @@ TEST_CASE("the patterns of the gallery", "[pattern]") {
   for (const char* name : {"skirt", "poncho"}) {
     Names notes;
     const Pattern pattern = read_pattern(
-        std::filesystem::path(DRAPE_SOURCE_DIR) / "data/patterns" / (std::string(name) + ".svg"), notes);
+        std::filesystem::path(source_dir()) / "data/patterns" / (std::string(name) + ".svg"), notes);
     CHECK(notes.empty());
     const PatternMesh m = triangulate(pattern, {.edge = 0.03});
     CHECK(m.below == 0);

@@ -8,6 +8,8 @@
 #include "tests/integrators.h"
 #include "tests/same_bits.h"
 
+#include "places.h"
+
 using namespace drape;
 using namespace drape::test;
 using Catch::Matchers::Contains;
@@ -158,13 +160,13 @@ TEST_CASE("each integrator has its contact mode, and says which it cannot take",
 }
 
 TEST_CASE("a scene chooses the contact mode and a body its restitution", "[response]") {
-  const std::string path = DRAPE_SOURCE_DIR "/data/scenes/ls-ball-09.toml";
+  const std::string path = source_dir() + "/data/scenes/ls-ball-09.toml";
   const auto read = [&](const std::vector<std::string>& words) {
     std::vector<Setting> settings;
     for (const std::string& word : words) settings.push_back(parse_setting(word));
     return read_scene(path, settings);
   };
-  CHECK_FALSE(read_scene(DRAPE_SOURCE_DIR "/data/scenes/tee.toml", {}).simulation.step.contact);
+  CHECK_FALSE(read_scene(source_dir() + "/data/scenes/tee.toml", {}).simulation.step.contact);
   CHECK(read({"simulation.contact=restitution"}).simulation.step.contact == ContactMode::restitution);
   CHECK(read({"obstacle.ball.restitution=0.4"}).obstacles[0].obstacle.restitution == 0.4);
   CHECK_THROWS_WITH(read({"obstacle.ball.restitution=1.4"}), Contains("from 0 to 1"));

@@ -203,7 +203,6 @@ TEST_CASE("a point that is not finite has no distance", "[shapes][mesh]") {
   CHECK(std::isnan(surface.closest({std::nan(""), 0, 0}).distance));
 }
 
-#ifdef DRAPE_SHARED_DIR
 namespace {
 
 // The whole number that follows "key": in a record of the manifest.
@@ -215,7 +214,7 @@ int number_after(const std::string& record, const std::string& key) {
 }  // namespace
 
 TEST_CASE("bodies and obstacles are closed where their description says so", "[shapes][mesh][files]") {
-  const std::filesystem::path folder = std::filesystem::path(DRAPE_SHARED_DIR) / "meshes";
+  const std::filesystem::path folder = std::filesystem::path(shared_dir()) / "meshes";
   const std::string all = content(folder / "manifest.json"), mark = "\"file\": \"";
   if (all.empty()) {
     WARN("no shared meshes here");
@@ -241,4 +240,3 @@ TEST_CASE("bodies and obstacles are closed where their description says so", "[s
   }
   CHECK(looked > 10);
 }
-#endif

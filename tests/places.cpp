@@ -1,0 +1,10 @@
+#include "places.h"
+
+namespace drape::test {
+
+// Defined for this file alone: what is compiled elsewhere is the same in every folder.
+std::string source_dir() { return DRAPE_SOURCE_DIR; }
+std::string shared_dir() { return DRAPE_SHARED_DIR; }
+std::string program() { return DRAPE_PROGRAM; }
+
+}  // namespace drape::test

@@ -1,0 +1,205 @@
+// An output folder read back: what was written is what is read, and what is damaged is told.
+#include <catch2/catch.hpp>
+
+#include "app/body_files.h"
+#include "app/npy.h"
+#include "app/pc2.h"
+#include "app/recording.h"
+#include "app/run.h"
+#include "folder.h"
+#include "mesh/obj.h"
+
+using namespace drape;
+using namespace drape::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A sheet of four by four vertices falls on a ball that turns and a box that moves, over a floor.
+constexpr const char* scene = R"(
+[simulation]
+duration = "0.25 s"
+frame_rate = "20 Hz"
+[[cloth]]
+mesh = "sheet.obj"
+[[obstacle]]
+name = "ball"
+shape = "sphere"
+radius = "0.2 m"
+centre = [0, -0.21, 0]
+friction = 0.5
+motion = { spin = [0, 2, 0], velocity = [0.1, 0, 0] }
+[[obstacle]]
+name = "block"
+shape = "box"
+size = [0.1, 0.1, 0.1]
+centre = [1, 0, 0]
+motion = { velocity = [0, 1, 0] }
+[[obstacle]]
+shape = "plane"
+point = [0, -1, 0]
+)";
+
+void write_sheet(const Folder& folder) {
+  std::string text = "# a sheet\n";
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j)
+      text += "v " + std::to_string(0.1 * i - 0.15) + " 0 " + std::to_string(0.1 * j - 0.15) + "\n";
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int v = 4 * i + j + 1;
+      text += "f " + std::to_string(v) + " " + std::to_string(v + 1) + " " + std::to_string(v + 5) + " " +
+              std::to_string(v + 4) + "\n";
+    }
+  folder.write("sheet.obj", text);
+}
+
+// Runs it into folder/out and folder/frames of the kind.
+void run_into(const Folder& folder, const std::string& out, Frames frames) {
+  write_sheet(folder);
+  folder.write("scene.toml", scene);
+  REQUIRE(run(read_scene(folder.path / "scene.toml", {}), {folder.path / out, frames, true}) == 0);
+}
+
+double largest_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  REQUIRE(a.size() == b.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).norm());
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("frames as a point cache and as OBJ files are the same motion", "[recording]") {
+  const Folder folder;
+  run_into(folder, "cache", Frames::pc2);
+  run_into(folder, "files", Frames::obj);
+  const Recording cache(folder.path / "cache"), files(folder.path / "files");
+  CHECK(cache.missing().empty());
+  CHECK(files.missing().empty());
+  REQUIRE(cache.frames() == 6);
+  REQUIRE(files.frames() == 6);
+  REQUIRE(cache.shapes().size() == 3);
+  CHECK(cache.shapes()[0].name == "sheet");
+  CHECK(cache.shapes()[1].body);
+  CHECK(cache.frame_rate() == Approx(20));
+  for (std::size_t shape = 0; shape < 3; ++shape)
+    for (int frame = 0; frame < 6; ++frame) {
+      CHECK(cache.time(frame) == Approx(0.05 * frame).margin(1e-9));
+      CHECK(largest_difference(cache.positions(shape, frame), files.positions(shape, frame)) < 1e-6);
+    }
+  // The block rises by 1 m/s: its poses are put to use.
+  CHECK((cache.positions(2, 5)[0] - cache.positions(2, 0)[0] - Vec3(0, 0.25, 0)).norm() < 1e-7);
+  REQUIRE(cache.planes(0).size() == 1);
+  CHECK((cache.planes(0)[0].point - Vec3(0, -1, 0)).norm() == 0);
+  CHECK(cache.steps().rows.size() == 25);
+  CHECK(cache.steps().columns.front() == "step");
+  CHECK(cache.steps().rows.back()[1] == Approx(0.25));
+}
+
+TEST_CASE("velocities, strains and contacts are those of the frame", "[recording]") {
+  const Folder folder;
+  run_into(folder, "out", Frames::pc2);
+  const Recording recording(folder.path / "out");
+  // Falling free at first: the velocity is g t.
+  const std::vector<Vec3> first = recording.velocities(0, 0);
+  REQUIRE(first.size() == 16);
+  for (const Vec3& v : first) CHECK(v.norm() == 0);
+  for (const Touch touch : recording.touches(0, 0)) CHECK(touch == Touch::free);
+  bool touched = false;
+  for (int frame = 0; frame < recording.frames(); ++frame) {
+    for (const Touch touch : recording.touches(0, frame)) touched = touched || touch != Touch::free;
+    // l / L - 1 of the edges of quads, whose rest lengths are 10 cm; diagonals of quads are edges, too.
+    const std::vector<Vec3> x = recording.positions(0, frame);
+    const std::vector<double> strain = recording.strains(0, frame);
+    for (std::size_t i = 0; i < 16; ++i) {
+      double largest = -1;
+      for (std::size_t j : {i - 1, i + 1, i - 4, i + 4})
+        if (j < 16 && (i / 4 == j / 4 || i % 4 == j % 4))
+          largest = std::max(largest, (x[i] - x[j]).norm() / 0.1 - 1);
+      CHECK(strain[i] >= largest - 1e-5);
+      CHECK(strain[i] < 0.1);
+    }
+  }
+  CHECK(touched);
+  CHECK(recording.velocities(1, 0).empty());  // of a body none is recorded
+}
+
+TEST_CASE("NumPy reads the arrays", "[recording]") {
+  const Folder folder;
+  if (folder.shell("python3 -c 'import numpy'").exit_code != 0) {
+    WARN("no NumPy here");
+    return;
+  }
+  NpyWriter writer(folder.path / "a.npy", NpyWriter::Kind::float32, {2, 3});
+  writer.add(std::vector<float>{1, 2, 3, 4, 5, 6});
+  writer.add(std::vector<float>{-0.5f, 0, 1e-30f, 1e30f, 7, 8});
+  writer.close();
+  writer.keep();
+  const Outcome said = folder.shell(
+      "python3 -c \"import numpy as np; a = np.load('a.npy', mmap_mode='r'); print(a.shape, a.dtype, "
+      "float(a[1, 0, 0]), float(a[0, 1, 2]), float(a[1, 0, 2]) == float(np.float32(1e-30)))\"");
+  CHECK(said.out == "(2, 2, 3) float32 -0.5 6.0 True\n");
+  NpyReader reader(folder.path / "a.npy");
+  CHECK(reader.frame(1) == std::vector<float>{-0.5f, 0, 1e-30f, 1e30f, 7, 8});
+}
+
+TEST_CASE("what is missing or damaged is told, and the rest is there", "[recording]") {
+  const Folder folder;
+  run_into(folder, "out", Frames::pc2);
+  const fs::path out = folder.path / "out";
+  const auto told = [&](const std::string& words) {
+    const Recording recording(out);
+    INFO(words);
+    REQUIRE(recording.missing().size() == 1);
+    INFO(recording.missing().front());
+    CHECK(recording.missing().front().find(words) != std::string::npos);
+    CHECK(!recording.shapes().empty());
+    CHECK(recording.positions(0, 0).size() == 16);
+    CHECK_THROWS_AS(recording.require_whole(), InputError);
+    return recording.frames();
+  };
+  SECTION("a point cache cut short") {
+    fs::resize_file(out / "sheet.pc2", 32 + 3 * 16 * 12 + 5);
+    CHECK(told("sheet.pc2: is cut short: it holds 3 whole samples of the 6") == 3);
+  }
+  SECTION("no point cache") {
+    fs::remove(out / "sheet.pc2");
+    CHECK(told("sheet.pc2: is missing") == 1);
+  }
+  SECTION("steps cut short") {
+    fs::resize_file(out / "steps.csv", fs::file_size(out / "steps.csv") - 40);
+    CHECK(told("steps.csv:26: has") == 6);
+  }
+  SECTION("run.json cut short") {
+    fs::resize_file(out / "run.json", 200);
+    CHECK(told("run.json:") == 6);
+  }
+  SECTION("no run.json") {
+    fs::remove(out / "run.json");
+    CHECK(told("run.json: is missing") == 6);
+  }
+  SECTION("a field cut short") {
+    fs::resize_file(out / "fields" / "sheet.strain.npy", 200);
+    CHECK(told("sheet.strain.npy: has not the size") == 6);
+    CHECK(Recording(out).strains(0, 2).empty());
+    CHECK(Recording(out).velocities(0, 2).size() == 16);
+  }
+  SECTION("a body's shape") {
+    fs::remove(out / "bodies" / "block.obj");
+    CHECK(told("block.obj") == 6);
+    CHECK(Recording(out).shapes().size() == 2);
+  }
+}
+
+TEST_CASE("a folder with nothing to show is refused", "[recording]") {
+  const Folder folder;
+  CHECK_THROWS_AS(Recording(folder.path), InputError);
+  CHECK_THROWS_AS(Recording(folder.path / "none"), InputError);
+  run_into(folder, "out", Frames::none);
+  const Recording last(folder.path / "out");  // without frames: the last state is the only one
+  CHECK(last.missing().empty());
+  CHECK(last.frames() == 1);
+  CHECK(last.time(0) == Approx(0.25));
+}
