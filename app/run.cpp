@@ -9,6 +9,7 @@
 #include "app/interrupt.h"
 #include "app/measure.h"
 #include "app/summary.h"
+#include "mesh/obj.h"
 #include "mesh/threads.h"
 
 namespace drape {
@@ -58,10 +59,17 @@ double last_motion(const Scene& scene, const Simulation& simulation) {
   return last;
 }
 
+double step_of(const SimulationOptions& wanted, const std::optional<double>& time_step) {
+  const double h = time_step.value_or(wanted.time_step);
+  if (!(h > 0) || !std::isfinite(h))
+    throw InputError("time step = " + rounded(h, 6) + " s: a time step is greater than zero");
+  return h;
+}
+
 double end_of(const SimulationOptions& wanted, double start, const std::optional<double>& duration) {
   if (!duration) return std::max(start, wanted.duration);
-  if (!(*duration > 0) || !std::isfinite(*duration))
-    throw InputError("duration = " + rounded(*duration, 6) + " s: a duration is greater than zero");
+  if (!(*duration >= 0) || !std::isfinite(*duration))
+    throw InputError("duration = " + rounded(*duration, 6) + " s: a duration is not negative");
   return start + *duration;
 }
 
@@ -70,7 +78,7 @@ double end_of(const SimulationOptions& wanted, double start, const std::optional
 Run::Run(Simulation& simulation, const RunOptions& options)
     : wanted_(simulation.scene->simulation),
       simulation_(simulation),
-      h_(options.time_step.value_or(wanted_.time_step)),
+      h_(step_of(wanted_, options.time_step)),
       start_time_(simulation.state.time),
       end_time_(end_of(wanted_, start_time_, options.duration)),
       progress_(end_time_, options.quiet),

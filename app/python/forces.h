@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "solver/force.h"
@@ -12,6 +13,9 @@ namespace drape::python {
 struct Forces {
   std::vector<std::unique_ptr<Force>> all;  // empty once a system has them
   bool given = false;
+
+  explicit Forces(std::vector<std::unique_ptr<Force>> forces) : all(std::move(forces)) {}
+  Forces(Forces&&) = default;
 
   std::vector<std::string> names() const {
     std::vector<std::string> names;

@@ -2,6 +2,9 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cmath>
+#include <set>
+
 #include "app/python/arrays.h"
 #include "app/words.h"
 #include "mesh/examine.h"
@@ -94,18 +97,59 @@ Names defects_of(const TriangleMesh& mesh) {
   return lines;
 }
 
+void at_least(int least, int count, const char* name) {
+  if (count < least)
+    throw py::value_error(std::string(name) + ": expected " + std::to_string(least) + " or more, but got " +
+                          std::to_string(count));
+}
+
+void check_length(double length, const char* name) {
+  if (!(length > 0) || !std::isfinite(length))
+    throw py::value_error(std::string(name) + ": a length is greater than zero, but got " + rounded(length, 6) + " m");
+}
+
 void add_generated(py::module_& m) {
-  m.def("grid", &grid, py::arg("nx"), py::arg("nz"), py::arg("width"), py::arg("depth"),
-        "nx x nz vertices over width x depth [m] in the plane y = 0, centred on the origin, x fastest, normals up;\n"
-        "the diagonals of the cells alternate.");
-  m.def("equilateral_sheet", &equilateral_sheet, py::arg("nx"), py::arg("nz"), py::arg("edge"),
-        "Rows of equilateral triangles in the plane y = 0; edge length [m].");
-  m.def("disc", &disc, py::arg("rings"), py::arg("radius"),
-        "Rings of vertices around a centre in the plane y = 0; radius [m].");
-  m.def("sphere", &sphere, py::arg("subdivisions"), py::arg("radius"),
-        "An icosahedron, subdivided and projected to the radius [m]; closed, normals out.");
-  m.def("tube", &tube, py::arg("around"), py::arg("along"), py::arg("radius"), py::arg("height"),
-        "An open cylinder along y, centred; radius and height [m].");
+  using namespace py::literals;
+  m.def(
+      "grid",
+      [](int nx, int nz, double width, double depth) {
+        at_least(2, nx, "nx"), at_least(2, nz, "nz");
+        check_length(width, "width"), check_length(depth, "depth");
+        return grid(nx, nz, width, depth);
+      },
+      "nx"_a, "nz"_a, "width"_a, "depth"_a,
+      "nx x nz vertices over width x depth [m] in the plane y = 0, centred on the origin, x fastest, normals up;\n"
+      "the diagonals of the cells alternate.");
+  m.def(
+      "equilateral_sheet",
+      [](int nx, int nz, double edge) {
+        at_least(2, nx, "nx"), at_least(2, nz, "nz"), check_length(edge, "edge");
+        return equilateral_sheet(nx, nz, edge);
+      },
+      "nx"_a, "nz"_a, "edge"_a, "Rows of equilateral triangles in the plane y = 0; edge length [m].");
+  m.def(
+      "disc",
+      [](int rings, double radius) {
+        at_least(1, rings, "rings"), check_length(radius, "radius");
+        return disc(rings, radius);
+      },
+      "rings"_a, "radius"_a, "Rings of vertices around a centre in the plane y = 0; radius [m].");
+  m.def(
+      "sphere",
+      [](int subdivisions, double radius) {
+        at_least(0, subdivisions, "subdivisions"), check_length(radius, "radius");
+        if (subdivisions > 9) throw py::value_error("subdivisions: expected 9 or fewer: each makes four triangles of one");
+        return sphere(subdivisions, radius);
+      },
+      "subdivisions"_a, "radius"_a, "An icosahedron, subdivided and projected to the radius [m]; closed, normals out.");
+  m.def(
+      "tube",
+      [](int around, int along, double radius, double height) {
+        at_least(3, around, "around"), at_least(2, along, "along");
+        check_length(radius, "radius"), check_length(height, "height");
+        return tube(around, along, radius, height);
+      },
+      "around"_a, "along"_a, "radius"_a, "height"_a, "An open cylinder along y, centred; radius and height [m].");
 }
 
 }  // namespace

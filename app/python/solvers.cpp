@@ -25,12 +25,12 @@ Array by_particle(const LinearSystem& system, const VecX& rows) {
 
 SolveReport solve(LinearSolver& solver, const LinearSystem& system, std::optional<double> tolerance,
                   int max_iterations) {
+  if (tolerance && !(*tolerance > 0 && *tolerance < 1))
+    throw py::value_error("tolerance: expected a part of the residual, greater than 0 and less than 1");
   const InUse in_use({&solver});
   const py::gil_scoped_release release;
   SolveReport report;
   LinearOptions options = system.options;
-  if (tolerance && !(*tolerance > 0 && *tolerance < 1))
-    throw py::value_error("tolerance: expected a part of the residual, greater than 0 and less than 1");
   if (tolerance) options.tolerance = *tolerance;
   options.max_iterations = max_iterations;
   options.history = &report.history;
