@@ -72,10 +72,11 @@ Recording::Recording(fs::path folder) : folder_(std::move(folder)) {
   read_run();
   find_shapes();
   if (shapes_.empty())
-    throw InputError(folder_.string() +
-                     ": there is nothing to show; expected the output of a run, with run.json and NAME.obj of "
-                     "each cloth" +
-                     (missing_.empty() ? "" : " (" + missing_.front() + ")"));
+    throw InputError(
+        folder_.string() +
+        ": there is nothing to show; expected the output of a run, with run.json and NAME.obj of "
+        "each cloth" +
+        (missing_.empty() ? "" : " (" + missing_.front() + ")"));
   settle_frames();
   read_steps();
 }
@@ -90,8 +91,9 @@ void Recording::read_run() {
     run_ = parse_json(read_text(file, "JSON"), file.string());
   } catch (const InputError& error) {
     missing_.push_back(fs::exists(file) ? error.what()
-                                        : file.string() + ": is missing; has the run not finished, or is this "
-                                                          "not the output of a run?");
+                                        : file.string() +
+                                              ": is missing; has the run not finished, or is this "
+                                              "not the output of a run?");
   }
   for (const Json& time : run_["frame_times"].items()) times_.push_back(time.number(0));
 }
@@ -172,7 +174,8 @@ void Recording::add_body(const Json& body, const std::map<std::string, std::vect
   const std::string name = file.empty() ? body["name"].text() : fs::path(file).stem().string();
   const auto found = poses.find(name);
   if (!body["normal"].is_null()) {
-    planes_.push_back({name, vector_of(body["point"], Vec3::Zero()), vector_of(body["normal"], Vec3::UnitY())});
+    planes_.push_back(
+        {name, vector_of(body["point"], Vec3::Zero()), vector_of(body["normal"], Vec3::UnitY())});
     plane_poses_.push_back(found == poses.end() ? std::vector<Pose>() : found->second);
   }
   if (file.empty()) return;
@@ -201,8 +204,8 @@ void Recording::find_frames(std::size_t k) {
       const Pc2Reader reader(cache, Pc2Reader::Damaged::read);
       if (!reader.damage().empty()) miss(cache, reader.damage());
       if (reader.points() != shapes_[k].mesh.vertex_count())
-        throw InputError(cache.string() + ": has " + std::to_string(reader.points()) + " points, but " + name +
-                         ".obj has " + std::to_string(shapes_[k].mesh.vertex_count()) + " vertices");
+        throw InputError(cache.string() + ": has " + std::to_string(reader.points()) + " points, but " +
+                         name + ".obj has " + std::to_string(shapes_[k].mesh.vertex_count()) + " vertices");
       sources_[k].cache = cache;
       frame_counts_[k] = reader.samples();
     } catch (const InputError& error) {
@@ -242,8 +245,8 @@ void Recording::settle_frames() {
     if (count > 0) frames = frames == 0 ? count : std::min(frames, count);
   const auto told = static_cast<int>(times_.size());
   if (!run_.is_null() && frames > 0 && frames < told && missing_.empty())
-    miss(folder_, "has " + std::to_string(frames) + " of the " + std::to_string(told) +
-                      " frames that run.json tells");
+    miss(folder_,
+         "has " + std::to_string(frames) + " of the " + std::to_string(told) + " frames that run.json tells");
   if (frames == 0) {
     times_ = {run_["simulated_seconds"].number(0)};
     for (RecordedShape& shape : shapes_) shape.moves = false;

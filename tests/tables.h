@@ -13,6 +13,7 @@
 #include "mesh/threads.h"
 #include "solver/drape.h"
 #include "solver/tension_spring.h"
+#include "tests/places.h"
 
 namespace drape::test {
 

@@ -10,6 +10,7 @@
 #include "mesh/examine.h"
 #include "mesh/generate.h"
 #include "mesh/obj.h"
+#include "tests/places.h"
 
 using namespace drape;
 namespace fs = std::filesystem;

@@ -7,6 +7,7 @@
 #include "mesh/polygon.h"
 #include "tests/folder.h"
 #include "tests/obj.h"
+#include "tests/places.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wall"

@@ -7,6 +7,7 @@
 #include "tests/mistakes.h"
 #include "tests/obj.h"
 #include "tests/patterns.h"
+#include "tests/places.h"
 
 using namespace drape;
 using namespace drape::test;

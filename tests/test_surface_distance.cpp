@@ -6,6 +6,7 @@
 
 #include "mesh/obj.h"
 #include "tests/folder.h"
+#include "tests/places.h"
 #include "tests/shapes.h"
 
 using namespace drape;
