@@ -25,7 +25,7 @@ class Build(build_ext):
             folder = self.build_temp
             options = [f"-DPython_EXECUTABLE={sys.executable}", "-DDRAPE_PYTHON=ON", "-DDRAPE_TESTS=OFF", "-DCMAKE_BUILD_TYPE=Release"]
             subprocess.check_call(["cmake", "-S", SOURCE, "-B", folder, *options, *shlex.split(os.environ.get("CMAKE_ARGS", ""))])
-            subprocess.check_call(["cmake", "--build", folder, "--target", "drape_python", "--parallel"])
+            subprocess.check_call(["cmake", "--build", folder, "--target", "drape_python", "--parallel", str(os.cpu_count())])
         subprocess.check_call(["cmake", "--install", folder, "--component", "python", "--prefix", self.build_lib])
 
 

@@ -1,5 +1,6 @@
 """A step by hand: the same bits as C++, laws of mechanics, linear systems to take out."""
 
+import multiprocessing
 import os
 import subprocess
 import threading
@@ -196,17 +197,36 @@ class Threads(unittest.TestCase):
         self.assertIn("is under way", refused[0])
         self.assertTrue(np.isfinite(state.x).all())
 
+    def test_a_forked_child_steps(self):
+        def child(send):
+            drape.set_threads(3)  # other threads than its parent has
+            send.send(self.three_steps())
+
+        before, here = drape.threads(), self.three_steps()
+        drape.set_threads(2)
+        self.three_steps()
+        receive, send = multiprocessing.Pipe(duplex=False)
+        process = multiprocessing.get_context("fork").Process(target=child, args=(send,))
+        process.start()
+        self.assertTrue(receive.poll(60), "the child does not answer")
+        self.assertEqual(receive.recv(), here)
+        process.join()
+        drape.set_threads(before)
+
+    def three_steps(self):
+        system, constraints, state = falling_sheet(31)
+        stepper = drape.ImplicitEuler(system, constraints, "mpcg+block-ic0")
+        for _ in range(3):
+            stepper.advance(state, 0.01)
+        return state.hash
+
     def test_the_number_of_threads_changes_no_bit(self):
         before = drape.threads()
         hashes = set()
         for count in (1, 2, 3):
             drape.set_threads(count)
             self.assertEqual(drape.threads(), count)
-            system, constraints, state = falling_sheet(31)
-            stepper = drape.ImplicitEuler(system, constraints, "mpcg+block-ic0")
-            for _ in range(3):
-                stepper.advance(state, 0.01)
-            hashes.add(state.hash)
+            hashes.add(self.three_steps())
         drape.set_threads(before)
         self.assertEqual(len(hashes), 1)
         with self.assertRaisesRegex(ValueError, "0 is not a number of threads"):
