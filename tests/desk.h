@@ -10,7 +10,7 @@
 
 #include "tests/folder.h"
 
-#include "places.h"
+#include "tests/places.h"
 
 namespace drape::test {
 

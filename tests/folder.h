@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "places.h"
+#include "tests/places.h"
 
 namespace drape::test {
 

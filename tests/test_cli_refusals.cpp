@@ -5,7 +5,7 @@
 
 #include "tests/workshop.h"
 
-#include "places.h"
+#include "tests/places.h"
 
 using namespace drape;
 using namespace drape::test;

@@ -9,7 +9,7 @@
 #include "app/compare/tables.h"
 #include "tests/desk.h"
 
-#include "places.h"
+#include "tests/places.h"
 
 using namespace drape;
 using namespace drape::test;

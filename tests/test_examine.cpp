@@ -240,7 +240,7 @@ TEST_CASE("real files are counted as their manifest counts them", "[examine][sha
       {"quirks/fan3.obj", 3, 1, 1, 0, 1, 0, -1},
       {"quirks/cornell_box.obj", 36, 18, 18, 0, 0, 0, -1},
       {"quirks/platonic_shelf.obj", 80, 5, 0, 0, 0, 0, -1}};
-  const fs::path root = fs::path(shared_dir()) / "meshes";
+  const fs::path root = fs::path(test::shared_dir()) / "meshes";
   std::error_code missing;
   if (!fs::is_directory(root, missing)) {
     WARN("no shared meshes: skipped");

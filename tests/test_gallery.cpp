@@ -14,14 +14,14 @@
 #include "mesh/topology.h"
 #include "tests/folder.h"
 
-#include "places.h"
+#include "tests/places.h"
 
 using namespace drape;
 namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path scenes = source_dir() + "/data/scenes";
+const fs::path scenes = test::source_dir() + "/data/scenes";
 constexpr int points_on_edge = 8;
 constexpr double round_off = 1e-9;  // m
 
@@ -127,7 +127,7 @@ void check_part(const Part& part, const Scene& scene) {
 
 // Whether all that the scene reads is there. The motion of a body is not kept but made: here, if it must be.
 bool complete(Scene& scene, const test::Folder& folder) {
-  const std::string script = source_dir() + "/data/meshes/make_motion.py";
+  const std::string script = test::source_dir() + "/data/meshes/make_motion.py";
   for (ObstacleEntry& obstacle : scene.obstacles)
     for (fs::path& file : obstacle.frames.files) {
       if (fs::exists(file)) continue;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "places.h"
+#include "tests/places.h"
 
 namespace fs = std::filesystem;
 
@@ -23,14 +23,14 @@ std::size_t level(const std::string& room) {
 // Every (file, included path) of a room.
 std::vector<std::pair<std::string, std::string>> includes(const std::string& room) {
   std::vector<std::pair<std::string, std::string>> all;
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(source_dir()) / room)) {
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(drape::test::source_dir()) / room)) {
     if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
     std::ifstream file(entry.path());
     for (std::string line; std::getline(file, line);) {
       if (line.rfind("#include", 0) != 0) continue;
       const auto first = line.find_first_of("\"<");
       const auto last = line.find_first_of("\">", first + 1);
-      all.emplace_back(fs::relative(entry.path(), source_dir()).string(),
+      all.emplace_back(fs::relative(entry.path(), drape::test::source_dir()).string(),
                        line.substr(first + 1, last - first - 1));
     }
   }
@@ -40,7 +40,7 @@ std::vector<std::pair<std::string, std::string>> includes(const std::string& roo
 // The headers that a room's CMakeLists.txt installs, as "room/name.h".
 std::set<std::string> installed(const std::string& room) {
   std::ostringstream text;
-  text << std::ifstream(fs::path(source_dir()) / room / "CMakeLists.txt").rdbuf();
+  text << std::ifstream(fs::path(drape::test::source_dir()) / room / "CMakeLists.txt").rdbuf();
   const std::string all = text.str();
   std::set<std::string> headers;
   for (std::size_t at = all.find("install(FILES"); at != all.npos; at = all.find("install(FILES", at + 1)) {

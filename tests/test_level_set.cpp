@@ -12,7 +12,7 @@
 #include "solver/drape.h"
 #include "tests/shapes.h"
 
-#include "places.h"
+#include "tests/places.h"
 
 using namespace drape;
 using namespace drape::test;

@@ -8,7 +8,7 @@
 #include "tests/integrators.h"
 #include "tests/same_bits.h"
 
-#include "places.h"
+#include "tests/places.h"
 
 using namespace drape;
 using namespace drape::test;
