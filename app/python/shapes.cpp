@@ -84,7 +84,7 @@ void add_shapes(py::module_& m) {
       .def_readonly("normal", &Plane::normal, "(3,)")
       .def("__repr__",
            [](const Plane& s) { return "Plane(point=" + text(s.point) + " m, normal=" + text(s.normal) + ")"; });
-  py::class_<Sphere>(m, "Sphere")
+  py::class_<Sphere>(m, "Sphere", "A ball.")
       .def(py::init([](const Vec3& centre, double radius) { return sound(Sphere{centre, radius}); }),
            "centre"_a = origin, "radius"_a = 1.0, "m")
       .def_readonly("centre", &Sphere::centre, "(3,) [m]")
@@ -104,7 +104,7 @@ void add_shapes(py::module_& m) {
       .def("__repr__", [](const Bowl& s) {
         return "Bowl(centre=" + text(s.centre) + " m, radius=" + rounded(s.radius, 6) + " m)";
       });
-  py::class_<Box>(m, "Box")
+  py::class_<Box>(m, "Box", "A box with sharp edges, turned.")
       .def(py::init([](const Vec3& centre, const Vec3& size, const Mat3& rotation) {
              return sound(Box{centre, size, rotation});
            }),

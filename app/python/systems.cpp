@@ -53,7 +53,7 @@ auto with_state(F f) {
 }  // namespace
 
 void add_systems(py::module_& m) {
-  py::class_<Gravity>(m, "Gravity").def_readonly("g", &Gravity::g, "(3,) [m/s^2]");
+  py::class_<Gravity>(m, "Gravity", "An acceleration that acts on all particles.").def_readonly("g", &Gravity::g, "(3,) [m/s^2]");
   m.def("gravity", &gravity, py::arg("g"), "The acceleration (3,) [m/s^2], for System.add.");
 
   py::class_<System, std::shared_ptr<System>>(m, "System", "Masses and forces: all that pushes.")

@@ -1,6 +1,7 @@
 """Runs: callbacks, what ends them, and what is in the folder then."""
 
 import csv
+import math
 import signal
 import subprocess
 import sys
@@ -31,7 +32,7 @@ class Runs(Workshop):
         self.assertFalse([n for n in names if "~" in n or n.endswith((".part", ".tmp"))], names)
         record = self.record(out)
         size = (self.folder / out / "sheet.pc2").stat().st_size
-        frames = len(record["frame_times"]) if "frame_times" in record else (size - 32) // (169 * 12)
+        frames = len(record["frame_times"])
         self.assertEqual(size, 32 + frames * 169 * 12)
         self.assertEqual(len(self.rows(out)), record["steps"])
         drape.read_obj(self.folder / out / "sheet.obj")
@@ -47,7 +48,7 @@ class Callbacks(Runs):
         self.assertEqual([int(r["step"]) for r in rows], list(range(1, 21)))
         for step, row in zip(told, rows):
             for key in ("time", "kinetic_energy", "elastic_energy", "max_speed", "residual"):
-                self.assertEqual(getattr(step, key), float(row[key]), key)
+                self.assertTrue(math.isclose(getattr(step, key), float(row[key]), rel_tol=1e-3), key)  # as rounded there
             self.assertEqual(step.linear_iterations, int(row["linear_iterations"]))
         self.assertIsInstance(told[0], drape.StepReport)
         self.assertFalse(record.get("interrupted", False))
@@ -106,7 +107,7 @@ class Callbacks(Runs):
         with self.assertRaises(drape.StepError) as caught:
             simulation.run(out=self.folder / "o", callback=spoil)
         self.assertIn("step 5 (from 0.04 s) failed: ", str(caught.exception))
-        self.assertIn("vertex 7 of sheet", str(caught.exception))
+        self.assertIn(" of sheet (at ", str(caught.exception))
         self.assertEqual(self.complete("o")["steps"], 4)
         self.assertEqual(self.record("o")["state"], "failed")
 

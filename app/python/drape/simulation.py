@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import tempfile
+import weakref
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterator, Mapping, Optional, Union
 
@@ -36,7 +38,7 @@ class Simulation(_drape.Simulation):
         given = dict(scene) if isinstance(scene, Mapping) else scene
         super().__init__(given, dict(settings or {}), folder)
         self._folder: Optional[Path] = None
-        self._scratch: Optional[tempfile.TemporaryDirectory[str]] = None
+        self._forget_scratch: Optional[Callable[[], Any]] = None
 
     def advance(self, h: Optional[float] = None) -> _drape.RunStep:
         """One step of h [s], by default the scene's. StepError when it fails; the state is then as it was."""
@@ -96,8 +98,12 @@ class Simulation(_drape.Simulation):
         return View(_drape.view_html(folder), width, height)
 
     def _scratch_folder(self) -> Path:
-        self._scratch = tempfile.TemporaryDirectory(prefix="drape-")  # the one before is removed
-        return Path(self._scratch.name)
+        """A new one; the one before is removed, and this one with the simulation."""
+        if self._forget_scratch is not None:
+            self._forget_scratch()
+        folder = tempfile.mkdtemp(prefix="drape-")
+        self._forget_scratch = weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+        return Path(folder)
 
     def __repr__(self) -> str:
         names = ", ".join(cloth.name for cloth in self.cloths)
