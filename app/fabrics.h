@@ -1,6 +1,6 @@
 // Named fabrics: data/fabrics/NAME.toml, each with its source and with what was assumed.
-// The data folder is $DRAPE_DATA, or else one that was set, or ../share/drape beside the program, or the one it
-// was built with.
+// The data folder is $DRAPE_DATA, or else one that was set, or ../share/drape beside the program, or the one
+// it was built with.
 #pragma once
 
 #include <filesystem>

@@ -292,9 +292,7 @@ const RunRecord& Run::finish() {
   return record_;
 }
 
-std::string Run::summary() const {
-  return output_ ? drape::summary(record_, *output_) : std::string();
-}
+std::string Run::summary() const { return output_ ? drape::summary(record_, *output_) : std::string(); }
 
 int run(const Scene& scene, const RunOptions& options) {
   if (scene.simulation.threads > 0) set_threads(scene.simulation.threads);

@@ -81,7 +81,9 @@ Array view_rows(const VecX& x, const py::handle& owner, Access access) {
   return view(x.data(), {x.size() / 3, 3}, owner, access);
 }
 
-Array copied_rows(const VecX& x) { return Array({static_cast<py::ssize_t>(x.size() / 3), py::ssize_t{3}}, x.data()); }
+Array copied_rows(const VecX& x) {
+  return Array({static_cast<py::ssize_t>(x.size() / 3), py::ssize_t{3}}, x.data());
+}
 
 Array copied_rows(const std::vector<Vec3>& all) {
   Array array({static_cast<py::ssize_t>(all.size()), py::ssize_t{3}});
@@ -89,13 +91,15 @@ Array copied_rows(const std::vector<Vec3>& all) {
   return array;
 }
 
-Array copied(const std::vector<double>& all) { return Array(static_cast<py::ssize_t>(all.size()), all.data()); }
-
-IntArray copied(const std::vector<int>& all) { return IntArray(static_cast<py::ssize_t>(all.size()), all.data()); }
-
-Vec3 vec3(const py::handle& from) {
-  return Eigen::Map<const Vec3>(numbers(from, "a vector", {3}).data());
+Array copied(const std::vector<double>& all) {
+  return Array(static_cast<py::ssize_t>(all.size()), all.data());
 }
+
+IntArray copied(const std::vector<int>& all) {
+  return IntArray(static_cast<py::ssize_t>(all.size()), all.data());
+}
+
+Vec3 vec3(const py::handle& from) { return Eigen::Map<const Vec3>(numbers(from, "a vector", {3}).data()); }
 
 Mat3 mat3(const py::handle& from) {
   const Array array = numbers(from, "a matrix", {3, 3});

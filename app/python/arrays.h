@@ -31,10 +31,10 @@ enum class Access { read, write };
 Array view(const double* data, std::vector<py::ssize_t> shape, const py::handle& owner, Access access);
 Array view_rows(const VecX& x, const py::handle& owner, Access access);  // (n, 3)
 
-Array copied_rows(const VecX& x);                // (n, 3)
+Array copied_rows(const VecX& x);                 // (n, 3)
 Array copied_rows(const std::vector<Vec3>& all);  // (n, 3)
-Array copied(const std::vector<double>& all);    // (n,)
-IntArray copied(const std::vector<int>& all);    // (n,)
+Array copied(const std::vector<double>& all);     // (n,)
+IntArray copied(const std::vector<int>& all);     // (n,)
 
 Vec3 vec3(const py::handle& from);
 Mat3 mat3(const py::handle& from);

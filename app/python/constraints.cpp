@@ -16,10 +16,12 @@ using namespace py::literals;
 // A number, or an array of them.
 std::vector<int> particles_of(const py::object& given) {
   const bool one = py::isinstance<py::int_>(given);
-  const IntArray array = one ? integers(py::make_tuple(given), "particles", {1}) : integers(given, "particles", {-1});
+  const IntArray array =
+      one ? integers(py::make_tuple(given), "particles", {1}) : integers(given, "particles", {-1});
   const std::vector<int> all(array.data(), array.data() + array.size());
   for (const int i : all)
-    if (i < 0) throw py::value_error("particles: there is no particle " + std::to_string(i) + "; they count from 0");
+    if (i < 0)
+      throw py::value_error("particles: there is no particle " + std::to_string(i) + "; they count from 0");
   return all;
 }
 
@@ -56,8 +58,8 @@ void add_touches(py::module_& m) {
       .def_readonly("normal", &Touch::normal, "(3,) unit, out of the body")
       .def_readonly("impulse", &Touch::impulse, "N s, along the normal, of the last step")
       .def("__repr__", [](const Touch& touch) {
-        return "Contact(particle " + std::to_string(touch.particle) + (touch.sticks ? " sticks to" : " slides on") +
-               " body " + std::to_string(touch.body) + ")";
+        return "Contact(particle " + std::to_string(touch.particle) +
+               (touch.sticks ? " sticks to" : " slides on") + " body " + std::to_string(touch.body) + ")";
       });
 }
 
@@ -65,12 +67,14 @@ void add_touches(py::module_& m) {
 
 void add_constraints(py::module_& m) {
   add_touches(m);
-  py::class_<Constraints, std::shared_ptr<Constraints>>(m, "Constraints", "Pins and obstacles: what particles may do.")
+  py::class_<Constraints, std::shared_ptr<Constraints>>(m, "Constraints",
+                                                        "Pins and obstacles: what particles may do.")
       .def(py::init([](double recovery_speed) {
              if (!(recovery_speed > 0)) throw py::value_error("recovery_speed: a speed is greater than zero");
              return Constraints(ContactOptions{recovery_speed});
            }),
-           "recovery_speed"_a = 0.25, "recovery_speed [m/s]: at which a particle that starts inside a body is brought out")
+           "recovery_speed"_a = 0.25,
+           "recovery_speed [m/s]: at which a particle that starts inside a body is brought out")
       .def(
           "add",
           [](Constraints& constraints, const Obstacle& obstacle) {
@@ -95,14 +99,17 @@ void add_constraints(py::module_& m) {
                                     std::to_string(count) + ", from 0");
             constraints.pin_to_body(particles_of(particles, state), body, state.x);
           },
-          "particles"_a, "body"_a, "state"_a, "These are carried along by a body, from where they are at time 0.")
+          "particles"_a, "body"_a, "state"_a,
+          "These are carried along by a body, from where they are at time 0.")
       .def(
           "pin_along",
-          [](Constraints& constraints, const py::object& particles, const Motion& motion, const State& state) {
+          [](Constraints& constraints, const py::object& particles, const Motion& motion,
+             const State& state) {
             require_free(&constraints);
             constraints.pin_along(particles_of(particles, state), motion, state.x);
           },
-          "particles"_a, "motion"_a, "state"_a, "These follow a motion of their own, from where they are at time 0.")
+          "particles"_a, "motion"_a, "state"_a,
+          "These follow a motion of their own, from where they are at time 0.")
       .def_property_readonly(
           "pinned", [](const Constraints& constraints) { return copied(constraints.pinned()); },
           "int32, ascending; a copy")
@@ -111,11 +118,15 @@ void add_constraints(py::module_& m) {
       .def_property_readonly("contacts", &touching, "what touches after the last step, by particle")
       .def(
           "penetration",
-          [](const Constraints& constraints, const State& state) { return copied(constraints.penetration(state.x)); },
+          [](const Constraints& constraints, const State& state) {
+            return copied(constraints.penetration(state.x));
+          },
           "state"_a, "(n,) [m]: how deep each particle is inside a body, 0 outside.")
       .def("__repr__", [](const Constraints& constraints) {
-        return "Constraints(" + counted(static_cast<long>(constraints.pinned().size()), "pinned particle") + ", " +
-               (constraints.bodies().size() == 1 ? "1 body" : std::to_string(constraints.bodies().size()) + " bodies") +
+        return "Constraints(" + counted(static_cast<long>(constraints.pinned().size()), "pinned particle") +
+               ", " +
+               (constraints.bodies().size() == 1 ? "1 body"
+                                                 : std::to_string(constraints.bodies().size()) + " bodies") +
                ")";
       });
 }

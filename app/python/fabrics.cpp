@@ -16,7 +16,8 @@ namespace {
 DampingKind damping_kind(const std::string& name) {
   if (name == "relative") return DampingKind::relative;
   if (name == "axial") return DampingKind::axial;
-  throw py::value_error("damping_kind: there is no '" + name + "'; " + suggestion(name, {"relative", "axial"}));
+  throw py::value_error("damping_kind: there is no '" + name + "'; " +
+                        suggestion(name, {"relative", "axial"}));
 }
 
 const char* name_of(DampingKind kind) { return kind == DampingKind::axial ? "axial" : "relative"; }
@@ -25,8 +26,9 @@ using Given = std::optional<double>;
 
 Fabric made(double area_density, double stretch, double bend, Given stretch_spring, Given bend_spring,
             Given buckling_clamp, double damping, const std::string& kind, bool neighbour_weighting) {
-  Fabric fabric{area_density,   stretch, bend,   stretch_spring, bend_spring, buckling_clamp, damping,
-                damping_kind(kind), neighbour_weighting};
+  Fabric fabric{area_density,       stretch,        bend,    stretch_spring,
+                bend_spring,        buckling_clamp, damping, damping_kind(kind),
+                neighbour_weighting};
   check(fabric);
   return fabric;
 }
@@ -42,12 +44,13 @@ std::string text(const Fabric& fabric) {
 
 void add_fabric(py::module_& m) {
   using namespace py::literals;
-  py::class_<Fabric>(m, "Fabric",
-                     "What a cloth is made of, in numbers a textile laboratory gives. SI units:\n"
-                     "area_density [kg/m^2], stretch [N/m] membrane stiffness per width, bend [N m] bending rigidity\n"
-                     "per width; stretch_spring [N/m] and bend_spring [N m^2] replace these two by the same constant\n"
-                     "for every connection; buckling_clamp [N/m]; damping [N s/m] of every connection, 'relative' or\n"
-                     "'axial'; neighbour_weighting after Noh & Jung, eq. 1-3.")
+  py::class_<Fabric>(
+      m, "Fabric",
+      "What a cloth is made of, in numbers a textile laboratory gives. SI units:\n"
+      "area_density [kg/m^2], stretch [N/m] membrane stiffness per width, bend [N m] bending rigidity\n"
+      "per width; stretch_spring [N/m] and bend_spring [N m^2] replace these two by the same constant\n"
+      "for every connection; buckling_clamp [N/m]; damping [N s/m] of every connection, 'relative' or\n"
+      "'axial'; neighbour_weighting after Noh & Jung, eq. 1-3.")
       .def(py::init(&made), py::kw_only(), "area_density"_a = 0.15, "stretch"_a = 500.0, "bend"_a = 1e-5,
            "stretch_spring"_a = py::none(), "bend_spring"_a = py::none(), "buckling_clamp"_a = py::none(),
            "damping"_a = 0.0, "damping_kind"_a = "relative", "neighbour_weighting"_a = false,
@@ -64,12 +67,15 @@ void add_fabric(py::module_& m) {
           [](Fabric& fabric, const std::string& kind) { fabric.damping_kind = damping_kind(kind); },
           "'relative' or 'axial'")
       .def_readwrite("neighbour_weighting", &Fabric::neighbour_weighting, "Noh & Jung, eq. 1-3")
-      .def("copy", [](const Fabric& fabric) { return Fabric(fabric); }, "Another fabric with the same numbers.")
+      .def(
+          "copy", [](const Fabric& fabric) { return Fabric(fabric); },
+          "Another fabric with the same numbers.")
       .def("__copy__", [](const Fabric& fabric) { return Fabric(fabric); })
       .def("__deepcopy__", [](const Fabric& fabric, const py::object&) { return Fabric(fabric); })
       .def("__repr__", &text);
 
-  py::class_<NamedFabric>(m, "NamedFabric", "A fabric with its name, its source, and what nobody measured of it.")
+  py::class_<NamedFabric>(m, "NamedFabric",
+                          "A fabric with its name, its source, and what nobody measured of it.")
       .def_readonly("name", &NamedFabric::name)
       .def_readonly("description", &NamedFabric::description)
       .def_readonly("source", &NamedFabric::source)
@@ -79,15 +85,19 @@ void add_fabric(py::module_& m) {
         return "NamedFabric('" + named.name + "', " + text(named.fabric) + ")";
       });
   m.def("fabric_names", &fabric_names, "The names that load_fabric knows, sorted.");
-  m.def("load_fabric", &load_fabric, py::arg("name"), "A named fabric. ValueError when there is none of that name.");
-  m.def("_set_data_folder", &set_data_folder, py::arg("folder"), "Where the package keeps its named fabrics.");
+  m.def("load_fabric", &load_fabric, py::arg("name"),
+        "A named fabric. ValueError when there is none of that name.");
+  m.def("_set_data_folder", &set_data_folder, py::arg("folder"),
+        "Where the package keeps its named fabrics.");
 }
 
 void add_soft_bodies(py::module_& m) {
   using namespace py::literals;
-  py::class_<Lattice, std::shared_ptr<Lattice>>(m, "Lattice", "Particles on the corners of cells, joined by springs.")
-      .def_property_readonly("positions", [](const Lattice& lattice) { return copied_rows(lattice.positions); },
-                             "(n, 3) [m], of the particles")
+  py::class_<Lattice, std::shared_ptr<Lattice>>(m, "Lattice",
+                                                "Particles on the corners of cells, joined by springs.")
+      .def_property_readonly(
+          "positions", [](const Lattice& lattice) { return copied_rows(lattice.positions); },
+          "(n, 3) [m], of the particles")
       .def_property_readonly("particles", &Lattice::particle_count)
       .def("__repr__", [](const Lattice& lattice) {
         return "Lattice(" + counted(lattice.particle_count(), "particle") + ")";
@@ -101,19 +111,22 @@ void add_soft_bodies(py::module_& m) {
           throw py::value_error("spacing: a spacing is greater than zero");
         return box_lattice(particles, spacing);
       },
-      "particles"_a, "spacing"_a, "So many particles along x, y, z, at least 2, this far apart [m], centred.");
+      "particles"_a, "spacing"_a,
+      "So many particles along x, y, z, at least 2, this far apart [m], centred.");
   m.def(
       "filled_lattice",
       [](const TriangleMesh& surface, double spacing) {
         if (!(spacing > 0)) throw py::value_error("spacing: a spacing is greater than zero");
         return filled_lattice(surface, spacing, "the mesh");
       },
-      "surface"_a, "spacing"_a, "Cubes of this edge [m] inside a closed mesh. ValueError where it is not closed.");
+      "surface"_a, "spacing"_a,
+      "Cubes of this edge [m] inside a closed mesh. ValueError where it is not closed.");
 
   py::class_<SoftMaterial>(m, "SoftMaterial", "What a soft body is made of; SI units.")
       .def(py::init([](double density, Given mass, Given young, double structural, double shear, double bend,
                        double damping, const std::string& kind) {
-             const SoftMaterial material{density, mass, false, young, structural, shear, bend, damping, damping_kind(kind)};
+             const SoftMaterial material{
+                 density, mass, false, young, structural, shear, bend, damping, damping_kind(kind)};
              check(material);
              return material;
            }),
@@ -143,21 +156,26 @@ void add_fabrics(py::module_& m) {
       .def("__repr__", [](const Forces& forces) { return "Forces(" + listed(forces.names()) + ")"; });
 
   m.def(
-      "masses", [](const TriangleMesh& mesh, const Fabric& fabric) { return copied(masses(mesh, fabric)); }, "mesh"_a,
-      "fabric"_a, "(n,) [kg]: lumped, weighted by neighbours if the fabric says so.");
+      "masses", [](const TriangleMesh& mesh, const Fabric& fabric) { return copied(masses(mesh, fabric)); },
+      "mesh"_a, "fabric"_a, "(n,) [kg]: lumped, weighted by neighbours if the fabric says so.");
   m.def(
-      "masses", [](const Lattice& lattice, const SoftMaterial& material) { return copied(masses(lattice, material)); },
+      "masses",
+      [](const Lattice& lattice, const SoftMaterial& material) { return copied(masses(lattice, material)); },
       "lattice"_a, "material"_a, "(n,) [kg]: an eighth of each cell to each of its corners.");
   m.def(
       "noh_jung",
-      [](const TriangleMesh& mesh, const Fabric& fabric, int first) { return Forces{noh_jung(mesh, fabric, first)}; },
+      [](const TriangleMesh& mesh, const Fabric& fabric, int first) {
+        return Forces{noh_jung(mesh, fabric, first)};
+      },
       "mesh"_a, "fabric"_a, "first_particle"_a = 0,
       "Stretch, buckling and damping of any triangle mesh that rests as it is.\n"
       "[Noh & Jung, section 2; Choi & Ko 2002, eq. 9-13]\n"
       "Vertex 0 is the particle `first_particle` of the system.");
   m.def(
       "choi_ko",
-      [](const TriangleMesh& mesh, const Fabric& fabric, int first) { return Forces{choi_ko(mesh, fabric, first)}; },
+      [](const TriangleMesh& mesh, const Fabric& fabric, int first) {
+        return Forces{choi_ko(mesh, fabric, first)};
+      },
       "mesh"_a, "fabric"_a, "first_particle"_a = 0,
       "The same for a regular grid of quads. [Choi & Ko 2002, section 3] ValueError when the mesh is none.");
   m.def(

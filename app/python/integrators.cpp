@@ -45,8 +45,8 @@ struct Stepper {
   SystemRecording recording;
   std::unique_ptr<Integrator> integrator;
 
-  Stepper(const std::string& name, std::shared_ptr<System> s, std::shared_ptr<Constraints> c, const py::object& by,
-          const StepOptions& options)
+  Stepper(const std::string& name, std::shared_ptr<System> s, std::shared_ptr<Constraints> c,
+          const py::object& by, const StepOptions& options)
       : system(std::move(s)), constraints(std::move(c)), solver(solver_of(by)) {
     check(options);
     integrator = make_integrator(name, *system, *constraints, recorded(solver, recording), options);
@@ -90,8 +90,9 @@ void add_kind(py::module_& m, const char* python_name, const char* name, const c
 void add_options(py::module_& m) {
   const StepOptions usual;
   py::class_<StepOptions>(m, "StepOptions", "How a step is taken.")
-      .def(py::init([](int newton_iterations, double newton_tolerance, double tolerance, int max_linear_iterations,
-                       const std::optional<std::string>& contact, int max_contact_solves, int max_halvings) {
+      .def(py::init([](int newton_iterations, double newton_tolerance, double tolerance,
+                       int max_linear_iterations, const std::optional<std::string>& contact,
+                       int max_contact_solves, int max_halvings) {
              StepOptions options;
              options.newton_iterations = newton_iterations;
              options.newton_tolerance = newton_tolerance;
@@ -107,7 +108,8 @@ void add_options(py::module_& m) {
            "newton_tolerance"_a = usual.newton_tolerance, "tolerance"_a = usual.tolerance,
            "max_linear_iterations"_a = usual.max_linear_iterations, "contact"_a = py::none(),
            "max_contact_solves"_a = usual.max_contact_solves, "max_halvings"_a = usual.max_halvings,
-           "newton_iterations: linear solves per step, 1 is Baraff & Witkin's step; tolerance: relative residual of\n"
+           "newton_iterations: linear solves per step, 1 is Baraff & Witkin's step; tolerance: relative "
+           "residual of\n"
            "each; contact: 'constraint', 'velocity', 'restitution' or None, what the integrator does best.")
       .def_readonly("newton_iterations", &StepOptions::newton_iterations, "linear solves per step")
       .def_readonly("newton_tolerance", &StepOptions::newton_tolerance, "of the nonlinear residual")
@@ -126,9 +128,11 @@ void add_options(py::module_& m) {
 void add_integrators(py::module_& m) {
   add_options(m);
   add_reports_of_steps(m);
-  py::class_<Stepper>(m, "Integrator", "State(t) -> State(t + h). Keeps its system and its constraints alive.")
+  py::class_<Stepper>(m, "Integrator",
+                      "State(t) -> State(t + h). Keeps its system and its constraints alive.")
       .def("advance", &Stepper::advance, "state"_a, "h"_a,
-           "One step of h [s]: changes the state and returns a StepReport. Other Python threads go on meanwhile.\n"
+           "One step of h [s]: changes the state and returns a StepReport. Other Python threads go on "
+           "meanwhile.\n"
            "StepError, a RuntimeError with the report, when it fails: the state is then as it was before.\n"
            "ValueError when the state is not one of the system.")
       .def_property_readonly("name", [](const Stepper& s) { return s.integrator->name(); })
@@ -138,11 +142,13 @@ void add_integrators(py::module_& m) {
       .def_property(
           "record_systems", [](const Stepper& s) { return s.recording.on; },
           [](Stepper& s, bool on) { s.recording.on = on; }, "whether the linear system of each step is kept")
-      .def_property_readonly("last_system", [](const Stepper& s) { return last_system(s.recording); },
-                             "the last LinearSystem that was solved while record_systems was True, a copy; or None")
+      .def_property_readonly(
+          "last_system", [](const Stepper& s) { return last_system(s.recording); },
+          "the last LinearSystem that was solved while record_systems was True, a copy; or None")
       .def("__repr__", [](const Stepper& s) {
         return "Integrator('" + std::string(s.integrator->name()) + "', " +
-               counted(s.system->particles(), "particle") + ", solver '" + std::string(s.solver->name()) + "')";
+               counted(s.system->particles(), "particle") + ", solver '" + std::string(s.solver->name()) +
+               "')";
       });
   add_kind<OfOrder1>(m, "ImplicitEuler", "implicit-euler", "The step of Baraff & Witkin 1998, eq. 6 and 18.");
   add_kind<OfOrder2>(m, "Bdf2", "bdf2", "Backward differences of order 2. [Choi & Ko 2002]");

@@ -48,8 +48,8 @@ static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Triangle) == 3 * size
 
 Array positions_of(const py::object& self) {
   const TriangleMesh& mesh = self.cast<const TriangleMesh&>();
-  return view(mesh.positions.empty() ? nullptr : mesh.positions.front().data(), {mesh.vertex_count(), 3}, self,
-              Access::write);
+  return view(mesh.positions.empty() ? nullptr : mesh.positions.front().data(), {mesh.vertex_count(), 3},
+              self, Access::write);
 }
 
 py::object triangles_of(const py::object& self) {
@@ -105,7 +105,8 @@ void at_least(int least, int count, const char* name) {
 
 void check_length(double length, const char* name) {
   if (!(length > 0) || !std::isfinite(length))
-    throw py::value_error(std::string(name) + ": a length is greater than zero, but got " + rounded(length, 6) + " m");
+    throw py::value_error(std::string(name) + ": a length is greater than zero, but got " +
+                          rounded(length, 6) + " m");
 }
 
 void add_generated(py::module_& m) {
@@ -118,7 +119,8 @@ void add_generated(py::module_& m) {
         return grid(nx, nz, width, depth);
       },
       "nx"_a, "nz"_a, "width"_a, "depth"_a,
-      "nx x nz vertices over width x depth [m] in the plane y = 0, centred on the origin, x fastest, normals up;\n"
+      "nx x nz vertices over width x depth [m] in the plane y = 0, centred on the origin, x fastest, normals "
+      "up;\n"
       "the diagonals of the cells alternate.");
   m.def(
       "equilateral_sheet",
@@ -138,10 +140,12 @@ void add_generated(py::module_& m) {
       "sphere",
       [](int subdivisions, double radius) {
         at_least(0, subdivisions, "subdivisions"), check_length(radius, "radius");
-        if (subdivisions > 9) throw py::value_error("subdivisions: expected 9 or fewer: each makes four triangles of one");
+        if (subdivisions > 9)
+          throw py::value_error("subdivisions: expected 9 or fewer: each makes four triangles of one");
         return sphere(subdivisions, radius);
       },
-      "subdivisions"_a, "radius"_a, "An icosahedron, subdivided and projected to the radius [m]; closed, normals out.");
+      "subdivisions"_a, "radius"_a,
+      "An icosahedron, subdivided and projected to the radius [m]; closed, normals out.");
   m.def(
       "tube",
       [](int around, int along, double radius, double height) {
@@ -149,7 +153,8 @@ void add_generated(py::module_& m) {
         check_length(radius, "radius"), check_length(height, "height");
         return tube(around, along, radius, height);
       },
-      "around"_a, "along"_a, "radius"_a, "height"_a, "An open cylinder along y, centred; radius and height [m].");
+      "around"_a, "along"_a, "radius"_a, "height"_a,
+      "An open cylinder along y, centred; radius and height [m].");
 }
 
 }  // namespace
@@ -161,12 +166,15 @@ void add_meshes(py::module_& m) {
            "positions: (n, 3) [m]; triangles: (m, 3) vertex numbers from 0; groups: name -> vertex numbers.\n"
            "All are copied. ValueError when a triangle or a group names a vertex that is not there.")
       .def_property("positions", &positions_of, &set_positions, "(n, 3) [m], a view that can be written")
-      .def_property_readonly("triangles", &triangles_of, "(m, 3) int32, vertex numbers from 0; a read-only view")
-      .def_property_readonly("groups", &groups_of, "name -> vertex numbers, ascending: 'g' and 'o' of the OBJ file")
+      .def_property_readonly("triangles", &triangles_of,
+                             "(m, 3) int32, vertex numbers from 0; a read-only view")
+      .def_property_readonly("groups", &groups_of,
+                             "name -> vertex numbers, ascending: 'g' and 'o' of the OBJ file")
       .def_property_readonly("vertex_count", &TriangleMesh::vertex_count)
       .def_property_readonly("triangle_count", &TriangleMesh::triangle_count)
-      .def("copy", [](const TriangleMesh& mesh) { return TriangleMesh(mesh); },
-           "Another mesh with the same numbers, and the same OBJ file behind it.")
+      .def(
+          "copy", [](const TriangleMesh& mesh) { return TriangleMesh(mesh); },
+          "Another mesh with the same numbers, and the same OBJ file behind it.")
       .def("__copy__", [](const TriangleMesh& mesh) { return TriangleMesh(mesh); })
       .def("__deepcopy__", [](const TriangleMesh& mesh, const py::object&) { return TriangleMesh(mesh); })
       .def("__repr__", [](const TriangleMesh& mesh) {
@@ -184,13 +192,15 @@ void add_meshes(py::module_& m) {
       py::arg("text"), py::arg("name") = "<text>",
       "The same from a text; `name` stands in error messages in the place of the file.");
   m.def("write_obj", &write, py::arg("path"), py::arg("mesh"), py::arg("positions") = py::none(),
-        "Writes the mesh with these positions, (n, 3) [m], or its own: vertices in the input's order, its polygons,\n"
+        "Writes the mesh with these positions, (n, 3) [m], or its own: vertices in the input's order, its "
+        "polygons,\n"
         "uv, groups and materials, normals anew. The file appears when it is complete.");
   m.def("edges", &edges_of, py::arg("mesh"), "(e, 2) int32: the vertices of every edge, sorted, each once.");
   m.def(
       "vertex_areas", [](const TriangleMesh& mesh) { return copied(vertex_areas(mesh)); }, py::arg("mesh"),
       "(n,) [m^2]: a third of every triangle around a vertex.");
-  m.def("examine", &defects_of, py::arg("mesh"), "What is wrong with the mesh, a line each, as `drape check` says it.");
+  m.def("examine", &defects_of, py::arg("mesh"),
+        "What is wrong with the mesh, a line each, as `drape check` says it.");
   add_generated(m);
 }
 

@@ -12,7 +12,8 @@ namespace {
 using namespace py::literals;
 
 Friction friction_of(const py::object& given) {
-  if (py::isinstance<py::float_>(given) || py::isinstance<py::int_>(given)) return Friction(given.cast<double>());
+  if (py::isinstance<py::float_>(given) || py::isinstance<py::int_>(given))
+    return Friction(given.cast<double>());
   const Array pair = numbers(given, "friction", {2});
   return Friction(pair.data()[0], pair.data()[1]);
 }
@@ -23,19 +24,22 @@ void add_motions(py::module_& m) {
              return Keyframe{time, translate, rotation};
            }),
            "time"_a, "translate"_a = Vec3(Vec3::Zero()), "rotation"_a = Vec3(Vec3::Zero()),
-           "time [s]; translate (3,) [m]; rotation (3,) [rad], axis times angle: about one axis it counts turns")
+           "time [s]; translate (3,) [m]; rotation (3,) [rad], axis times angle: about one axis it counts "
+           "turns")
       .def_readonly("time", &Keyframe::time, "s")
       .def_readonly("translate", &Keyframe::translate, "(3,) [m]")
       .def_readonly("rotation", &Keyframe::rotation, "(3,) [rad]");
-  py::class_<Motion>(m, "Motion", "The prescribed motion of a rigid body; by default it stands where it was drawn.")
+  py::class_<Motion>(m, "Motion",
+                     "The prescribed motion of a rigid body; by default it stands where it was drawn.")
       .def(py::init<>())
-      .def_static("constant", &Motion::constant, "velocity"_a = Vec3(Vec3::Zero()), "spin"_a = Vec3(Vec3::Zero()),
-                  "centre"_a = Vec3(Vec3::Zero()), "start"_a = 0.0,
-                  "end"_a = std::numeric_limits<double>::infinity(),
-                  "velocity (3,) [m/s] and spin (3,) [rad/s] about the centre (3,) [m], from start to end [s]")
-      .def_static("keyframes", &Motion::keyframes, "keyframes"_a, "centre"_a = Vec3(Vec3::Zero()),
-                  "A smooth way through all of them that overshoots none; rotations are about the centre (3,) [m].\n"
-                  "[Fritsch & Butland 1984; Kim, Kim & Shin 1995]")
+      .def_static(
+          "constant", &Motion::constant, "velocity"_a = Vec3(Vec3::Zero()), "spin"_a = Vec3(Vec3::Zero()),
+          "centre"_a = Vec3(Vec3::Zero()), "start"_a = 0.0, "end"_a = std::numeric_limits<double>::infinity(),
+          "velocity (3,) [m/s] and spin (3,) [rad/s] about the centre (3,) [m], from start to end [s]")
+      .def_static(
+          "keyframes", &Motion::keyframes, "keyframes"_a, "centre"_a = Vec3(Vec3::Zero()),
+          "A smooth way through all of them that overshoots none; rotations are about the centre (3,) [m].\n"
+          "[Fritsch & Butland 1984; Kim, Kim & Shin 1995]")
       .def(
           "at",
           [](const Motion& motion, double time) {
@@ -53,8 +57,8 @@ void add_obstacles(py::module_& m) {
   add_motions(m);
   const RigidBody usual;
   py::class_<RigidBody>(m, "RigidBody", "The mass of a body that falls and that the cloth pushes.")
-      .def(py::init([](double mass, const Mat3& inertia, const Vec3& centre, const Vec3& velocity, const Vec3& spin,
-                       const Vec3& gravity) {
+      .def(py::init([](double mass, const Mat3& inertia, const Vec3& centre, const Vec3& velocity,
+                       const Vec3& spin, const Vec3& gravity) {
              const RigidBody body{mass, inertia, centre, velocity, spin, gravity};
              check(body);
              return body;
@@ -70,16 +74,19 @@ void add_obstacles(py::module_& m) {
       .def_readonly("spin", &RigidBody::spin, "(3,) [rad/s]")
       .def_readonly("gravity", &RigidBody::gravity, "(3,) [m/s^2]");
   py::class_<Obstacle>(m, "Obstacle", "A body in the cloth's way: a shape that may move and that rubs.")
-      .def(py::init([](const py::object& shape, const py::object& friction, double margin, const Motion& motion,
-                       double restitution, const std::optional<RigidBody>& rigid) {
-             const Obstacle obstacle{shape_of(shape), friction_of(friction), margin, motion, restitution, rigid};
+      .def(py::init([](const py::object& shape, const py::object& friction, double margin,
+                       const Motion& motion, double restitution, const std::optional<RigidBody>& rigid) {
+             const Obstacle obstacle{shape_of(shape), friction_of(friction), margin,
+                                     motion,          restitution,           rigid};
              check(obstacle);
              return obstacle;
            }),
            "shape"_a, "friction"_a = 0.3, "margin"_a = 2e-3, "motion"_a = Motion(), "restitution"_a = 0.0,
            "rigid"_a = py::none(),
-           "friction: Coulomb's coefficient, or a pair (static, kinetic); margin [m]: the cloth comes to rest this\n"
-           "far outside; motion: where it is when; restitution: 0 to 1, with the contact mode 'restitution' only;\n"
+           "friction: Coulomb's coefficient, or a pair (static, kinetic); margin [m]: the cloth comes to "
+           "rest this\n"
+           "far outside; motion: where it is when; restitution: 0 to 1, with the contact mode 'restitution' "
+           "only;\n"
            "rigid: its mass, when it reacts")
       .def_property_readonly(
           "friction", [](const Obstacle& o) { return std::pair(o.friction.statics, o.friction.kinetic); },
@@ -87,8 +94,8 @@ void add_obstacles(py::module_& m) {
       .def_readonly("margin", &Obstacle::margin, "m")
       .def_readonly("restitution", &Obstacle::restitution)
       .def("__repr__", [](const Obstacle& o) {
-        return "Obstacle(" + std::string(name(o.shape)) + ", friction=(" + rounded(o.friction.statics, 6) + ", " +
-               rounded(o.friction.kinetic, 6) + "), margin=" + rounded(o.margin, 6) + " m)";
+        return "Obstacle(" + std::string(name(o.shape)) + ", friction=(" + rounded(o.friction.statics, 6) +
+               ", " + rounded(o.friction.kinetic, 6) + "), margin=" + rounded(o.margin, 6) + " m)";
       });
 }
 

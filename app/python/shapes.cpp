@@ -52,10 +52,12 @@ void add_mesh_bodies(py::module_& m) {
   py::class_<LevelSetSurface>(m, "LevelSetBody", "A closed mesh as a grid of distances: quicker to ask.")
       .def(py::init([](const TriangleMesh& mesh, double voxel) {
              py::gil_scoped_release release;
-             return LevelSetSurface{std::make_shared<const LevelSet>(LevelSet::from_mesh(mesh, {.voxel = voxel}))};
+             return LevelSetSurface{
+                 std::make_shared<const LevelSet>(LevelSet::from_mesh(mesh, {.voxel = voxel}))};
            }),
            "mesh"_a, "voxel"_a = 0.0, "voxel [m], 0: chosen. ValueError when the mesh is not closed.")
-      .def_property_readonly("voxel", [](const LevelSetSurface& body) { return body.grid->voxel(); }, "m")
+      .def_property_readonly(
+          "voxel", [](const LevelSetSurface& body) { return body.grid->voxel(); }, "m")
       .def("__repr__", [](const LevelSetSurface& body) {
         return "LevelSetBody(voxel=" + rounded(body.grid->voxel(), 4) + " m)";
       });
@@ -71,21 +73,27 @@ Shape shape_of(const py::handle& object) {
   if (py::isinstance<Capsule>(object)) return object.cast<Capsule>();
   if (py::isinstance<MeshSurface>(object)) return object.cast<const MeshSurface&>().surface;
   if (py::isinstance<LevelSetSurface>(object)) return object.cast<const LevelSetSurface&>().grid;
-  throw py::type_error("shape: expected a Plane, Sphere, Bowl, Box, Capsule, MeshBody or LevelSetBody, but got a " +
-                       std::string(py::str(py::type::of(object).attr("__name__"))));
+  throw py::type_error(
+      "shape: expected a Plane, Sphere, Bowl, Box, Capsule, MeshBody or LevelSetBody, but got a " +
+      std::string(py::str(py::type::of(object).attr("__name__"))));
 }
 
 void add_shapes(py::module_& m) {
   const Vec3 origin = Vec3::Zero(), up = Vec3::UnitY();
   py::class_<Plane>(m, "Plane", "The half space that the normal points away from.")
-      .def(py::init([](const Vec3& point, const Vec3& normal) { return sound(Plane{point, normal}); }),
+      .def(py::init([](const Vec3& point, const Vec3& normal) {
+             return sound(Plane{point, normal});
+           }),
            "point"_a = origin, "normal"_a = up, "A point of it [m]; the normal has any length but zero.")
       .def_readonly("point", &Plane::point, "(3,) [m]")
       .def_readonly("normal", &Plane::normal, "(3,)")
-      .def("__repr__",
-           [](const Plane& s) { return "Plane(point=" + text(s.point) + " m, normal=" + text(s.normal) + ")"; });
+      .def("__repr__", [](const Plane& s) {
+        return "Plane(point=" + text(s.point) + " m, normal=" + text(s.normal) + ")";
+      });
   py::class_<Sphere>(m, "Sphere", "A ball.")
-      .def(py::init([](const Vec3& centre, double radius) { return sound(Sphere{centre, radius}); }),
+      .def(py::init([](const Vec3& centre, double radius) {
+             return sound(Sphere{centre, radius});
+           }),
            "centre"_a = origin, "radius"_a = 1.0, "m")
       .def_readonly("centre", &Sphere::centre, "(3,) [m]")
       .def_readonly("radius", &Sphere::radius, "m")
@@ -96,7 +104,8 @@ void add_shapes(py::module_& m) {
       .def(py::init([](const Vec3& centre, double radius, double thickness, const Vec3& axis) {
              return sound(Bowl{centre, radius, thickness, axis});
            }),
-           "centre"_a = origin, "radius"_a = 1.0, "thickness"_a = 0.02, "axis"_a = up, "m; radius: the inner one")
+           "centre"_a = origin, "radius"_a = 1.0, "thickness"_a = 0.02, "axis"_a = up,
+           "m; radius: the inner one")
       .def_readonly("centre", &Bowl::centre, "(3,) [m]")
       .def_readonly("radius", &Bowl::radius, "m, inner")
       .def_readonly("thickness", &Bowl::thickness, "m")
@@ -116,8 +125,10 @@ void add_shapes(py::module_& m) {
       .def("__repr__",
            [](const Box& s) { return "Box(centre=" + text(s.centre) + " m, size=" + text(s.size) + " m)"; });
   py::class_<Capsule>(m, "Capsule", "All that is within a radius of the line from a to b.")
-      .def(py::init([](const Vec3& a, const Vec3& b, double radius) { return sound(Capsule{a, b, radius}); }), "a"_a,
-           "b"_a, "radius"_a, "m")
+      .def(py::init([](const Vec3& a, const Vec3& b, double radius) {
+             return sound(Capsule{a, b, radius});
+           }),
+           "a"_a, "b"_a, "radius"_a, "m")
       .def_readonly("a", &Capsule::a, "(3,) [m]")
       .def_readonly("b", &Capsule::b, "(3,) [m]")
       .def_readonly("radius", &Capsule::radius, "m")

@@ -63,14 +63,16 @@ struct Part {
   bool plain() const {
     const Cloth& c = cloth();
     bool all = c.embedding.vertices() == c.end_particle - c.first_particle;
-    for (int v = 0; all && v < c.embedding.vertices(); ++v) all = c.embedding.particle(v) == c.first_particle + v;
+    for (int v = 0; all && v < c.embedding.vertices(); ++v)
+      all = c.embedding.particle(v) == c.first_particle + v;
     return all;
   }
   // (vertices, 3) of x or v.
   py::object rows(const VecX& all) const {
     const Cloth& c = cloth();
     if (plain())
-      return view(all.data() + 3 * c.first_particle, {c.embedding.vertices(), 3}, py::cast(whole), Access::write);
+      return view(all.data() + 3 * c.first_particle, {c.embedding.vertices(), 3}, py::cast(whole),
+                  Access::write);
     py::object copy = copied_rows(c.embedding.positions(all));
     copy.attr("setflags")("write"_a = false);
     return copy;
@@ -135,23 +137,28 @@ class PartialRun {
 void add_parts(py::module_& m) {
   py::class_<Part>(m, "Cloth", "A cloth or a soft body of a simulation.")
       .def_property_readonly("name", [](const Part& part) { return part.cloth().name; })
-      .def_property_readonly("mesh", [](const Part& part) { return TriangleMesh(part.cloth().mesh); },
-                             "as the file has it, placed: a copy")
-      .def_property_readonly("soft", [](const Part& part) { return part.cloth().soft.has_value(); },
-                             "a soft body, and no cloth")
       .def_property_readonly(
-          "particles", [](const Part& part) { return py::slice(part.cloth().first_particle, part.cloth().end_particle, 1); },
+          "mesh", [](const Part& part) { return TriangleMesh(part.cloth().mesh); },
+          "as the file has it, placed: a copy")
+      .def_property_readonly(
+          "soft", [](const Part& part) { return part.cloth().soft.has_value(); }, "a soft body, and no cloth")
+      .def_property_readonly(
+          "particles",
+          [](const Part& part) {
+            return py::slice(part.cloth().first_particle, part.cloth().end_particle, 1);
+          },
           "where they are in the state: sim.state.x[cloth.particles]")
       .def_property_readonly(
           "positions", [](const Part& part) { return part.rows(part.whole->simulation.state.x); },
-          "(vertices, 3) [m], now: a view that can be written where every vertex is a particle of its own, else\n"
+          "(vertices, 3) [m], now: a view that can be written where every vertex is a particle of its own, "
+          "else\n"
           "(seams that have closed, soft bodies) a read-only copy")
       .def_property_readonly(
           "velocities", [](const Part& part) { return part.rows(part.whole->simulation.state.v); },
           "(vertices, 3) [m/s], the same")
       .def("__repr__", [](const Part& part) {
-        return "Cloth('" + part.cloth().name + "', " + counted(part.cloth().mesh.vertex_count(), "vertex") + ", " +
-               counted(part.cloth().mesh.triangle_count(), "triangle") + ")";
+        return "Cloth('" + part.cloth().name + "', " + counted(part.cloth().mesh.vertex_count(), "vertex") +
+               ", " + counted(part.cloth().mesh.triangle_count(), "triangle") + ")";
       });
 }
 
@@ -160,9 +167,12 @@ void add_runs(py::module_& m) {
       .def(py::init<Shared, const std::optional<fs::path>&, const std::string&, std::optional<double>,
                     std::optional<double>>(),
            "simulation"_a, "out"_a = py::none(), "frames"_a = "pc2", "duration"_a = py::none(),
-           "time_step"_a = py::none(), "From where the simulation is, for `duration` [s] or what is left of the scene's.")
-      .def_property_readonly("over", &PartialRun::over, "the end is reached, it has settled, or a step failed")
-      .def("step", &PartialRun::step, "The next step. Other Python threads go on meanwhile. StepError when it fails.")
+           "time_step"_a = py::none(),
+           "From where the simulation is, for `duration` [s] or what is left of the scene's.")
+      .def_property_readonly("over", &PartialRun::over,
+                             "the end is reached, it has settled, or a step failed")
+      .def("step", &PartialRun::step,
+           "The next step. Other Python threads go on meanwhile. StepError when it fails.")
       .def("finish", &PartialRun::finish, "Writes the files and returns the text of run.json. Once.");
 }
 
@@ -173,24 +183,33 @@ void add_simulations(py::module_& m) {
   py::class_<Whole, Shared>(m, "Simulation", "A scene made ready to run.")
       .def(py::init(&made), "scene"_a, "settings"_a = py::dict(), "folder"_a = py::none())
       .def_property_readonly(
-          "state", [](Whole& whole) -> State& { return whole.simulation.state; }, py::return_value_policy::reference_internal,
+          "state", [](Whole& whole) -> State& { return whole.simulation.state; },
+          py::return_value_policy::reference_internal,
           "positions and velocities of all particles: writing into them changes the simulation")
       .def_property_readonly("cloths", &parts, "cloths, then soft bodies")
-      .def_property_readonly("messages", [](const Whole& whole) { return whole.simulation.messages; },
-                             "'warning: ...' and 'note: ...', a line each")
-      .def_property_readonly("time", [](const Whole& whole) { return whole.simulation.state.time; }, "s")
-      .def_property_readonly("time_step", [](const Whole& w) { return w.simulation.scene->simulation.time_step; }, "s")
-      .def_property_readonly("duration", [](const Whole& w) { return w.simulation.scene->simulation.duration; },
-                             "s, of the scene")
-      .def_property_readonly("state_hash", [](const Whole& whole) { return state_hash(whole.simulation.state); },
-                             "16 hexadecimal digits, as in run.json: the same when every bit is")
-      .def_property_readonly("masses", [](const Whole& whole) { return copied(whole.simulation.system->masses()); },
-                             "(n,) [kg], of the particles")
+      .def_property_readonly(
+          "messages", [](const Whole& whole) { return whole.simulation.messages; },
+          "'warning: ...' and 'note: ...', a line each")
+      .def_property_readonly(
+          "time", [](const Whole& whole) { return whole.simulation.state.time; }, "s")
+      .def_property_readonly(
+          "time_step", [](const Whole& w) { return w.simulation.scene->simulation.time_step; }, "s")
+      .def_property_readonly(
+          "duration", [](const Whole& w) { return w.simulation.scene->simulation.duration; },
+          "s, of the scene")
+      .def_property_readonly(
+          "state_hash", [](const Whole& whole) { return state_hash(whole.simulation.state); },
+          "16 hexadecimal digits, as in run.json: the same when every bit is")
+      .def_property_readonly(
+          "masses", [](const Whole& whole) { return copied(whole.simulation.system->masses()); },
+          "(n,) [kg], of the particles")
       .def_property(
           "record_systems", [](const Whole& whole) { return whole.recording.on; },
-          [](Whole& whole, bool on) { whole.recording.on = on; }, "whether the linear system of each step is kept")
-      .def_property_readonly("last_system", [](const Whole& whole) { return last_system(whole.recording); },
-                             "the last LinearSystem that was solved while record_systems was True, a copy; or None");
+          [](Whole& whole, bool on) { whole.recording.on = on; },
+          "whether the linear system of each step is kept")
+      .def_property_readonly(
+          "last_system", [](const Whole& whole) { return last_system(whole.recording); },
+          "the last LinearSystem that was solved while record_systems was True, a copy; or None");
   add_runs(m);
   m.def("view_html", &view_html, "folder"_a, py::call_guard<py::gil_scoped_release>(),
         "The page that plays an output folder, as `drape view` writes it.");

@@ -46,7 +46,8 @@ py::tuple bsr(const LinearSystem& system) {
   const BlockPattern& pattern = system.A.pattern();
   std::vector<std::map<int, Mat3>> rows(static_cast<std::size_t>(pattern.rows()));
   for (int row = 0; row < pattern.rows(); ++row)
-    for (int slot = pattern.diagonal(row); slot < pattern.row_start()[static_cast<std::size_t>(row) + 1]; ++slot) {
+    for (int slot = pattern.diagonal(row); slot < pattern.row_start()[static_cast<std::size_t>(row) + 1];
+         ++slot) {
       const int column = pattern.column()[static_cast<std::size_t>(slot)];
       const int i = pattern.particle_of()[static_cast<std::size_t>(row)];
       const int j = pattern.particle_of()[static_cast<std::size_t>(column)];
@@ -70,18 +71,23 @@ py::tuple bsr(const LinearSystem& system) {
 void add_systems_of_steps(py::module_& m) {
   py::class_<LinearSystem, std::shared_ptr<LinearSystem>>(
       m, "LinearSystem",
-      "A dv = b of a step, within a filter: what pins and contacts allow. A [kg], b [N s], dv [m/s]; particle order.")
+      "A dv = b of a step, within a filter: what pins and contacts allow. A [kg], b [N s], dv [m/s]; "
+      "particle order.")
       .def_property_readonly("particles", [](const LinearSystem& system) { return system.A.rows(); })
-      .def_property_readonly("b", [](const LinearSystem& s) { return by_particle(s, s.b); }, "(n, 3) [N s], a copy")
-      .def_property_readonly("guess", [](const LinearSystem& s) { return by_particle(s, s.guess); },
-                             "(n, 3) [m/s], where the step started to iterate; a copy")
-      .def_property_readonly("solution", [](const LinearSystem& s) { return by_particle(s, s.solution); },
-                             "(n, 3) [m/s], what the step's own solver found; a copy")
+      .def_property_readonly(
+          "b", [](const LinearSystem& s) { return by_particle(s, s.b); }, "(n, 3) [N s], a copy")
+      .def_property_readonly(
+          "guess", [](const LinearSystem& s) { return by_particle(s, s.guess); },
+          "(n, 3) [m/s], where the step started to iterate; a copy")
+      .def_property_readonly(
+          "solution", [](const LinearSystem& s) { return by_particle(s, s.solution); },
+          "(n, 3) [m/s], what the step's own solver found; a copy")
       .def_property_readonly(
           "constrained", [](const LinearSystem& system) { return system.filter.entries().size(); },
           "how many particles are not free")
       .def("bsr", &bsr,
-           "A as (data (k, 3, 3), indices (k,), indptr (n + 1,)), for scipy.sparse.bsr_matrix; a copy, unfiltered.")
+           "A as (data (k, 3, 3), indices (k,), indptr (n + 1,)), for scipy.sparse.bsr_matrix; a copy, "
+           "unfiltered.")
       .def(
           "residual",
           [](const LinearSystem& system, const py::object& dv) {
@@ -105,17 +111,21 @@ void add_reports(py::module_& m) {
       .def_readonly("iterations", &SolveReport::iterations)
       .def_readonly("residual", &SolveReport::residual, "relative, computed afresh at the end")
       .def_readonly("residual_impulse", &SolveReport::residual_impulse, "N s, |S (b - A dv)|")
-      .def_property_readonly("reason", [](const SolveReport& r) { return name(r.reason); },
-                             "why it stopped: 'converged', 'iteration limit', ...")
-      .def_property_readonly("converged", [](const SolveReport& r) { return r.reason == StopReason::converged; })
+      .def_property_readonly(
+          "reason", [](const SolveReport& r) { return name(r.reason); },
+          "why it stopped: 'converged', 'iteration limit', ...")
+      .def_property_readonly("converged",
+                             [](const SolveReport& r) { return r.reason == StopReason::converged; })
       .def_readonly("setup_ms", &SolveReport::setup_ms, "projection, preconditioner or factor")
       .def_readonly("solve_ms", &SolveReport::solve_ms, "all else")
       .def_readonly("analyses", &SolveReport::analyses, "how often the pattern was looked at anew")
       .def_readonly("note", &SolveReport::note, "what the user should know")
-      .def_property_readonly("history", [](const SolveReport& r) { return copied(r.history); },
-                             "the relative residual of every iteration, from 0; empty for a direct solver")
-      .def_property_readonly("solution", [](const SolveReport& r) { return copied_rows(r.solution); },
-                             "(n, 3) [m/s], particle order")
+      .def_property_readonly(
+          "history", [](const SolveReport& r) { return copied(r.history); },
+          "the relative residual of every iteration, from 0; empty for a direct solver")
+      .def_property_readonly(
+          "solution", [](const SolveReport& r) { return copied_rows(r.solution); },
+          "(n, 3) [m/s], particle order")
       .def("__repr__", [](const SolveReport& r) {
         return "LinearReport(" + std::string(name(r.reason)) + ", " + counted(r.iterations, "iteration") +
                ", residual=" + rounded(r.residual, 3) + ")";
@@ -146,11 +156,13 @@ void add_solvers(py::module_& m) {
   py::class_<LinearSolver, Solver>(m, "LinearSolver", "Solves A dv = b within a filter.")
       .def_property_readonly("name", &LinearSolver::name)
       .def("solve", &solve, "system"_a, "tolerance"_a = py::none(), "max_iterations"_a = 0,
-           "Starts at the system's guess. tolerance: relative residual, by default the step's; max_iterations 0: chosen.")
-      .def("__repr__", [](const LinearSolver& solver) { return "LinearSolver('" + std::string(solver.name()) + "')"; });
+           "Starts at the system's guess. tolerance: relative residual, by default the step's; "
+           "max_iterations 0: chosen.")
+      .def("__repr__",
+           [](const LinearSolver& solver) { return "LinearSolver('" + std::string(solver.name()) + "')"; });
   m.def(
-      "make_linear_solver", [](const std::string& name) { return Solver(make_linear_solver(name)); }, "name"_a,
-      "A solver that linear_solvers() lists. ValueError for any other name.");
+      "make_linear_solver", [](const std::string& name) { return Solver(make_linear_solver(name)); },
+      "name"_a, "A solver that linear_solvers() lists. ValueError for any other name.");
   m.def(
       "linear_solvers",
       [] {

@@ -55,9 +55,11 @@ void add_states(py::module_& m) {
           },
           "(n, 3) velocities [m/s], a view that can be written")
       .def_property_readonly("particles", &State::particles, "how many: n")
-      .def_property_readonly("hash", &state_hash,
-                             "16 hexadecimal digits, the same when every bit of x and v is: state_hash in run.json")
-      .def("copy", [](const State& state) { return State(state); }, "Another state with the same numbers.")
+      .def_property_readonly(
+          "hash", &state_hash,
+          "16 hexadecimal digits, the same when every bit of x and v is: state_hash in run.json")
+      .def(
+          "copy", [](const State& state) { return State(state); }, "Another state with the same numbers.")
       .def("__copy__", [](const State& state) { return State(state); })
       .def("__deepcopy__", [](const State& state, const py::object&) { return State(state); })
       .def(py::pickle(

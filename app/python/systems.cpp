@@ -53,13 +53,15 @@ auto with_state(F f) {
 }  // namespace
 
 void add_systems(py::module_& m) {
-  py::class_<Gravity>(m, "Gravity", "An acceleration that acts on all particles.").def_readonly("g", &Gravity::g, "(3,) [m/s^2]");
+  py::class_<Gravity>(m, "Gravity", "An acceleration that acts on all particles.")
+      .def_readonly("g", &Gravity::g, "(3,) [m/s^2]");
   m.def("gravity", &gravity, py::arg("g"), "The acceleration (3,) [m/s^2], for System.add.");
 
   py::class_<System, std::shared_ptr<System>>(m, "System", "Masses and forces: all that pushes.")
-      .def(py::init([](const py::object& masses) { return System(list_of(masses, "masses")); }), py::arg("masses"),
-           "masses: (n,) [kg], copied. A particle of mass 0 stays where it is.")
-      .def("add", &add, py::arg("forces"), "Forces go over to the system: the same ones cannot be added twice.")
+      .def(py::init([](const py::object& masses) { return System(list_of(masses, "masses")); }),
+           py::arg("masses"), "masses: (n,) [kg], copied. A particle of mass 0 stays where it is.")
+      .def("add", &add, py::arg("forces"),
+           "Forces go over to the system: the same ones cannot be added twice.")
       .def(
           "add",
           [](System& system, const Gravity& gravity) {
@@ -84,14 +86,18 @@ void add_systems(py::module_& m) {
             return names;
           },
           "their names")
-      .def("elastic_energy", with_state([](const System& s, const State& at) { return s.elastic_energy(at.x); }),
+      .def("elastic_energy",
+           with_state([](const System& s, const State& at) { return s.elastic_energy(at.x); }),
            py::arg("state"), "J")
-      .def("kinetic_energy", with_state([](const System& s, const State& at) { return s.kinetic_energy(at.v); }),
+      .def("kinetic_energy",
+           with_state([](const System& s, const State& at) { return s.kinetic_energy(at.v); }),
            py::arg("state"), "J")
-      .def("gravity_energy", with_state([](const System& s, const State& at) { return s.gravity_energy(at.x); }),
+      .def("gravity_energy",
+           with_state([](const System& s, const State& at) { return s.gravity_energy(at.x); }),
            py::arg("state"), "J, zero at the origin")
       .def("energy", with_state(&energy), py::arg("state"), "J, the sum of the three")
-      .def("force", with_state([](const System& s, const State& at) { return copied_rows(s.force(at.x, at.v)); }),
+      .def("force",
+           with_state([](const System& s, const State& at) { return copied_rows(s.force(at.x, at.v)); }),
            py::arg("state"), "(n, 3) [N], gravity included")
       .def("__repr__", [](const System& system) {
         Names names;

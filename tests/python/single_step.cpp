@@ -1,5 +1,5 @@
-// Twelve steps of the README's example by the library, with each of some integrators: its name and the hash of the state on a line,
-// for tests/python/test_step.py to compare with. The sheet starts bent and stretched.
+// Twelve steps of the README's example by the library, with each of some integrators: its name and the hash
+// of the state on a line, for tests/python/test_step.py to compare with. The sheet starts bent and stretched.
 #include <drape/drape.h>
 
 #include <cstdio>
@@ -19,7 +19,8 @@ int main() {
     constraints.add(Obstacle{.shape = Sphere{.centre = {0, 0, 0}, .radius = 0.3}, .friction = 0.3});
     const auto stepper = make_integrator(integrator, system, constraints, make_linear_solver("mpcg"));
     State state = at_rest(sheet);
-    for (int i = 0; i < state.particles(); ++i) state.x[3 * i + 1] += 0.05 * state.x[3 * i] * state.x[3 * i + 2];
+    for (int i = 0; i < state.particles(); ++i)
+      state.x[3 * i + 1] += 0.05 * state.x[3 * i] * state.x[3 * i + 2];
     for (int k = 0; k < 12; ++k) stepper->advance(state, 5e-4);
     std::printf("%s %s\n", integrator, state_hash(state).c_str());
   }

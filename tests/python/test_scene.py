@@ -5,7 +5,7 @@ import unittest
 from pathlib import Path
 
 import numpy as np
-from workshop import SCENE_TOML, SOURCE, Workshop, scene_dict
+from workshop import SCENE_TOML, SEWN_QUICKLY, SOURCE, Workshop, scene_dict
 
 import drape
 
@@ -159,27 +159,18 @@ class Cloths(Workshop):
         self.assertGreater(sheet.positions[:, 1].min(), 0.305)
 
     def test_seams_that_close_leave_old_arrays_readable(self):
-        scene = SOURCE / "data/scenes/skirt-sewn.toml"
-        simulation = drape.read_scene(scene)
-        seen = {}
+        simulation = drape.read_scene(SOURCE / "data/scenes/skirt-sewn.toml", SEWN_QUICKLY)
+        old = simulation.state.x
         for step in simulation:
-            x = simulation.state.x
-            if len(x) not in seen:
-                seen[len(x)] = (x, None)
-            seen[len(x)] = (seen[len(x)][0], x.copy())
-            if len(seen) > 1 and step.time > max(0.5, simulation.time):
+            if len(simulation.state.x) < len(old):
                 break
-            if len(seen) > 1:
-                break
-        self.assertEqual(len(seen), 2, "no seam has closed")
-        more, fewer = sorted(seen, reverse=True)
-        view, _ = seen[more]
-        _ = [np.full((more, 3), np.nan) for _ in range(20)]
-        self.assertTrue(np.isfinite(view).all())
-        self.assertEqual(len(simulation.state.x), fewer)
+        self.assertLess(len(simulation.state.x), len(old), "no seam has closed")
+        _ = [np.full(old.shape, np.nan) for _ in range(20)]
+        self.assertTrue(np.isfinite(old).all())
         (skirt,) = simulation.cloths
         self.assertEqual(len(skirt.positions), skirt.mesh.vertex_count)
-        self.assertFalse(skirt.positions.flags.writeable)
+        self.assertFalse(skirt.positions.flags.writeable)  # a copy
+        simulation.advance()
 
 
 if __name__ == "__main__":
