@@ -144,8 +144,8 @@ TEST_CASE("several cloths run together, each with its own files", "[cli]") {
                              "name = \"upper\"\ntranslate = [0, 1, 0]\npins = [{ vertices = [84] }]\n" +
                              shop.cloth + "scale = 0.5\n[simulation]\nduration = 0.1\n");
   REQUIRE(shop.drape("simulate two.toml --out o").exit_code == 0);
-  CHECK(shop.files("o") ==
-        std::set<std::string>{"run.json", "steps.csv", "sheet.obj", "sheet.pc2", "upper.obj", "upper.pc2"});
+  CHECK(shop.files("o") == std::set<std::string>{"fields", "run.json", "steps.csv", "sheet.obj", "sheet.pc2",
+                                                 "upper.obj", "upper.pc2"});
   const TriangleMesh start = read_obj(shop.path / "sheet.obj"), upper = read_obj(shop.path / "o/upper.obj"),
                      lower = read_obj(shop.path / "o/sheet.obj");
   CHECK((upper.positions[84] - start.positions[84] - Vec3(0, 1, 0)).norm() < 1e-6);

@@ -148,7 +148,7 @@ TEST_CASE("a disk that fills up during a run leaves nothing half written", "[cli
   CHECK(run.exit_code == 2);
   CHECK(lines_of(run.err) == 1);
   CHECK_THAT(run.err, StartsWith("error: o/") && Contains("cannot write: File too large"));
-  CHECK(shop.files("o") == std::set<std::string>{"bodies"});
+  CHECK(shop.files("o") == std::set<std::string>{"bodies", "fields"});
   CHECK(shop.files("o/bodies").empty());
 }
 

@@ -191,15 +191,22 @@ TEST_CASE("a body that deforms is written as it is then", "[output]") {
   std::vector<Vec3> half = cube.positions;
   for (std::size_t i = 0; i < half.size(); ++i) half[i] = (half[i] + end[i]) / 2;
   CHECK(farthest(read_obj(stage.path / "o/frames/cube_0002.obj").positions, half) < 1e-6);
-  CHECK(stage.files("o") == Files{"bodies", "frames", "run.json", "sheet.obj", "steps.csv"});
+  CHECK(stage.files("o") == Files{"bodies", "fields", "frames", "run.json", "sheet.obj", "steps.csv"});
   CHECK(JsonValue::parse(content(stage.path / "o/run.json"))["bodies"][0]["deforms"] == true);
 }
 
 TEST_CASE("run.json says how bodies ended", "[output]") {
   const Stage stage;
   REQUIRE(stage.drape("simulate s.toml --out o --quiet").exit_code == 0);
-  const JsonValue bodies = JsonValue::parse(content(stage.path / "o/run.json"))["bodies"];
+  JsonValue bodies = JsonValue::parse(content(stage.path / "o/run.json"))["bodies"];
   REQUIRE(bodies.size() == 5);
+  for (JsonValue& body : bodies) {  // places are followed in test_recording.cpp
+    double squared = 0;
+    for (const JsonValue& part : body["place"]["rotation"]) squared += std::pow(part.get<double>(), 2);
+    CHECK(squared == Approx(1));
+    CHECK(body["place"]["translation"].size() == 3);
+    body.erase("place");
+  }
   CHECK(bodies[0] == JsonValue{{"name", "cube.obj"},
                                {"file", "bodies/cube.obj"},
                                {"shape", "mesh"},
@@ -222,11 +229,11 @@ TEST_CASE("bodies that stand still need no file of poses", "[output]") {
   const Stage stage;
   stage.write("still.toml", stage.simulation + stage.cloth + stage.second_ball);
   REQUIRE(stage.drape("simulate still.toml --out o --quiet --frames obj --duration 0.1").exit_code == 0);
-  CHECK(stage.files("o") == Files{"bodies", "frames", "run.json", "sheet.obj", "steps.csv"});
+  CHECK(stage.files("o") == Files{"bodies", "fields", "frames", "run.json", "sheet.obj", "steps.csv"});
   CHECK(stage.files("o/frames") == Files{"sheet_0001.obj", "sheet_0002.obj"});
   stage.write("none.toml", stage.simulation + stage.cloth);
   REQUIRE(stage.drape("simulate none.toml --out n --quiet --duration 0.1").exit_code == 0);
-  CHECK(stage.files("n") == Files{"run.json", "sheet.obj", "sheet.pc2", "steps.csv"});
+  CHECK(stage.files("n") == Files{"fields", "run.json", "sheet.obj", "sheet.pc2", "steps.csv"});
 }
 
 TEST_CASE("results never replace what the scene is made from", "[output]") {

@@ -106,8 +106,8 @@ TEST_CASE("a scene of soft bodies alone is run, checked and written", "[soft]") 
   const Outcome outcome = shop.drape("simulate soft.toml --out o");
   INFO(outcome.err);
   REQUIRE(outcome.exit_code == 0);
-  CHECK(shop.files("o") ==
-        std::set<std::string>{"ball.obj", "ball.pc2", "box.obj", "box.pc2", "run.json", "steps.csv"});
+  CHECK(shop.files("o") == std::set<std::string>{"ball.obj", "ball.pc2", "box.obj", "box.pc2", "fields",
+                                                 "run.json", "steps.csv"});
   const Json run = shop.json("o/run.json");
   CHECK(run["cloths"].empty());
   REQUIRE(run["softs"].size() == 2);

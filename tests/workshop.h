@@ -33,8 +33,9 @@ struct Workshop : Folder {
 
 inline long lines_of(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
-inline const std::set<std::string> without_bodies = {"run.json", "sheet.obj", "sheet.pc2", "steps.csv"};
-inline const std::set<std::string> usual_files = {"bodies", "run.json", "sheet.obj", "sheet.pc2",
-                                                  "steps.csv"};
+inline const std::set<std::string> without_bodies = {"fields", "run.json", "sheet.obj", "sheet.pc2",
+                                                     "steps.csv"};
+inline const std::set<std::string> usual_files = {"bodies",    "fields",    "run.json",
+                                                  "sheet.obj", "sheet.pc2", "steps.csv"};
 
 }  // namespace drape::test
