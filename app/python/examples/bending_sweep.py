@@ -27,7 +27,7 @@ scene = {
 }
 
 rows = []
-for bend in np.geomspace(1e-6, 1e-4, words.values):  # N m
+for bend in np.geomspace(1e-6, 1e-3, words.values):  # N m
     simulation = drape.read_scene(scene, {"cloth.0.bend": bend})
     simulation.run(frames="none")
     rows.append((bend, -simulation.cloths[0].positions[:, 1].min()))
