@@ -17,6 +17,7 @@ usage: ./build.sh WORD
   lint            check the formatting, then clang-tidy
   format          format the sources in place; format --check only looks
   sanitize        build with the address and undefined-behaviour sanitizers and run the tests, but for the slow ones
+  docs            make a site of the pages in docs/ and of the C++ interface, build/docs/site, and look for dead links in it
   install PREFIX  build, then install the program, the library and its headers under PREFIX
 
 Missing Debian or Ubuntu packages are installed with apt-get, through sudo when not root; elsewhere they are only named.
@@ -34,19 +35,26 @@ die() {
 # --- packages ---------------------------------------------------------------------------------------------------------------
 
 required=(g++ cmake ninja-build libeigen3-dev libspectra-dev libembree-dev libtoml11-dev libcli11-dev nlohmann-json3-dev libudunits2-dev libcsv-dev
-  libboost-dev libsvgpp-dev libpugixml-dev)
+  libboost-dev libsvgpp-dev libpugixml-dev libpng-dev libfreetype-dev fonts-dejavu-core zlib1g-dev)
 optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev)
+for_viewer=(nodejs npm)
+for_docs=(python3 python3-sphinx python3-myst-parser furo doxygen linkchecker)
 for_python=(python3-dev pybind11-dev python3-numpy)
-for_tests=(catch2 libtinyobjloader-dev
+for_tests=(catch2 libtinyobjloader-dev libstb-dev "${for_docs[@]}"
   "${for_python[@]}" python3-matplotlib python3-venv python3-pip python3-setuptools python3-wheel mypy)
+for_browser_tests=(chromium-headless-shell)
+for_export_tests=(python3-numpy python3-vtk9 blender chromium-headless-shell nodejs npm)  # readers of what is exported
 for_format=(clang-format)
 for_lint=(clang-tidy)
 
 installed() {
   case "$1" in  # a tool counts wherever it comes from
     g++) [[ -n "${CXX:-}" ]] || command -v g++ >/dev/null ;;
-    cmake | clang-format | clang-tidy) command -v "$1" >/dev/null ;;
+    cmake | clang-format | clang-tidy | npm) command -v "$1" >/dev/null ;;
     ninja-build) command -v ninja >/dev/null ;;
+    nodejs) command -v node >/dev/null || command -v nodejs >/dev/null ;;
+    chromium-headless-shell) command -v chromium-headless-shell chromium chromium-browser google-chrome >/dev/null ;;
+    blender) command -v "$1" >/dev/null ;;
     *) command -v dpkg-query >/dev/null && [[ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" == installed ]] ;;
   esac
 }
@@ -108,6 +116,22 @@ get_required() {
 get_for_build() {
   get_required "${required[@]}"
   get "${optional[@]}" || warn "going on without: $(missing "${optional[@]}" | tr '\n' ' ')"
+  get "${for_viewer[@]}" || warn "going on without the viewer, for there is no $(missing "${for_viewer[@]}" | tr '\n' ' ')"
+}
+
+# The packages of the folder's package-lock.json, when they are not there yet.
+get_from_npm() {
+  local installed=$1/node_modules/.package-lock.json
+  command -v npm >/dev/null || { warn "there is no npm: tests that need $1/node_modules are skipped"; return 0; }
+  [[ -f "$installed" && ! "$1/package-lock.json" -nt "$installed" ]] && return 0
+  say "installing the packages of $1/package-lock.json"
+  npm ci --prefix "$1" --no-audit --no-fund || warn "npm could not install them: tests that need them are skipped"
+}
+
+# What only reads what is exported: a test whose reader is missing is skipped and says so.
+get_for_export_tests() {
+  get "${for_export_tests[@]}" || warn "going on without: $(missing "${for_export_tests[@]}" | tr '\n' ' ')"
+  get_from_npm tests/exports
 }
 
 # --- building ---------------------------------------------------------------------------------------------------------------
@@ -177,6 +201,8 @@ demo() {
 run_all_tests() {
   get_for_build
   get_required "${for_tests[@]}"
+  get "${for_browser_tests[@]}" || warn "going on without a browser: the tests of the viewer will be skipped"
+  get_for_export_tests
   configure release -DDRAPE_TESTS=ON -DDRAPE_PYTHON=ON
   compile release
   run_tests release
@@ -236,15 +262,47 @@ compare() {
 pictures() {
   local out=out/pictures python=/usr/bin/python3 scene
   build
-  get_required python3-numpy python3-scipy python3-pil
+  get_required python3-scipy
   say "making the motion of a body"
   "$python" data/meshes/make_motion.py || die "the motion could not be made, see above"
-  for scene in $("$python" data/pictures/make_pictures.py --scenes); do
+  for scene in choi-ko-{100,200} dressed-turn ls-ball-{0,09} net noh-jung-{100,200} poncho poncho-sewn rotating-ball skirt-sewn \
+    soft-{bowl,sphere} tablecloth-pull tee; do
     say "running $scene into $out/$scene"
-    build/release/drape simulate "data/scenes/$scene.toml" --frames obj --out "$out/$scene" || die "$scene failed, see above"
+    build/release/drape simulate "data/scenes/$scene.toml" --out "$out/$scene" || die "$scene failed, see above"
   done
   say "drawing into data/pictures"
-  "$python" data/pictures/make_pictures.py "$out" || die "drawing failed, see above"
+  draw poncho 1100x580 -25,10 '' tee poncho
+  draw noh-jung 900x400 -25,18 '' noh-jung-{200,100}
+  draw choi-ko 900x400 -25,18 '' choi-ko-{200,100}
+  draw poncho-sewn 1280x420 -25,14 1,6,13,last poncho-sewn
+  draw skirt-sewn 1280x300 -25,20 1,6,13,last skirt-sewn
+  draw soft 800x700 -25,18 12,24 soft-{sphere,bowl}
+  draw net 1280x330 -20,14 1,18,25,last net
+  draw rotating-ball 1200x340 -20,10 76,101,114,last rotating-ball
+  draw tablecloth-pull 1100x440 -20,14 50,80,90,last tablecloth-pull
+  draw ls-ball 800x600 -20,14 14,20 ls-ball-{0,09}
+  draw dressed-turn 1100x420 15,8 1,41,59,last dressed-turn
+  draw strain 640x480 -25,14 last poncho --color strain
+}
+
+# draw NAME SIZE VIEW FRAMES RUN... [OPTION...]: several frames or runs side by side
+draw() {
+  local name=$1 size=$2 view=$3 frames=$4
+  shift 4
+  local -a words=(--size "$size" "--view=$view" --force -o "../../data/pictures/$name.png")
+  [[ -z "$frames" ]] || words+=(--frame "$frames")
+  [[ "$frames" != *,* ]] || words+=(--grid)
+  (cd out/pictures && ../../build/release/drape picture "$@" "${words[@]}") || die "drawing $name failed, see above"
+}
+
+# The tables of keys, fabrics and solvers are written anew first: the program has them.
+docs() {
+  build
+  get_required "${for_docs[@]}"
+  say "writing what the program knows into docs/"
+  /usr/bin/python3 tests/docs/made.py --program build/release/drape --write docs/*.md || die "docs/ could not be written, see above"
+  say "making build/docs/site"
+  /usr/bin/python3 docs/make.py build/docs/site || die "the site has mistakes, see above"
 }
 
 install_into() {
@@ -302,7 +360,7 @@ tidy() {
 word=${1:-}
 [[ $# -eq 0 ]] || shift
 case "$word" in
-  demo | build | pictures | compare | lint | sanitize)
+  demo | build | docs | pictures | compare | lint | sanitize)
     [[ $# -eq 0 ]] || { warn "'$word' takes nothing more, but got: $*"; exit 2; }
     "$word"
     ;;

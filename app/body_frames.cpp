@@ -107,15 +107,21 @@ void add(MeshFrames& frames, double time, std::vector<Vec3> positions, const fs:
 FramesEntry read_frames(Table& table, const fs::path& folder) {
   FramesEntry entry;
   entry.where = table.where();
-  const Node* const node = table.take("frames");
+  const About about(
+      "where its vertices are in time: a pattern \"walk/body_%04d.obj\" (one %d or %04d; from the lowest "
+      "number "
+      "that exists, without a gap), a list of OBJ files, or a .pc2 file; as many vertices as `mesh`, which "
+      "tells "
+      "the faces; placed as `mesh` is");
+  const Node* const node = table.take("frames", "a text, or a list of texts", about);
   if (!node) return entry;
   entry.where = node->where;
   Names texts;
   if (node->kind == Node::Kind::array) {
-    table.read("frames", texts);
+    table.read("frames", texts, about);
   } else {
     texts.emplace_back();
-    table.read("frames", texts.front());
+    table.read("frames", texts.front(), about);
   }
   for (const std::string& text : texts) {
     if (text.empty()) table.fail("frames", expected_frames);
@@ -127,8 +133,14 @@ FramesEntry read_frames(Table& table, const fs::path& folder) {
     entry.pattern = true;
     if (!parse_pattern(entry.files[0])) table.fail("frames", expected_frames);
   }
-  table.read("frame_rate", entry.rate, dimension::rate, Range::positive);
-  table.read("frames_start", entry.start, dimension::time);
+  table.read(
+      "frame_rate", entry.rate, dimension::rate, Range::positive,
+      "of frames; a PC2 file's sample rate counts frames from one sample to the next, its start frame is "
+      "passed over");
+  table.read(
+      "frames_start", entry.start, dimension::time, Range::any,
+      "time of the first frame; before it and after the last one the body stands, between two frames its "
+      "vertices go straight");
   return entry;
 }
 

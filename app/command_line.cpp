@@ -11,6 +11,7 @@
 #include "app/commands.h"
 #include "app/compare/compare.h"
 #include "app/export/export.h"
+#include "app/keys.h"
 #include "app/picture/picture.h"
 #include "app/stability/stability.h"
 #include "app/triangulate_command.h"
@@ -243,22 +244,26 @@ void add_view(CLI::App& app, int& exit_code) {
 void add_picture(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand("picture", "draws an output folder or a mesh as PNG");
   auto words = std::make_shared<PictureWords>();
-  command->add_option("INPUT", words->input, "output folder of a run, or an OBJ file")->required();
-  command->add_option("--with", words->with, "a further OBJ file, drawn as a body; as often as needed")
+  command
+      ->add_option("OUT", words->inputs,
+                   "output folder of a run, or an OBJ file drawn as a cloth; several are drawn side by side")
+      ->required();
+  command->add_option("--with", words->with, "an OBJ file, drawn as a body; as often as needed")
       ->type_name("BODY.obj")
       ->take_all()
       ->allow_extra_args(false);
-  command->add_option("-o,--out", words->out, "the picture (picture.png)")->type_name("FILE");
-  command->add_option("--frame", words->frame, "a frame of the run from 1, 'last' or 'all' (last)")
-      ->type_name("N");
-  command
-      ->add_option("--view", words->view,
-                   "front, back, left, right, top, or degrees round and above, such as 30,20 (30,20)")
-      ->type_name("SIDE");
-  command->add_option("--color", words->color, "what colours show: strain, speed or contact")
-      ->type_name("WHAT");
-  command->add_option("--size", words->size, "of the picture in pixels (1280x960)")->type_name("WxH");
-  command->add_flag("--grid", words->grid, "frames side by side on one sheet");
+  const auto option = [&](const char* name, std::string& value, const char* type, const char* help) {
+    command->add_option(name, value, help)->type_name(type);
+  };
+  option("-o,--out", words->out, "FILE", "the picture (OUT/picture.png, or beside the mesh)");
+  option("--frame", words->frame, "N",
+         "a frame of the run from 1, 'last', 'all', or several: 1,5,last (last)");
+  option("--view", words->view, "SIDE",
+         "front, back, left, right, side, top, or degrees round and above, such as 30,20 (30,20)");
+  option("--color", words->color, "WHAT", "what colours show: strain, speed or contact");
+  option("--size", words->size, "WxH", "of the picture in pixels (1280x960)");
+  command->add_flag("--grid", words->grid, "frames side by side on one sheet (12 when none are named)");
+  command->add_flag("--edges", words->edges, "the edges of the triangles, too");
   command->add_flag("--force", words->force, "replace a file that is there");
   command->callback([=, &exit_code] { exit_code = picture(*words); });
 }
@@ -283,8 +288,23 @@ void add_check_and_list(CLI::App& app, int& exit_code) {
   auto file = std::make_shared<std::string>();
   check->add_option("FILE", *file, "scene (.toml) or mesh (.obj)")->required();
   check->callback([=, &exit_code] { exit_code = check_file(*file); });
-  app.add_subcommand("list", "fabrics, shapes, forces, integrators and linear solvers of this build")
-      ->callback([&exit_code] { exit_code = list_parts(); });
+  CLI::App* const list =
+      app.add_subcommand("list", "fabrics, shapes, forces, integrators and linear solvers of this build");
+  auto which = std::make_shared<std::string>();
+  auto markdown = std::make_shared<bool>(false);
+  list->add_option("KIND", *which, "such as fabrics or \"linear solvers\" (all)");
+  list->add_flag("--markdown", *markdown, "as tables in Markdown");
+  list->callback([=, &exit_code] { exit_code = list_parts(*which, *markdown); });
+}
+
+void add_keys(CLI::App& app, int& exit_code) {
+  CLI::App* const command =
+      app.add_subcommand("keys", "what may stand in scene, fabric and pattern files, and what it means");
+  auto words = std::make_shared<KeysWords>();
+  command->add_option("TABLE", words->table,
+                      "such as cloth or obstacle; or all of a file: scene, fabric, pattern (everything)");
+  command->add_flag("--markdown", words->markdown, "as tables in Markdown");
+  command->callback([=, &exit_code] { exit_code = print_keys(*words); });
 }
 
 void check_command(const CLI::App& app, const std::string& word) {
@@ -322,6 +342,7 @@ int parse_and_run(int argc, char** argv) {
   add_picture(app, exit_code);
   add_export(app, exit_code);
   add_check_and_list(app, exit_code);
+  add_keys(app, exit_code);
   if (argc > 1 && argv[1][0] != '-') check_command(app, argv[1]);
   try {
     app.parse(argc, argv);

@@ -23,20 +23,72 @@ RunOptions run_options(const CommonOptions& common, const std::filesystem::path&
   return options;
 }
 
-void print_line(std::string_view name, std::string_view text) {
-  std::printf("  %-26s %s\n", std::string(name).c_str(), std::string(text).c_str());
+struct Part {
+  std::string name, text;
+};
+
+// A kind of parts: what follows its name in the heading stands in `of_each`.
+struct Kind {
+  std::string name, of_each;
+  std::vector<Part> parts;
+};
+
+template <class Infos>
+std::vector<Part> parts_of(const Infos& infos) {
+  std::vector<Part> parts;
+  for (const auto& info : infos) parts.push_back({std::string(info.name), std::string(info.summary)});
+  return parts;
 }
 
-void list_fabrics() {
-  std::printf("fabrics (area density, stretch, bending):\n");
+std::vector<Part> fabric_parts() {
+  std::vector<Part> parts;
   for (const std::string& name : fabric_names()) {
     const NamedFabric named = load_fabric(name);
     std::string text = rounded(1000 * named.fabric.area_density, 4) + " g/m^2, " +
                        rounded(named.fabric.stretch, 4) + " N/m, " + rounded(1e6 * named.fabric.bend, 4) +
                        " uN.m; " + named.description;
     if (!named.assumed.empty()) text += " (assumed: " + listed(named.assumed) + ")";
-    print_line(name, one_line(text));
+    parts.push_back({name, one_line(text)});
   }
+  return parts;
+}
+
+std::vector<Part> shape_parts() {
+  return {{"plane", "point, normal"},
+          {"sphere", "centre, radius"},
+          {"bowl", "centre, inner radius, thickness, axis: a hemispherical shell open along the axis"},
+          {"box", "centre, size, rotate"},
+          {"capsule", "a, b, radius"},
+          {"mesh", "an OBJ file: a closed body, or a thick surface"},
+          {"level-set", has_openvdb()
+                            ? "a closed OBJ file or a .vdb file, as a grid of distances"
+                            : "a closed OBJ file, as a grid of distances (.vdb files: not in this build)"}};
+}
+
+std::vector<Part> force_parts() {
+  return {{"noh-jung", "edges that pull, diagonals that buckle, damping along both"},
+          {"choi-ko", "of a regular grid of quads: neighbours that pull, next but one that buckle, damping"},
+          {"soft", "springs of a lattice that resist both ways, damping along them"},
+          {"gravity", "mass times gravity"}};
+}
+
+std::vector<Kind> kinds() {
+  return {{"fabrics", " (area density, stretch, bending)", fabric_parts()},
+          {"shapes", "", shape_parts()},
+          {"forces", "", force_parts()},
+          {"integrators", "", parts_of(integrators())},
+          {"contact modes", "", parts_of(contact_modes())},
+          {"linear solvers", "", parts_of(linear_solvers())}};
+}
+
+void print(const Kind& kind, bool markdown) {
+  if (markdown) {
+    std::printf("| name | what%s |\n| --- | --- |\n", kind.of_each.c_str());
+    for (const Part& part : kind.parts) std::printf("| `%s` | %s |\n", part.name.c_str(), part.text.c_str());
+    return;
+  }
+  std::printf("%s%s:\n", kind.name.c_str(), kind.of_each.c_str());
+  for (const Part& part : kind.parts) std::printf("  %-26s %s\n", part.name.c_str(), part.text.c_str());
 }
 
 }  // namespace
@@ -86,30 +138,16 @@ int make_level_set(const LevelSetWords& words) {
   return 0;
 }
 
-int list_parts() {
-  list_fabrics();
-  std::printf("shapes:\n");
-  print_line("plane", "point, normal");
-  print_line("sphere", "centre, radius");
-  print_line("bowl", "centre, inner radius, thickness, axis: a hemispherical shell open along the axis");
-  print_line("box", "centre, size, rotate");
-  print_line("capsule", "a, b, radius");
-  print_line("mesh", "an OBJ file: a closed body, or a thick surface");
-  print_line("level-set", has_openvdb()
-                              ? "a closed OBJ file or a .vdb file, as a grid of distances"
-                              : "a closed OBJ file, as a grid of distances (.vdb files: not in this build)");
-  std::printf("forces:\n");
-  print_line("noh-jung", "edges that pull, diagonals that buckle, damping along both");
-  print_line("choi-ko",
-             "of a regular grid of quads: neighbours that pull, next but one that buckle, damping");
-  print_line("soft", "springs of a lattice that resist both ways, damping along them");
-  print_line("gravity", "mass times gravity");
-  std::printf("integrators:\n");
-  for (const IntegratorInfo& info : integrators()) print_line(info.name, info.summary);
-  std::printf("contact modes:\n");
-  for (const ContactModeInfo& info : contact_modes()) print_line(info.name, info.summary);
-  std::printf("linear solvers:\n");
-  for (const LinearSolverInfo& info : linear_solvers()) print_line(info.name, info.summary);
+int list_parts(const std::string& which, bool markdown) {
+  Names known;
+  bool found = false;
+  for (const Kind& kind : kinds()) {
+    known.push_back(kind.name);
+    if (!which.empty() && which != kind.name) continue;
+    print(kind, markdown);
+    found = true;
+  }
+  if (!found) throw InputError("there are no '" + which + "' to list; " + suggestion(which, known));
   return 0;
 }
 

@@ -25,6 +25,7 @@ struct LevelSetWords {
 };
 int make_level_set(const LevelSetWords& words);
 
-int list_parts();
+// which: "fabrics", "linear solvers"; empty: all.
+int list_parts(const std::string& which, bool markdown);
 
 }  // namespace drape

@@ -177,7 +177,8 @@ class DropScene {
     if (options_.margin) {
       Node given = Node::of_table("--margin");
       given.members["margin"] = parse_toml_value(*options_.margin, "--margin");
-      Table(given, "--margin").read("margin", margin, dimension::length);
+      Table(given, "--margin")
+          .read("margin", margin, dimension::length, Range::any, "distance that the cloth keeps");
     }
     const Vec3 under(cloth.centre()[0], cloth.lower[1], cloth.centre()[2]);
     double bottom = under[1] - fall;

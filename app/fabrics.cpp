@@ -40,23 +40,34 @@ Names fabric_names() {
 }
 
 void read_fabric(Table& table, Fabric& fabric) {
-  table.read("area_density", fabric.area_density, dimension::area_density, Range::positive);
+  table.read("area_density", fabric.area_density, dimension::area_density, Range::positive, "mass per area");
   for (const auto& [width, spring] :
        {std::pair{"stretch", "stretch_spring"}, std::pair{"bend", "bend_spring"}})
     if (table.has(width) && table.has(spring))
       table.fail(spring, "give either " + std::string(width) + " or " + spring + ", not both");
   if (table.has("stretch")) fabric.stretch_spring.reset();
   if (table.has("bend")) fabric.bend_spring.reset();
-  table.read("stretch", fabric.stretch, dimension::stretch, Range::not_negative);
-  table.read("stretch_spring", fabric.stretch_spring, dimension::spring, Range::not_negative);
-  table.read("bend", fabric.bend, dimension::bend, Range::not_negative);
-  table.read("bend_spring", fabric.bend_spring, dimension::bend_spring, Range::not_negative);
-  table.read("buckling_clamp", fabric.buckling_clamp, dimension::spring, Range::not_negative);
-  table.read("damping", fabric.damping, dimension::damping, Range::not_negative);
+  table.read("stretch", fabric.stretch, dimension::stretch, Range::not_negative,
+             "membrane stiffness: force per width for a strain of 1");
+  table.read("stretch_spring", fabric.stretch_spring, dimension::spring, Range::not_negative,
+             "instead of stretch: the constant of every edge, k_s");
+  table.read("bend", fabric.bend, dimension::bend, Range::not_negative,
+             "bending rigidity: moment per width for a curvature of 1/m");
+  table.read("bend_spring", fabric.bend_spring, dimension::bend_spring, Range::not_negative,
+             "instead of bend: the stiffness of every diagonal, k_b");
+  table.read(
+      "buckling_clamp", fabric.buckling_clamp, dimension::spring, Range::not_negative,
+      {"c_b of every diagonal: how steeply its force sets in; a soft one makes the cloth limp where it is "
+       "hardly bent",
+       "chosen"});
+  table.read("damping", fabric.damping, dimension::damping, Range::not_negative, "of every connection");
   std::string kind = fabric.damping_kind == DampingKind::axial ? "axial" : "relative";
-  table.read("damping_kind", kind, {"relative", "axial"});
+  table.read("damping_kind", kind, Names{"relative", "axial"},
+             "relative: of every difference of velocity of two neighbours; axial: of what goes along their "
+             "connection");
   fabric.damping_kind = kind == "axial" ? DampingKind::axial : DampingKind::relative;
-  table.read("neighbour_weighting", fabric.neighbour_weighting);
+  table.read("neighbour_weighting", fabric.neighbour_weighting,
+             "forces at a vertex times the largest number of neighbours over its own: Noh & Jung, eq. 1-3");
   try {
     check(fabric);
   } catch (const InputError& error) {
@@ -64,17 +75,17 @@ void read_fabric(Table& table, Fabric& fabric) {
   }
 }
 
-NamedFabric load_fabric(const std::string& name) {
+NamedFabric load_fabric(const std::string& name, KeyNotes* notes) {
   const Names known = fabric_names();
   if (std::find(known.begin(), known.end(), name) == known.end())
     throw InputError("there is no fabric '" + name + "'; " + suggestion(name, known));
   const Node root = read_toml(fabric_folder() / (name + ".toml"));
-  Table table(root, "the fabric");
+  Table table(root, "the fabric", notes);
   NamedFabric named;
   named.name = name;
-  table.read("description", named.description);
-  table.read("source", named.source);
-  table.read("assumed", named.assumed);
+  table.read("description", named.description, "fibre and weave, for `drape list`");
+  table.read("source", named.source, "where the numbers are from");
+  table.read("assumed", named.assumed, "keys whose values nobody measured");
   table.require("area_density");
   read_fabric(table, named.fabric);
   table.finish();

@@ -19,8 +19,8 @@ struct NamedFabric {
 
 void set_data_folder(const std::filesystem::path& folder);
 
-Names fabric_names();                              // sorted
-NamedFabric load_fabric(const std::string& name);  // throws InputError
+Names fabric_names();                                                         // sorted
+NamedFabric load_fabric(const std::string& name, KeyNotes* notes = nullptr);  // throws InputError
 
 // Reads the fabric keys that the table has over `fabric`.
 void read_fabric(Table& table, Fabric& fabric);

@@ -19,10 +19,11 @@ Vec3 rotation_of(const Turns& turns, const Vec3& before) {
 
 std::vector<Keyframe> read_keyframes(Table& motion) {
   std::vector<Keyframe> all;
-  for (Table& table : motion.tables("keyframes")) {
+  for (Table& table : motion.tables("keyframes", "places and turns in the order of time")) {
     Keyframe keyframe = all.empty() ? Keyframe{} : all.back();  // what is not given stays
-    table.read_required("time", keyframe.time, dimension::time);
-    table.read("translate", keyframe.translate, dimension::length);
+    table.read_required("time", keyframe.time, dimension::time, Range::any, "when it is there");
+    const char* const before = "as before; at first not moved";
+    table.read("translate", keyframe.translate, dimension::length, {"how far it is moved, d", before});
     const Turns turns = read_turns(table);
     if (table.has("rotate")) keyframe.rotation = rotation_of(turns, keyframe.rotation);
     table.finish();
@@ -33,73 +34,88 @@ std::vector<Keyframe> read_keyframes(Table& motion) {
     }
     all.push_back(keyframe);
   }
-  if (all.empty())
-    motion.fail("keyframes", "expected at least one, as { time = \"0 s\", translate = [...] }");
   return all;
 }
 
-fs::path pose_file(Table& motion, const fs::path& folder) {
-  std::string name;
-  motion.read("poses", name);
+fs::path pose_file(const Table& motion, const std::string& name, const fs::path& folder) {
   if (name.empty()) motion.fail("poses", "expected the name of a CSV file");
   const fs::path path = (folder / name).lexically_normal();
   if (!fs::exists(path)) motion.fail("poses", path.string() + ": no such file");
   return path;
 }
 
-Motion read_steady(Table& motion, const Vec3& centre, double& start) {
-  if (!motion.has("velocity") && !motion.has("spin"))
-    motion.fail("", "there is a start or an end, but neither velocity nor spin");
-  Vec3 velocity = Vec3::Zero();
-  std::optional<double> end;
-  motion.read("velocity", velocity, dimension::speed);
-  motion.read("start", start, dimension::time);
-  motion.read("end", end, dimension::time);
-  if (end && !(*end > start)) motion.fail("end", "must come after the start, " + rounded(start, 6) + " s");
-  const Vec3 spin = read_spin(motion);
-  return end ? Motion::constant(velocity, spin, centre, start, *end)
-             : Motion::constant(velocity, spin, centre, start);
-}
+// A steady motion: the keys that it may have.
+struct Steady {
+  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();  // m/s, rad/s
+  double start = 0;                                   // s
+  std::optional<double> end;                          // s
+
+  explicit Steady(Table& motion) {
+    motion.read("velocity", velocity, dimension::speed, "steady; how it is moved");
+    spin = read_spin(motion);
+    motion.read("start", start, dimension::time, Range::any, "of velocity and spin: before, it stands");
+    motion.read("end", end, dimension::time, Range::any, {"of these: after it, it stays", "never"});
+  }
+
+  Motion about(const Table& motion, const Vec3& centre) const {
+    if (!motion.has("velocity") && !motion.has("spin"))
+      motion.fail("", "there is a start or an end, but neither velocity nor spin");
+    if (end && !(*end > start)) motion.fail("end", "must come after the start, " + rounded(start, 6) + " s");
+    return end ? Motion::constant(velocity, spin, centre, start, *end)
+               : Motion::constant(velocity, spin, centre, start);
+  }
+};
 
 }  // namespace
 
 Vec3 read_spin(Table& table) {
-  const Node* const node = table.take("spin");
+  const Node* const node = table.take("spin", "a table", "how it turns");
   if (!node) return Vec3::Zero();
   if (node->kind != Node::Kind::table)
     table.fail("spin", "expected { axis = [0, 1, 0], rate = \"90 deg/s\" }");
-  Table spin = table.tables("spin").front();
+  Table spin = table.inner("spin");
   double rate = 0;
   const Vec3 axis = read_axis(spin);
-  spin.read_required("rate", rate, dimension::angular_rate);
+  spin.read_required("rate", rate, dimension::angular_rate, Range::any,
+                     "names its angle: rpm, deg/s, rad/s, turn/s (Hz is refused)");
   spin.finish();
   return rate * axis;
 }
 
 std::optional<Motion> read_motion(Table& table, const fs::path& folder, const Vec3& default_centre,
                                   MotionSource& source) {
-  const Node* const node = table.take("motion");
+  const Node* const node =
+      table.take("motion", "a table", "how it is moved: steadily, by keyframes or by poses");
   if (!node) return std::nullopt;
   const std::string kinds = "one of velocity and spin, keyframes = [...], poses = \"poses.csv\"";
   if (node->kind != Node::Kind::table) table.fail("motion", "expected a table with " + kinds);
-  Table motion = table.tables("motion").front();
-  for (const char* key : {"velocity", "spin", "start", "end", "keyframes", "poses", "centre"})
-    motion.take(key);
-  motion.finish();
-  const bool steady =
-      motion.has("velocity") || motion.has("spin") || motion.has("start") || motion.has("end");
-  if (steady + motion.has("keyframes") + motion.has("poses") != 1) motion.fail("", "expected " + kinds);
-
+  Table motion = table.inner("motion");
   Vec3 centre = default_centre;
-  motion.read("centre", centre, dimension::length);
-  if (steady) {
+  motion.read("centre", centre, dimension::length,
+              {"c, about which it turns",
+               "the body's middle: of a plane its point, of a mesh its translate; of "
+               "pins the origin"});
+  const Steady steady(motion);
+  std::vector<Keyframe> all = read_keyframes(motion);
+  std::string poses;
+  motion.read("poses", poses, "a CSV file");
+  motion.finish();
+  const bool is_steady =
+      motion.has("velocity") || motion.has("spin") || motion.has("start") || motion.has("end");
+  if (is_steady + motion.has("keyframes") + motion.has("poses") != 1) motion.fail("", "expected " + kinds);
+
+  if (is_steady) {
     source.kind = "velocity and spin";
-    return read_steady(motion, centre, source.start);
+    source.start = steady.start;
+    return steady.about(motion, centre);
   }
   source.kind = motion.has("keyframes") ? "keyframes" : "poses";
-  if (motion.has("poses")) source.poses = pose_file(motion, folder);
-  const std::vector<Keyframe> all =
-      motion.has("keyframes") ? read_keyframes(motion) : read_poses(source.poses);
+  if (motion.has("poses")) {
+    source.poses = pose_file(motion, poses, folder);
+    all = read_poses(source.poses);
+  }
+  if (all.empty())
+    motion.fail("keyframes", "expected at least one, as { time = \"0 s\", translate = [...] }");
   const Motion path = Motion::keyframes(all, centre);  // refuses none
   source.start = all.front().time;
   return path;

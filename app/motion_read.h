@@ -1,4 +1,4 @@
-// The key `motion` of an obstacle or a pin; app/README.md lists its keys.
+// The key `motion` of an obstacle or a pin; docs/scene.md lists its keys.
 #pragma once
 
 #include <filesystem>

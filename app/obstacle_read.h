@@ -1,4 +1,4 @@
-// The [[obstacle]] tables of a scene file, and the keys that place a mesh; app/README.md lists them.
+// The [[obstacle]] tables of a scene file, and the keys that place a mesh; docs/scene.md lists them.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -18,9 +18,10 @@ using Turns = std::vector<Eigen::AngleAxisd>;  // the first is made first
 Vec3 read_axis(Table& table);    // `axis`, required; of length 1
 Turns read_turns(Table& table);  // `rotate`
 Mat3 product(const Turns& turns);
-Mat3 read_rotation(Table& table);  // `rotate`
-Placement read_placement(Table& table);
-// A file named relative to the folder of the scene.
-std::filesystem::path read_path(Table& table, const std::string& key, const std::filesystem::path& folder);
+Mat3 read_rotation(Table& table);        // `rotate`
+Placement read_place(Table& table);      // `rotate` and `translate`
+Placement read_placement(Table& table);  // and `scale`
+// `mesh`, required: a file named relative to the folder of the scene.
+std::filesystem::path read_path(Table& table, const std::filesystem::path& folder, const About& about);
 
 }  // namespace drape

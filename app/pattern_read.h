@@ -1,10 +1,11 @@
-// Sewing patterns from files: SVG drawings and TOML. What may stand in them: app/README.md.
+// Sewing patterns from files: SVG drawings and TOML. What may stand in them: docs/patterns.md.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <string_view>
 
+#include "app/key_notes.h"
 #include "app/words.h"
 #include "mesh/pattern.h"
 
@@ -15,7 +16,8 @@ namespace drape {
 Pattern read_pattern(const std::filesystem::path& path, Names& notes);
 
 Pattern parse_svg_pattern(std::string_view text, const std::string& name, Names& notes);
-Pattern parse_toml_pattern(std::string_view text, const std::string& name);
+// key_notes: where to note what is said of the keys.
+Pattern parse_toml_pattern(std::string_view text, const std::string& name, KeyNotes* key_notes = nullptr);
 
 // A seam as "front.left=back.right", or "front.left:back.right" for curves that run the same way.
 Seam parse_seam(std::string_view text, const std::string& where);

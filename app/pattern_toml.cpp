@@ -1,4 +1,4 @@
-// A sewing pattern as TOML: polygons with straight and curved sides. See app/README.md for an example.
+// A sewing pattern as TOML: polygons with straight and curved sides. docs/patterns.md has an example.
 #include "app/pattern_read.h"
 #include "app/table.h"
 #include "mesh/obj.h"
@@ -8,18 +8,22 @@ namespace {
 
 class PatternTable {
  public:
-  explicit PatternTable(const Node& root) : root_(root, "a pattern") {}
+  PatternTable(const Node& root, KeyNotes* notes) : root_(root, "a pattern", notes), notes_(notes) {}
 
   Pattern read(const std::string& name) {
     Pattern pattern;
     pattern.where = name;
-    root_.read("unit", unit_, dimension::length, Range::positive);
-    for (Table& table : root_.tables("panel")) pattern.panels.push_back(read_panel(table));
-    for (Table& table : root_.tables("seam")) {
+    root_.read("unit", unit_, dimension::length, Range::positive,
+               {"of the lengths that are numbers", "none: every length names its unit"});
+    for (Table& table : root_.tables("panel", "each a piece of cloth"))
+      pattern.panels.push_back(read_panel(table));
+    for (Table& table : root_.tables("seam", "each two curves that are sewn together")) {
       Names curves;
       bool same_way = false;
-      table.read_required("curves", curves);
-      table.read("same_way", same_way);
+      table.read_required("curves", curves, "two, each PANEL.SIDE");
+      table.read("same_way", same_way,
+                 "the first points of both belong together; else the first and the last, outlines counting "
+                 "counter-clockwise");
       table.finish();
       if (curves.size() != 2)
         table.fail("curves", "expected two curves, such as [\"front.left\", \"back.right\"]");
@@ -32,39 +36,49 @@ class PatternTable {
  private:
   Panel read_panel(Table& table) {
     Panel panel;
-    table.read_required("name", panel.name);
-    table.require("outline");
+    table.read_required("name", panel.name, "of the group of the mesh");
     Names sides;
-    table.read("sides", sides);
-    panel.outline = read_chain(table.take("outline"), true, sides);
+    const Node* const outline = take_outline(table, sides);
+    panel.outline = read_chain(outline, true, sides);
     panel.outline.where = table.where() + ": panel '" + panel.name + "'";
-    if (const Node* holes = table.take("holes")) {
+    if (const Node* holes = table.take("holes", "a list of outlines",
+                                       "each a list of points, or a table of outline and sides")) {
       if (holes->kind != Node::Kind::array) table.fail("holes", "expected a list of outlines");
       for (const Node& hole : holes->items)
         panel.holes.push_back(hole.kind == Node::Kind::table ? read_named(hole, true)
                                                              : read_chain(&hole, true, {}));
     }
-    for (Table& line : table.tables("line")) panel.lines.push_back(read_line(line));
+    for (Table& line : table.tables("line", "each a line along which the mesh has edges"))
+      panel.lines.push_back(read_line(line));
     table.finish();
     return panel;
   }
 
   // { outline = [...], sides = [...] }
   Chain read_named(const Node& node, bool loop) {
-    Table table(node, "a hole");
-    table.require("outline");
+    Table table(node, "a hole", notes_, "holes");
     Names sides;
-    table.read("sides", sides);
-    Chain chain = read_chain(table.take("outline"), loop, sides);
+    const Node* const outline = take_outline(table, sides);
+    Chain chain = read_chain(outline, loop, sides);
     table.finish();
     return chain;
   }
 
+  static const Node* take_outline(Table& table, Names& sides) {
+    table.require("outline");
+    const Node* const outline =
+        table.take("outline", "a list of points",
+                   "points [x, y], and between two of them how the way curves; closes by itself");
+    table.read("sides", sides, "a name for each side, in order; equal names in a row are one curve");
+    return outline;
+  }
+
   Chain read_line(Table& table) {
     std::string name;
-    table.read("name", name);
+    table.read("name", name, "one word");
     table.require("points");
-    Chain chain = read_chain(table.take("points"), false, {});
+    Chain chain =
+        read_chain(table.take("points", "a list of points", "as of an outline, but not closed"), false, {});
     if (name.find_first_of(" \t\r\n=:#\"") != name.npos)
       table.fail("name", "expected one word without = : #");
     std::fill(chain.names.begin(), chain.names.end(), name);
@@ -122,8 +136,12 @@ class PatternTable {
   }
 
   Segment read_curve(const Node& node, const Vec2& from, const Vec2& to) const {
-    Table table(node, "a curve");
-    const Node *bezier = table.take("bezier"), *arc = table.take("arc"), *large = table.take("large");
+    Table table(node, "a curve", notes_, "a curve");
+    const Node* const bezier =
+        table.take("bezier", "[[x, y]], or two points", "one or two control points; this or arc");
+    const Node* const arc =
+        table.take("arc", "a length", "radius of an arc of a circle; positive: turning left");
+    const Node* const large = table.take("large", "true or false", {"the longer way round", "false"});
     table.finish();
     if ((bezier != nullptr) == (arc != nullptr))
       throw InputError(node.where +
@@ -148,13 +166,14 @@ class PatternTable {
   }
 
   Table root_;
+  KeyNotes* notes_;
   std::optional<double> unit_;
 };
 
 }  // namespace
 
-Pattern parse_toml_pattern(std::string_view text, const std::string& name) {
-  return PatternTable(parse_toml(text, name)).read(name);
+Pattern parse_toml_pattern(std::string_view text, const std::string& name, KeyNotes* notes) {
+  return PatternTable(parse_toml(text, name), notes).read(name);
 }
 
 }  // namespace drape

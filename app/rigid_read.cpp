@@ -56,13 +56,27 @@ void check_moments(const Table& table, const Vec3& inertia) {
     table.fail("inertia", "no body has such moments: none may be more than the sum of the other two");
 }
 
+void read_inertia(Table& table, std::optional<Vec3>& inertia) {
+  Vec3 moments = Vec3::Zero();
+  table.read(
+      "inertia", moments, dimension::moment_of_inertia,
+      {"three moments about the axes through its middle: of a box along its edges, of a capsule along a b "
+       "and twice across, else along x, y, z (a mesh's before rotate)",
+       "a solid's"});
+  if (!table.has("inertia")) return;
+  check_moments(table, moments);
+  inertia = moments;
+}
+
 }  // namespace
 
 void read_rigid(Table& table, ObstacleEntry& entry, const Vec3& middle) {
   RigidBodyEntry rigid;
-  table.read("mass", rigid.mass, dimension::mass, Range::positive);
+  table.read("mass", rigid.mass, dimension::mass, Range::positive,
+             {"of a body that moves by what acts on it: not a plane or a bowl, and without motion",
+              "none: it stands, or moves as `motion` says"});
   for (const char* key : {"inertia", "velocity", "spin"})
-    if (table.take(key) && !table.has("mass"))
+    if (table.has(key) && !table.has("mass"))
       table.fail(key,
                  "is of a body that moves by what acts on it, which needs a mass; a body that is moved has "
                  "motion = { velocity = [...], spin = { ... } }");
@@ -74,17 +88,15 @@ void read_rigid(Table& table, ObstacleEntry& entry, const Vec3& middle) {
     table.fail("motion",
                "a body with a mass moves by what acts on it: give its first velocity and spin, or leave "
                "the mass out");
-  table.read("velocity", rigid.velocity, dimension::speed);
+  table.only_of("with a mass");
+  table.read("velocity", rigid.velocity, dimension::speed, "of its centre of mass, at first");
   rigid.spin = read_spin(table);
-  rigid.inertia = solid_moments(entry.obstacle.shape, rigid.mass);
+  std::optional<Vec3> inertia;
+  read_inertia(table, inertia);
+  table.only_of({});
+  rigid.inertia = inertia ? inertia : solid_moments(entry.obstacle.shape, rigid.mass);
   rigid.axes = own_axes(entry);
   rigid.centre = middle;
-  if (table.has("inertia")) {
-    Vec3 inertia;
-    table.read("inertia", inertia, dimension::moment_of_inertia);
-    check_moments(table, inertia);
-    rigid.inertia = inertia;
-  }
   entry.rigid = rigid;
 }
 

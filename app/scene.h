@@ -1,4 +1,4 @@
-// A scene as it was asked for: what to drape, over what, for how long. Plain data in SI units; app/README.md
+// A scene as it was asked for: what to drape, over what, for how long. Plain data in SI units; docs/scene.md
 // lists the keys. Nothing is loaded yet: app/simulation.h makes it run.
 #pragma once
 
@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/key_notes.h"
 #include "app/settings.h"
 #include "app/words.h"
 #include "constraints/constraints.h"
@@ -151,8 +152,9 @@ struct Scene {
 Scene read_scene(const std::filesystem::path& path, const std::vector<Setting>& settings);
 
 // The same from data; paths in it are relative to `folder`.
+// notes: where to note what is said of the keys.
 Scene read_scene(Node root, const std::vector<Setting>& settings, const std::filesystem::path& folder,
-                 std::string label);
+                 std::string label, KeyNotes* notes = nullptr);
 
 Names shape_names();
 Names model_names();

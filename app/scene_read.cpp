@@ -23,33 +23,45 @@ Names names_of(const Infos& infos) {
 }
 
 void read_step(Table& table, StepOptions& step) {
-  table.read("newton_iterations", step.newton_iterations, 1);
-  table.read("newton_tolerance", step.newton_tolerance, dimension::number, Range::positive);
-  table.read("tolerance", step.tolerance, dimension::number, Range::positive);
+  table.read("newton_iterations", step.newton_iterations, 1, "linear solves a step");
+  table.read("newton_tolerance", step.newton_tolerance, dimension::number, Range::positive,
+             "of the nonlinear residual, relative to the weight; without gravity the iterations end at "
+             "round-off");
+  table.read("tolerance", step.tolerance, dimension::number, Range::positive,
+             "relative residual of the linear solve; less than 1");
   if (!(step.tolerance < 1))
     table.fail("tolerance", "expected a part of the residual, less than 1, such as 1e-6");
-  table.read("max_linear_iterations", step.max_linear_iterations, 0);
-  table.read("max_contact_solves", step.max_contact_solves, 1);
-  table.read("max_halvings", step.max_halvings, 0);
-  table.read("relative_tolerance", step.relative_tolerance, dimension::number, Range::positive);
+  table.read(
+      "max_linear_iterations", step.max_linear_iterations, 0,
+      "0: chosen by size, and reaching it is a failure; given: the solve stops there and the step counts "
+      "as not converged");
+  table.read("max_contact_solves", step.max_contact_solves, 1,
+             "how often a step is solved again because a contact changed");
+  table.read("max_halvings", step.max_halvings, 0, "how often a step that fails is halved");
+  table.read(
+      "relative_tolerance", step.relative_tolerance, dimension::number, Range::positive,
+      "of `cvode-` and `arkode-`: the error of an inner step, relative to coordinates and velocities: a "
+      "cloth far from the origin is followed less closely");
   table.read("absolute_tolerance_position", step.absolute_tolerance_position, dimension::length,
-             Range::positive);
+             Range::positive, "added to it for coordinates");
   table.read("absolute_tolerance_velocity", step.absolute_tolerance_velocity, dimension::speed,
-             Range::positive);
-  table.read("max_inner_steps", step.max_inner_steps, 1);
+             Range::positive, "added to it for velocities");
+  table.read("max_inner_steps", step.max_inner_steps, 1, "of these, in one step; more is a failure");
 }
 
 void read_contact(Table& table, SimulationOptions& options) {
-  const Node* const node = table.take("contact");
-  if (!node) return;
   std::string word;
-  table.read("contact", word, names_of(contact_modes()));
+  table.read("contact", word, names_of(contact_modes()),
+             {"constraint: held in the solve; velocity: velocities projected onto the surface, what explicit "
+              "integrators do when nothing is said; restitution: impacts spring back, for these only",
+              "by the integrator"});
+  if (!table.has("contact")) return;
   for (const ContactModeInfo& info : contact_modes())
     if (word == info.name) options.step.contact = info.mode;
   try {
     contact_mode(options.integrator, options.step.contact);
   } catch (const InputError& error) {
-    throw InputError(node->where + ": " + error.what());
+    throw InputError(table.find("contact")->where + ": " + error.what());
   }
 }
 
@@ -57,18 +69,28 @@ SimulationOptions read_simulation(const Table* given) {
   SimulationOptions options;
   if (!given) return options;
   Table table = *given;
-  table.read("duration", options.duration, dimension::time, Range::positive);
-  table.read("time_step", options.time_step, dimension::time, Range::positive);
-  table.read("frame_rate", options.frame_rate, dimension::rate, Range::not_negative);
-  table.read("gravity", options.gravity, dimension::acceleration);
-  table.read("integrator", options.integrator, names_of(integrators()));
-  table.read("linear_solver", options.linear_solver, names_of(linear_solvers()));
+  table.read("duration", options.duration, dimension::time, Range::positive,
+             "what is simulated; the last step is shortened where it is not a multiple of the step");
+  table.read("time_step", options.time_step, dimension::time, Range::positive, "length of a step");
+  table.read(
+      "frame_rate", options.frame_rate, dimension::rate, Range::not_negative,
+      "of the frames that are written: frame k is the first state at or after k / rate; 0: only the last "
+      "state");
+  table.read("gravity", options.gravity, dimension::acceleration, "acts on all that has a mass");
+  table.read_part("integrator", options.integrator, names_of(integrators()), "how time goes on");
+  table.read_part("linear_solver", options.linear_solver, names_of(linear_solvers()),
+                  "what solves the system of a step, NAME or NAME+PRECONDITIONER");
   read_contact(table, options);
   read_step(table, options.step);
-  table.read("recovery_speed", options.contact.recovery_speed, dimension::speed, Range::positive);
-  table.read("threads", options.threads, 1);
-  table.read("stop_when_settled", options.stop_when_settled);
-  table.read("settle_speed", options.settle_speed, dimension::speed, Range::positive);
+  table.read("recovery_speed", options.contact.recovery_speed, dimension::speed, Range::positive,
+             "at which what starts inside a body is brought out");
+  table.read("threads", options.threads, 1,
+             {"how many; the result does not depend on it", "as many as processors"});
+  table.read("stop_when_settled", options.stop_when_settled,
+             "end when no cloth and no body with a mass has been faster than settle_speed for 0.2 s, and no "
+             "motion or frame is still to come");
+  table.read("settle_speed", options.settle_speed, dimension::speed, Range::positive,
+             "also decides between \"settled\" and \"moving\" in run.json");
   table.finish();
   if (options.frame_rate * options.time_step > 10)
     table.fail("frame_rate",
@@ -83,7 +105,7 @@ SimulationOptions read_simulation(const Table* given) {
 // A name becomes a file name.
 std::string read_name(Table& table, const fs::path& mesh) {
   std::string name = mesh.stem().string();
-  table.read("name", name);
+  table.read("name", name, {"of the output files; unique", "the mesh's, or \"soft\" of a box of particles"});
   const bool good =
       !name.empty() && name.front() != '.' &&
       std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == '/' || c == '\\'; });
@@ -92,22 +114,13 @@ std::string read_name(Table& table, const fs::path& mesh) {
   return name;
 }
 
-PinRule read_pin_rule(Table& pin) {
-  if (pin.has("vertices") + pin.has("box") + pin.has("group") != 1)
-    pin.fail("", "expected one of vertices = [...], box = [[...], [...]], group = \"...\"");
-  PinVertices by_number;
-  PinGroup by_group;
-  pin.read("vertices", by_number.vertices);
-  pin.read("group", by_group.name);
-  const Node* box = pin.take("box");
-  if (pin.has("vertices")) return by_number;
-  if (pin.has("group")) return by_group;
-  if (box->kind != Node::Kind::array || box->items.size() != 2)
+PinBox read_pin_box(const Table& pin, const Node& box) {
+  if (box.kind != Node::Kind::array || box.items.size() != 2)
     pin.fail("box", "expected two corners, [[x, y, z], [x, y, z]]");
   PinBox by_box;
   try {
-    by_box.lower = vector(box->items[0], dimension::length);
-    by_box.upper = vector(box->items[1], dimension::length);
+    by_box.lower = vector(box.items[0], dimension::length);
+    by_box.upper = vector(box.items[1], dimension::length);
   } catch (const InputError& error) {
     pin.fail("box", error.what());
   }
@@ -116,43 +129,69 @@ PinRule read_pin_rule(Table& pin) {
   return by_box;
 }
 
+PinRule read_pin_rule(Table& pin) {
+  PinVertices by_number;
+  PinGroup by_group;
+  pin.read("vertices", by_number.vertices, "numbers of vertices, from 0, in the file's order");
+  const Node* const box =
+      pin.take("box", "[[x, y, z], [x, y, z]], lengths in m",
+               "lower and upper corner: all vertices that are in it after the cloth is placed");
+  pin.read("group", by_group.name, "a group of the mesh: all its vertices");
+  if (pin.has("vertices") + pin.has("box") + pin.has("group") != 1)
+    pin.fail("", "expected one of vertices = [...], box = [[...], [...]], group = \"...\"");
+  if (pin.has("vertices")) return by_number;
+  if (pin.has("group")) return by_group;
+  return read_pin_box(pin, *box);
+}
+
 PinEntry read_pin(Table& pin, const fs::path& folder) {
-  for (const char* key : {"vertices", "box", "group", "follow", "motion"}) pin.take(key);
+  PinEntry entry;
+  entry.where = pin.where();
+  pin.read("follow", entry.follow, "name of an obstacle that the vertices move with");
+  entry.motion = read_motion(pin, folder, Vec3::Zero(), entry.source);
+  entry.rule = read_pin_rule(pin);
   pin.finish();
-  PinEntry entry{read_pin_rule(pin), pin.where(), {}, {}, {}};
-  pin.read("follow", entry.follow);
   if (pin.has("follow") && entry.follow.empty()) pin.fail("follow", "expected the name of an obstacle");
   if (pin.has("follow") && pin.has("motion"))
     pin.fail("follow", "a pin follows a body or has a motion of its own, not both");
-  entry.motion = read_motion(pin, folder, Vec3::Zero(), entry.source);
   return entry;
 }
+
+constexpr const char* pins_about = "vertices that are held, or led";
 
 ClothEntry read_cloth(Table& table, const fs::path& folder) {
   ClothEntry cloth;
   cloth.where = table.where();
-  cloth.mesh = read_path(table, "mesh", folder);
+  cloth.mesh = read_path(
+      table, folder, "OBJ file, or a sewing pattern (.svg, .toml), which is cut as `drape triangulate` does");
   cloth.name = read_name(table, cloth.mesh);
   cloth.placement = read_placement(table);
   for (const char* key : {"edge", "min_angle"})
     if (table.has(key) && !is_pattern(cloth.mesh))
       table.fail(key, "is of a pattern (.svg or .toml) as mesh; an OBJ file has its edges");
-  table.read("edge", cloth.pattern.edge, dimension::length, Range::positive);
-  table.read("min_angle", cloth.pattern.min_angle, dimension::angle, Range::not_negative);
+  table.read("edge", cloth.pattern.edge, dimension::length, Range::positive,
+             {"of a pattern: no edge of its mesh is longer", "chosen"});
+  table.read("min_angle", cloth.pattern.min_angle, dimension::angle, Range::not_negative,
+             {"of a pattern: no angle of its mesh is smaller", "28 deg"});
   std::string rest = is_pattern(cloth.mesh) ? "uv" : "mesh";
-  table.read("rest", rest, Names{"mesh", "uv"});
+  table.read("rest", rest, Names{"mesh", "uv"},
+             {"the shape it rests in: the mesh as the file has it (scaled), or its texture coordinates",
+              "\"mesh\"; of a pattern \"uv\""});
   cloth.rest_is_flat = rest == "uv";
-  table.read("uv_scale", cloth.uv_scale, dimension::length, Range::positive);
+  table.read("uv_scale", cloth.uv_scale, dimension::length, Range::positive,
+             "length of one unit of the texture coordinates, with rest = \"uv\"");
   if (table.has("uv_scale") && !cloth.rest_is_flat) table.fail("uv_scale", "goes with rest = \"uv\"");
   cloth.panels = read_panels(table);
   cloth.seams = read_seams(table);
-  table.read("model", cloth.model, model_names());
+  table.read("model", cloth.model, model_names(),
+             "noh-jung: of any mesh; choi-ko: of a regular grid of quads (holes and tubes are welcome)");
   if (!cloth.seams.empty() && cloth.model != "noh-jung")
     table.fail("model", "a cloth with seams is no regular grid; expected \"noh-jung\"");
-  table.read("fabric", cloth.fabric_name, fabric_names());
+  table.read_part("fabric", cloth.fabric_name, fabric_names(),
+                  "its values hold where the keys below say nothing");
   if (!cloth.fabric_name.empty()) cloth.fabric = load_fabric(cloth.fabric_name).fabric;
   read_fabric(table, cloth.fabric);
-  for (Table& pin : table.tables("pins")) cloth.pins.push_back(read_pin(pin, folder));
+  for (Table& pin : table.tables("pins", pins_about)) cloth.pins.push_back(read_pin(pin, folder));
   table.finish();
   return cloth;
 }
@@ -160,7 +199,7 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
 SoftEntry read_whole_soft(Table& table, const fs::path& folder) {
   SoftEntry soft = read_soft(table, folder);
   soft.name = read_name(table, soft.mesh.empty() ? fs::path("soft") : soft.mesh);
-  for (Table& pin : table.tables("pins")) soft.pins.push_back(read_pin(pin, folder));
+  for (Table& pin : table.tables("pins", pins_about)) soft.pins.push_back(read_pin(pin, folder));
   table.finish();
   return soft;
 }
@@ -199,14 +238,16 @@ bool is_pattern(const fs::path& path) { return path.extension() == ".svg" || pat
 
 Names model_names() { return {"noh-jung", "choi-ko"}; }
 
-Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path& folder, std::string label) {
+Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path& folder, std::string label,
+                 KeyNotes* notes) {
   for (const Setting& setting : settings) apply(setting, root);
-  Table table(root, "the scene");
+  Table table(root, "the scene", notes);
   Scene scene;
   scene.label = std::move(label);
-  const std::vector<Table> simulation = table.tables("simulation");
-  std::vector<Table> cloths = table.tables("cloth"), softs = table.tables("soft"),
-                     obstacles = table.tables("obstacle");
+  const std::vector<Table> simulation = table.tables("simulation", "how long, how exactly, by which methods");
+  std::vector<Table> cloths = table.tables("cloth", "each a cloth"),
+                     softs = table.tables("soft", "each a soft body, a lattice of springs"),
+                     obstacles = table.tables("obstacle", "each a body that the cloth meets");
   table.finish();  // before anything is missed: it may be there with its name mistyped
   if (simulation.size() > 1) table.fail("simulation", "there may be only one");
   scene.simulation = read_simulation(simulation.empty() ? nullptr : simulation.data());

@@ -1,4 +1,4 @@
-// The [[soft]] tables of a scene file; app/README.md lists the keys.
+// The [[soft]] tables of a scene file; docs/scene.md lists the keys.
 #pragma once
 
 #include "app/scene.h"

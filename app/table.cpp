@@ -47,6 +47,17 @@ int whole_number(const Node& node, int least) {
   return static_cast<int>(node.integer);
 }
 
+bool holds(const Names& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string in_quotes(const std::string& text) { return '"' + text + '"'; }
+
+std::string noun(const Dimension& dimension, Range range) {
+  const char* const bound = range == Range::positive ? " > 0" : range == Range::not_negative ? " ≥ 0" : "";
+  return std::string(dimension.noun) + bound;
+}
+
 }  // namespace
 
 double quantity(const Node& node, const Dimension& dimension, Range range) {
@@ -74,23 +85,36 @@ Vec3 vector(const Node& node, const Dimension& dimension) {
 }
 
 void Table::fail(const std::string& key, const std::string& what) const {
-  const auto found = node_->members.find(key);
-  if (found == node_->members.end()) throw InputError(node_->where + ": " + title_ + ": " + what);
-  const Node& node = found->second;
+  const Node* const found = find(key);
+  if (!found) throw InputError(node_->where + ": " + title_ + ": " + what);
+  const Node& node = *found;
   const bool short_value = node.kind != Node::Kind::table;
   throw InputError(node.where + ": " + key + (short_value ? " = " + written(node) : "") + ": " + what);
 }
 
-const Node* Table::take(const std::string& key) {
-  if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.push_back(key);
+const Node* Table::find(const std::string& key) const {
   const auto found = node_->members.find(key);
   return found == node_->members.end() ? nullptr : &found->second;
+}
+
+const Node* Table::ask(const std::string& key) {
+  if (!holds(asked_, key)) asked_.push_back(key);
+  return find(key);
+}
+
+void Table::note(const std::string& key, const std::string& kind, std::string_view unit,
+                 const std::string& value, const About& about) {
+  if (!notes_) return;
+  KeyNote note{key, kind, unit == dimension::number.unit ? "" : std::string(unit), value, about.text};
+  if (about.otherwise) note.otherwise = about.otherwise;
+  if (holds(required_, key)) note.otherwise.clear();
+  notes_->add(name_, kind_, std::move(note));
 }
 
 // Runs f on the value, when there is one, and says where what it throws happened.
 template <class F>
 void Table::with(const std::string& key, const F& f) {
-  const Node* const node = take(key);
+  const Node* const node = ask(key);
   if (!node) return;
   try {
     f(*node);
@@ -99,45 +123,56 @@ void Table::with(const std::string& key, const F& f) {
   }
 }
 
-void Table::read(const std::string& key, double& value, const Dimension& dimension, Range range) {
+void Table::read(const std::string& key, double& value, const Dimension& dimension, Range range,
+                 const About& about) {
+  note(key, noun(dimension, range), dimension.unit, shortest(value), about);
   with(key, [&](const Node& node) { value = quantity(node, dimension, range); });
 }
 
 void Table::read(const std::string& key, std::optional<double>& value, const Dimension& dimension,
-                 Range range) {
+                 Range range, const About& about) {
+  note(key, noun(dimension, range), dimension.unit, value ? shortest(*value) : "none", about);
   with(key, [&](const Node& node) { value = quantity(node, dimension, range); });
 }
 
-void Table::read(const std::string& key, Vec3& value, const Dimension& dimension) {
+void Table::read(const std::string& key, Vec3& value, const Dimension& dimension, const About& about) {
+  const std::string text =
+      "[" + shortest(value.x()) + ", " + shortest(value.y()) + ", " + shortest(value.z()) + "]";
+  note(key, "three, each " + std::string(dimension.noun), dimension.unit, text, about);
   with(key, [&](const Node& node) { value = vector(node, dimension); });
 }
 
-void Table::read(const std::string& key, int& value, int least) {
+void Table::read(const std::string& key, int& value, int least, const About& about) {
+  note(key, "a whole number ≥ " + std::to_string(least), "", std::to_string(value), about);
   with(key, [&](const Node& node) { value = whole_number(node, least); });
 }
 
-void Table::read(const std::string& key, bool& value) {
+void Table::read(const std::string& key, bool& value, const About& about) {
+  note(key, "true or false", "", value ? "true" : "false", about);
   with(key, [&](const Node& node) {
     want(node, Node::Kind::boolean);
     value = node.boolean;
   });
 }
 
-void Table::read(const std::string& key, std::string& value) {
+void Table::read(const std::string& key, std::string& value, const About& about) {
+  note(key, "a text", "", value.empty() ? "none" : in_quotes(value), about);
   with(key, [&](const Node& node) {
     want(node, Node::Kind::text);
     value = node.text;
   });
 }
 
-void Table::read(const std::string& key, std::vector<int>& values) {
+void Table::read(const std::string& key, std::vector<int>& values, const About& about) {
+  note(key, "a list of whole numbers", "", "none", about);
   with(key, [&](const Node& node) {
     want(node, Node::Kind::array);
     for (const Node& item : node.items) values.push_back(whole_number(item, 0));
   });
 }
 
-void Table::read(const std::string& key, Names& values) {
+void Table::read(const std::string& key, Names& values, const About& about) {
+  note(key, "a list of texts", "", "none", about);
   with(key, [&](const Node& node) {
     want(node, Node::Kind::array);
     for (const Node& item : node.items) {
@@ -147,35 +182,52 @@ void Table::read(const std::string& key, Names& values) {
   });
 }
 
-void Table::read(const std::string& key, std::string& value, const Names& known) {
-  read(key, value);
-  if (has(key) && std::find(known.begin(), known.end(), value) == known.end())
+void Table::read(const std::string& key, std::string& value, const Names& known, const About& about) {
+  Names quoted;
+  for (const std::string& name : known) quoted.push_back(in_quotes(name));
+  note(key, listed(quoted), "", value.empty() ? "none" : in_quotes(value), about);
+  read(key, value, about);
+  if (has(key) && !holds(known, value))
     fail(key, "there is no such " + key + "; " + suggestion(value, known));
 }
 
-std::vector<Table> Table::tables(const std::string& key) {
+void Table::read_part(const std::string& key, std::string& value, const Names& parts, const About& about) {
+  note(key, "a name of `drape list`", "", value.empty() ? "none" : in_quotes(value), about);
+  read(key, value, parts, about);
+}
+
+std::vector<Table> Table::tables(const std::string& key, const About& about) {
+  note(key, "a table, or several", "", "none", about);
   std::vector<Table> found;
-  const Node* const node = take(key);
+  const Node* const node = ask(key);
   if (!node) return found;
   if (node->kind == Node::Kind::table) {
-    found.emplace_back(*node, "[" + key + "]");
+    found.push_back(inner(key));
     return found;
   }
   if (node->kind != Node::Kind::array) fail(key, "expected tables, as [[" + key + "]]");
   for (std::size_t i = 0; i < node->items.size(); ++i) {
     if (node->items[i].kind != Node::Kind::table) fail(key, "expected tables, as [[" + key + "]]");
-    found.emplace_back(node->items[i], "[[" + key + "]] number " + std::to_string(i));
+    found.emplace_back(node->items[i], "[[" + key + "]] number " + std::to_string(i), notes_, key);
   }
   return found;
 }
 
+const Node* Table::take(const std::string& key, const char* kind, const About& about) {
+  note(key, kind, "", "none", about);
+  return ask(key);
+}
+
+Table Table::inner(const std::string& key) const { return {*find(key), "[" + key + "]", notes_, key}; }
+
 void Table::require(const std::string& key) {
-  if (!take(key)) fail(key, "'" + key + "' is missing");
+  if (!ask(key)) fail(key, "'" + key + "' is missing");
+  required_.push_back(key);
 }
 
 void Table::finish() const {
   for (const auto& [key, member] : node_->members)
-    if (std::find(asked_.begin(), asked_.end(), key) == asked_.end())
+    if (!holds(asked_, key))
       throw InputError(member.where + ": unknown " + (holds_tables(member) ? "table '" : "key '") + key +
                        "' in " + title_ + "; " + suggestion(key, asked_));
 }

@@ -6,13 +6,10 @@
 // normals are made at the s that is asked for: those of the ends, interpolated, could tell the wrong side.
 #include "mesh/surface_distance.h"
 
-#include <embree3/rtcore.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "mesh/closest_on_triangle.h"
 #include "mesh/crossing.h"
@@ -20,6 +17,7 @@
 #include "mesh/obj.h"
 #include "mesh/surface_faces.h"
 #include "mesh/surface_pose.h"
+#include "mesh/triangle_tree.h"
 
 namespace drape {
 namespace {
@@ -69,8 +67,7 @@ struct SurfaceDistance::Tree {
   std::vector<Vec3> vertex_normals;  // where it stands
   Vec3 centre = Vec3::Zero();
   double size = 0;  // m, diagonal of the box
-  std::unique_ptr<RTCDeviceTy, decltype(&rtcReleaseDevice)> device{nullptr, rtcReleaseDevice};
-  std::unique_ptr<RTCSceneTy, decltype(&rtcReleaseScene)> scene{nullptr, rtcReleaseScene};
+  std::optional<TriangleTree> standing;
 
   // The step. Made by the first move.
   bool moving = false;
@@ -84,12 +81,6 @@ struct SurfaceDistance::Tree {
   void grow();
   void make_ready();
   void begin_step();
-  struct Query {
-    const Tree& tree;
-    Vec3 x;
-    Candidate best;
-  };
-  static bool ask(RTCPointQueryFunctionArguments* call);
   Candidate find(const Vec3& x, const SurfacePose<Standing>& pose) const;
   Candidate find(const Vec3& x, const SurfacePose<Moving>& pose) const;
   Vec3 vertex_normal(int v, const SurfacePose<Standing>&) const { return vertex_normals[v]; }
@@ -108,20 +99,6 @@ struct SurfaceDistance::Tree {
   }
 };
 
-// Embree found a triangle within the radius. The radius stays a little longer than the best distance: by more
-// than embree's rounding to float, so that no nearer triangle and no tie is passed over.
-bool SurfaceDistance::Tree::ask(RTCPointQueryFunctionArguments* call) {
-  auto& [tree, x, best] = *static_cast<Query*>(call->userPtr);
-  const int f = static_cast<int>(call->primID);
-  const Triangle& t = tree.surface.faces[f].v;
-  const std::vector<Vec3>& p = tree.mesh.positions;
-  if (!best.offer(f, x, p[t[0]], p[t[1]], p[t[2]])) return false;
-  const auto radius = static_cast<float>(std::sqrt(best.squared) * (1 + 1e-5) + 1e-6 * tree.size);
-  if (radius >= call->query->radius) return false;
-  call->query->radius = radius;
-  return true;
-}
-
 SurfaceDistance::Tree::Tree(const TriangleMesh& given) : mesh(given), surface(surface_faces(given)) {
   measure();
   grow();
@@ -139,30 +116,11 @@ void SurfaceDistance::Tree::measure() {
   size = (hi - lo).norm();
 }
 
-// Embree's tree, over positions about the box's centre: it works in float.
 void SurfaceDistance::Tree::grow() {
-  device.reset(rtcNewDevice("threads=1"));
-  if (!device) throw std::runtime_error("embree does not start on this processor");
-  scene.reset(rtcNewScene(device.get()));
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
-  const RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* place = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
-  auto* index = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), surface.with_area));
-  if (place && index) {
-    for (const Vec3& p : mesh.positions)
-      for (int k = 0; k < 3; ++k) *place++ = static_cast<float>(p[k] - centre[k]);
-    for (int f = 0; f < surface.with_area; ++f)
-      for (int v : surface.faces[f].v) *index++ = static_cast<unsigned>(v);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene.get(), geometry);
-    rtcCommitScene(scene.get());
-  }
-  rtcReleaseGeometry(geometry);
-  if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE)
-    throw std::runtime_error("embree cannot hold the surface");
+  std::vector<Triangle> triangles;
+  triangles.reserve(static_cast<std::size_t>(surface.with_area));
+  for (int f = 0; f < surface.with_area; ++f) triangles.push_back(surface.faces[f].v);
+  standing.emplace(mesh.positions, triangles, centre);
 }
 
 // What moving takes: the boxes, and the corners at each vertex.
@@ -195,15 +153,18 @@ void SurfaceDistance::Tree::begin_step() {
   }
 }
 
+// The radius stays a little longer than the best distance: by more than embree's rounding to float, so that
+// no nearer triangle and no tie is passed over.
 Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Standing>&) const {
-  Query query{*this, x, {}};
-  const Vec3 local = x - centre;
-  RTCPointQuery ball{static_cast<float>(local.x()), static_cast<float>(local.y()),
-                     static_cast<float>(local.z()), 0, std::numeric_limits<float>::infinity()};
-  RTCPointQueryContext context;
-  rtcInitPointQueryContext(&context);
-  rtcPointQuery(scene.get(), &ball, &context, ask, &query);
-  return query.best;
+  Candidate best;
+  const std::vector<Vec3>& p = mesh.positions;
+  auto offer = [&](int f, float radius) {
+    const Triangle& t = surface.faces[f].v;
+    if (!best.offer(f, x, p[t[0]], p[t[1]], p[t[2]])) return radius;
+    return static_cast<float>(std::sqrt(best.squared) * (1 + 1e-5) + 1e-6 * size);
+  };
+  standing->near(x, offer);
+  return best;
 }
 
 // Faces that have no area at s are left to their neighbours, unless nothing else is there.

@@ -1,4 +1,4 @@
-// What `drape compare` was asked and what it found, as plain data. app/README.md explains the fields.
+// What `drape compare` was asked and what it found, as plain data. docs/compare.md explains the fields.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// `drape picture`: an output folder or a mesh as PNG, without a display.
+// `drape picture`: output folders or a mesh as PNG, without a display.
 #pragma once
 
 #include <string>
@@ -7,12 +7,14 @@
 namespace drape {
 
 struct PictureWords {
-  std::string input, out;         // a folder or an OBJ file; out empty: beside the input
-  std::vector<std::string> with;  // further OBJ files
-  std::string frame;              // "12", "last", "all"; empty: the last
-  std::string view, color, size;  // "front", "30,20" ...; "strain" ...; "1280x960"; empty: chosen
-  bool grid = false;              // frames side by side
-  bool force = false;             // replace a file that is there
+  std::vector<std::string> inputs;  // folders or OBJ files; several are drawn side by side
+  std::string out;                  // empty: FOLDER/picture.png, or beside the mesh
+  std::vector<std::string> with;    // OBJ files, drawn as bodies
+  std::string frame;                // "12", "last", "all", "1,5,last"; empty: the last
+  std::string view, color, size;    // "front", "30,20" ...; "strain" ...; "1280x960"; empty: chosen
+  bool grid = false;                // frames side by side
+  bool edges = false;               // of the triangles
+  bool force = false;               // replace a file that is there
 };
 int picture(const PictureWords& words);  // exit code
 

@@ -85,8 +85,9 @@ void add_fabric(py::module_& m) {
         return "NamedFabric('" + named.name + "', " + text(named.fabric) + ")";
       });
   m.def("fabric_names", &fabric_names, "The names that load_fabric knows, sorted.");
-  m.def("load_fabric", &load_fabric, py::arg("name"),
-        "A named fabric. ValueError when there is none of that name.");
+  m.def(
+      "load_fabric", [](const std::string& name) { return load_fabric(name); }, py::arg("name"),
+      "A named fabric. ValueError when there is none of that name.");
   m.def("_set_data_folder", &set_data_folder, py::arg("folder"),
         "Where the package keeps its named fabrics.");
 }

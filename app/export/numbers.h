@@ -1,0 +1,15 @@
+// Numbers as text, with as few digits as give the same float32 again: what the recording holds.
+#pragma once
+
+#include <charconv>
+#include <string>
+
+namespace drape {
+
+inline void append_text(std::string& text, double number) {
+  char buffer[32];
+  const float value = number == 0 ? 0.0f : static_cast<float>(number);  // no "-0"
+  text.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+}
+
+}  // namespace drape

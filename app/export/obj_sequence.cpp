@@ -1,0 +1,16 @@
+#include "app/export/obj_sequence.h"
+
+#include "app/export/sequence.h"
+#include "mesh/obj.h"
+
+namespace drape {
+
+Names obj_files(const ExportSource& source) { return sequence_files(source, ".obj"); }
+
+void write_obj_sequence(const ExportSource& source, ExportFiles& files, Names&) {
+  write_sequence(source, ".obj", files, [&](std::size_t s, std::size_t k) {
+    return format_obj(source.shape(s).mesh, source.positions(s, k));
+  });
+}
+
+}  // namespace drape

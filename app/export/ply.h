@@ -1,0 +1,20 @@
+// Stanford PLY, binary little endian, a file a frame.                              [Turk 1994]
+//   element vertex: float x y z [m], and float s t where every vertex has one uv
+//   element face: list uchar int vertex_indices, the polygons of the input (uint where one has more than 255
+//   corners)
+#pragma once
+
+#include "app/export/faces.h"
+#include "app/export/files.h"
+#include "app/export/source.h"
+
+namespace drape {
+
+// uv: of each vertex, or empty.
+std::string ply_bytes(const std::vector<Vec3>& positions, const std::vector<Uv>& uv, const Faces& faces,
+                      double time);
+
+Names ply_files(const ExportSource& source);
+void write_ply(const ExportSource& source, ExportFiles& files, Names& notes);
+
+}  // namespace drape

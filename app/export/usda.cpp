@@ -1,0 +1,153 @@
+#include "app/export/usda.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/export/faces.h"
+#include "app/export/numbers.h"
+
+namespace drape {
+namespace {
+
+void append_tuple(std::string& text, const auto& numbers) {
+  const char* before = "(";
+  for (const double number : numbers) {
+    text += before;
+    append_text(text, number);
+    before = ", ";
+  }
+  text += ')';
+}
+
+std::string list_of(const auto& items, const auto& append) {
+  std::string text = "[";
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i > 0) text += ", ";
+    append(text, items[i]);
+  }
+  return text + "]";
+}
+
+std::string tuples(const auto& items) {
+  return list_of(items, [](std::string& text, const auto& item) { append_tuple(text, item); });
+}
+
+std::string integers(const std::vector<int>& numbers) {
+  return list_of(numbers, [](std::string& text, int number) { text += std::to_string(number); });
+}
+
+std::string extent(const std::vector<Vec3>& positions) {
+  if (positions.empty()) return "[]";
+  Vec3 low = positions.front(), high = low;
+  for (const Vec3& x : positions) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  return tuples(std::vector<Vec3>{low, high});
+}
+
+class UsdaWriter {
+ public:
+  UsdaWriter(const ExportSource& source, AtomicFile& file)
+      : source_(source), file_(file), rate_(usual_frame_rate(source)) {}
+
+  void write() {
+    Names shapes;
+    for (const RecordedShape& shape : source_.recording.shapes()) shapes.push_back(shape.name);
+    const Names names = usd_names(shapes);
+    header(usd_names({source_.name}).front());
+    for (std::size_t s = 0; s < source_.shape_count(); ++s) mesh(s, names[s]);
+    file_.write("}\n");
+  }
+
+ private:
+  // Frames of the usual spacing have whole codes.
+  std::string code(std::size_t k) const { return shortest(std::round(source_.time(k) * rate_ * 1e6) / 1e6); }
+
+  void header(const std::string& root) {
+    const std::string rate = shortest(std::round(rate_ * 1e9) / 1e9);
+    file_.write("#usda 1.0\n(\n    defaultPrim = \"" + root + "\"\n    doc = \"drape\"\n");
+    file_.write("    endTimeCode = " + code(source_.frame_count() - 1) + "\n    framesPerSecond = " + rate);
+    file_.write("\n    metersPerUnit = 1\n    startTimeCode = " + code(0));
+    file_.write("\n    timeCodesPerSecond = " + rate + "\n    upAxis = \"Y\"\n)\n\n");
+    file_.write("def Xform \"" + root + "\" (\n    displayName = " + usd_string(source_.name) + "\n)\n{\n");
+  }
+
+  void line(const std::string& text) { file_.write("        " + text + "\n"); }
+
+  // The attribute in every frame, or once where the shape stands. value(k): its text.
+  void attribute(const std::string& name, std::size_t s, const auto& value) {
+    if (!source_.moves(s)) return line(name + " = " + value(std::size_t{0}));
+    line(name + ".timeSamples = {");
+    for (std::size_t k = 0; k < source_.frame_count(); ++k) line("    " + code(k) + ": " + value(k) + ",");
+    line("}");
+  }
+
+  void mesh(std::size_t s, const std::string& name) {
+    const RecordedShape& shape = source_.shape(s);
+    const Faces faces = faces_of(shape.mesh);
+    file_.write("    def Mesh \"" + name + "\" (\n        displayName = " + usd_string(shape.name) +
+                "\n    )\n    {\n");
+    line("uniform bool doubleSided = 1");
+    attribute("float3[] extent", s, [&](std::size_t k) { return extent(source_.positions(s, k)); });
+    line("int[] faceVertexCounts = " + integers(faces.counts));
+    line("int[] faceVertexIndices = " + integers(faces.corners));
+    const Corners corners = split_corners(shape.mesh, {}, crease_of(shape.body));
+    if (corners.size() == shape.mesh.positions.size()) {  // else it has hard edges: flat faces show them
+      attribute("normal3f[] normals", s,
+                [&](std::size_t k) { return tuples(normals_of(corners, source_.positions(s, k))); });
+    }
+    attribute("point3f[] points", s, [&](std::size_t k) { return tuples(source_.positions(s, k)); });
+    if (!faces.uv.empty()) {
+      line("texCoord2f[] primvars:st = " + tuples(faces.uv) + " (");
+      line("    interpolation = \"faceVarying\"");
+      line(")");
+    }
+    line("uniform token subdivisionScheme = \"none\"");
+    if (!source_.recording.velocities(s, source_.frames[0]).empty()) {
+      attribute("vector3f[] velocities", s,
+                [&](std::size_t k) { return tuples(source_.recording.velocities(s, source_.frames[k])); });
+    }
+    file_.write("    }\n");
+  }
+
+  const ExportSource& source_;
+  AtomicFile& file_;
+  double rate_;
+};
+
+}  // namespace
+
+Names usd_names(const Names& shapes) {
+  Names names;
+  for (const std::string& shape : shapes) {
+    std::string start;
+    for (const char c : shape) {
+      const bool allowed = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+      start += allowed ? c : '_';
+    }
+    if (start.empty() || (start.front() >= '0' && start.front() <= '9')) start.insert(0, "_");
+    std::string name = start;
+    for (int n = 2; std::find(names.begin(), names.end(), name) != names.end(); ++n)
+      name = start + "_" + std::to_string(n);
+    names.push_back(name);
+  }
+  return names;
+}
+
+std::string usd_string(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c >= 0 && c < 32 ? ' ' : c;
+  }
+  return quoted + '"';
+}
+
+Names usda_files(const ExportSource& source) { return {source.name + ".usda"}; }
+
+void write_usda(const ExportSource& source, ExportFiles& files, Names&) {
+  UsdaWriter(source, files.open(source.name + ".usda")).write();
+}
+
+}  // namespace drape

@@ -1,0 +1,104 @@
+#include "app/picture/still.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "mesh/obj.h"
+
+namespace drape::drawing {
+namespace {
+
+// A ball that moves is drawn with sectors of two tones, or nobody could see that it turns. A ball is what has
+// all vertices as far from its middle; of anything else nothing is returned.
+std::vector<Vec3> ball_from_middle(std::vector<Vec3> positions) {
+  Vec3 low = positions[0], high = positions[0];
+  for (const Vec3& p : positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  const Vec3 middle = (low + high) / 2;
+  const double radius = (high - low).maxCoeff() / 2;
+  for (Vec3& p : positions) {
+    p -= middle;
+    if (std::abs(p.norm() - radius) > 0.02 * radius) return {};
+  }
+  return positions;
+}
+
+RecordedShape file_shape(const std::string& path, bool body) {
+  return {std::filesystem::path(path).stem().string(), body, false, read_obj(path)};
+}
+
+const char* name_of(Field field) {
+  return field == Field::strain ? "strain" : field == Field::speed ? "speed" : "contact";
+}
+
+}  // namespace
+
+Subject::Subject(const std::string& path) : path_(path) {
+  if (!std::filesystem::is_directory(path)) {
+    meshes_.push_back(file_shape(path, false));
+    return;
+  }
+  recording_ = std::make_unique<Recording>(path);
+  for (std::size_t k = 0; k < recording_->shapes().size(); ++k) {
+    const RecordedShape& shape = recording_->shapes()[k];
+    sectors_.push_back(shape.body && shape.moves && !shape.mesh.positions.empty()
+                           ? ball_from_middle(recording_->positions(k, 0))
+                           : std::vector<Vec3>());
+  }
+}
+
+void Subject::add_body(const std::string& path) { meshes_.push_back(file_shape(path, true)); }
+
+std::string Subject::title() const {
+  std::filesystem::path path(path_);
+  if (!path.has_filename()) path = path.parent_path();  // "out/poncho/"
+  return (is_run() ? path.filename() : path.stem()).string();
+}
+
+Names Subject::missing() const { return recording_ ? recording_->missing() : Names(); }
+
+std::vector<double> Subject::values(std::size_t shape, int frame, Field field) const {
+  std::vector<double> values;
+  if (field == Field::strain) values = recording_->strains(shape, frame);
+  if (field == Field::speed) {
+    const std::vector<Vec3> velocities = recording_->velocities(shape, frame);
+    values.reserve(velocities.size());
+    for (const Vec3& v : velocities) values.push_back(v.norm());
+  }
+  if (field == Field::contact) {
+    const std::vector<Touch> touches = recording_->touches(shape, frame);
+    values.reserve(touches.size());
+    for (Touch touch : touches) values.push_back(static_cast<double>(touch));
+  }
+  return values;
+}
+
+Still Subject::still(int frame, std::optional<Field> field) const {
+  Still still;
+  int cloths = 0;
+  bool coloured = false;
+  const auto add = [&](const RecordedShape& shape, std::vector<Vec3> positions) -> StillPart& {
+    still.parts.push_back(
+        {shape.body, shape.body ? 0 : cloths++, std::move(positions), &shape.mesh.triangles, nullptr, {}});
+    return still.parts.back();
+  };
+  for (std::size_t k = 0; recording_ && k < recording_->shapes().size(); ++k) {
+    const RecordedShape& shape = recording_->shapes()[k];
+    StillPart& part = add(shape, recording_->positions(k, frame));
+    if (!sectors_[k].empty()) part.sectors = &sectors_[k];
+    if (field && !shape.body) part.values = values(k, frame, *field);
+    coloured = coloured || !part.values.empty();
+  }
+  for (const RecordedShape& shape : meshes_) add(shape, shape.mesh.positions);
+  if (recording_) still.planes = recording_->planes(frame);
+  if (field && !coloured) {
+    const std::string name = name_of(*field);
+    throw InputError(path_ + (recording_ ? ": frame " + std::to_string(frame + 1) + " has no " + name +
+                                               " of its cloths; run it again to record that"
+                                         : ": a mesh has no " + name +
+                                               " to be coloured by; only an output "
+                                               "folder of a run has"));
+  }
+  return still;
+}
+
+}  // namespace drape::drawing
