@@ -10,6 +10,7 @@ usage: ./build.sh WORD
   demo            install the packages that are missing, build, drape a cloth from an OBJ over a body into out/demo
   test            the same, then build and run every test
   build           install what is missing and build the program, build/release/drape
+  python          build the Python module into build/release/python and say how to use it
   bench           build and run the benchmarks
   pictures        run the scenes of the gallery into out/pictures and draw them into data/pictures
   compare         compare solvers and integrators on gallery scenes and generated sheets, into out/compare
@@ -38,7 +39,9 @@ required=(g++ cmake ninja-build libeigen3-dev libspectra-dev libembree-dev libto
 optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev)
 for_viewer=(nodejs npm)
 for_docs=(python3 python3-sphinx python3-myst-parser furo doxygen linkchecker)
-for_tests=(catch2 libtinyobjloader-dev libstb-dev "${for_docs[@]}")
+for_python=(python3-dev pybind11-dev python3-numpy)
+for_tests=(catch2 libtinyobjloader-dev libstb-dev "${for_docs[@]}"
+  "${for_python[@]}" python3-matplotlib python3-venv python3-pip python3-setuptools python3-wheel mypy)
 for_browser_tests=(chromium-headless-shell)
 for_export_tests=(python3-numpy python3-vtk9 blender chromium-headless-shell nodejs npm)  # readers of what is exported
 for_format=(clang-format)
@@ -200,7 +203,7 @@ run_all_tests() {
   get_required "${for_tests[@]}"
   get "${for_browser_tests[@]}" || warn "going on without a browser: the tests of the viewer will be skipped"
   get_for_export_tests
-  configure release -DDRAPE_TESTS=ON
+  configure release -DDRAPE_TESTS=ON -DDRAPE_PYTHON=ON
   compile release
   run_tests release
 }
@@ -208,7 +211,7 @@ run_all_tests() {
 sanitize() {
   get_for_build
   get_required "${for_tests[@]}"
-  configure sanitize -DDRAPE_TESTS=ON
+  configure sanitize -DDRAPE_TESTS=ON -DDRAPE_PYTHON=ON
   compile sanitize
   run_tests sanitize --label-exclude slow
 }
@@ -222,6 +225,19 @@ bench() {
   build/release/drape_bench_contact
   build/release/drape_bench_pattern
   build/release/drape_bench_solvers 32 100
+}
+
+python_module() {
+  get_for_build
+  get_required "${for_python[@]}"
+  if [[ -f build/release/CMakeCache.txt ]]; then configure release -DDRAPE_PYTHON=ON
+  else configure release -DDRAPE_TESTS=OFF -DDRAPE_PYTHON=ON; fi
+  compile release drape_python
+  local python
+  python=$(sed -n 's/^Python_EXECUTABLE:[A-Z]*=//p' build/release/CMakeCache.txt)
+  say "built for $python; to use it:"
+  printf '  PYTHONPATH=%s %s app/python/examples/single_step.py\n' build/release/python "$python"
+  printf '  DRAPE_BUILD_DIR=build/release pip install --no-build-isolation .      # into a virtual environment of that python\n'
 }
 
 # A difference between solvers is shown at the end; the other comparisons go on.
@@ -323,7 +339,7 @@ lint() {
   format --check
   get_for_build
   get_required "${for_tests[@]}" "${for_lint[@]}"
-  configure release -DDRAPE_TESTS=ON
+  configure release -DDRAPE_TESTS=ON -DDRAPE_PYTHON=ON
   local -a files
   mapfile -t files < <(sources | grep '\.cpp$' | grep -v '^tests/outside/')
   say "clang-tidy on ${#files[@]} files"
@@ -354,6 +370,10 @@ case "$word" in
     ;;
   bench) bench "$@" ;;
   format) format "$@" ;;
+  python)
+    [[ $# -eq 0 ]] || { warn "'python' takes nothing more, but got: $*"; exit 2; }
+    python_module
+    ;;
   install) install_into "$@" ;;
   -h | --help | help) usage ;;
   *)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "app/cloth_model.h"
 #include "app/pattern_read.h"
@@ -192,7 +193,8 @@ bool merge_closed_seams(Simulation& simulation) {
                              0.0);
   for (std::size_t i = 0; i < number.size(); ++i)
     masses[static_cast<std::size_t>(number[i])] += simulation.system->masses()[i];
-  simulation.state = merged_state(simulation, masses, number);
+  State fewer = merged_state(simulation, masses, number);
+  simulation.outgrown.push_back(std::exchange(simulation.state, std::move(fewer)));
   for (Cloth& cloth : simulation.cloths) cloth.renumber(number);
   simulation.constraints->merge(number);
   Names said_before;

@@ -11,9 +11,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+fs::path data_folder;  // that was set
+
 // The first of the candidate data folders that has fabrics.
 fs::path fabric_folder() {
   if (const char* chosen = std::getenv("DRAPE_DATA"); chosen && *chosen) return fs::path(chosen) / "fabrics";
+  if (!data_folder.empty()) return data_folder / "fabrics";
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) {
@@ -24,6 +27,8 @@ fs::path fabric_folder() {
 }
 
 }  // namespace
+
+void set_data_folder(const fs::path& folder) { data_folder = folder; }
 
 Names fabric_names() {
   Names names;

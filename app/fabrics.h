@@ -1,7 +1,9 @@
 // Named fabrics: data/fabrics/NAME.toml, each with its source and with what was assumed.
-// The data folder is $DRAPE_DATA, or else ../share/drape beside the program, or else the one it was built
-// with.
+// The data folder is $DRAPE_DATA, or else one that was set, or ../share/drape beside the program, or the one
+// it was built with.
 #pragma once
+
+#include <filesystem>
 
 #include "app/table.h"
 #include "solver/fabric.h"
@@ -14,6 +16,8 @@ struct NamedFabric {
   Names assumed;  // keys that nobody measured
   Fabric fabric;
 };
+
+void set_data_folder(const std::filesystem::path& folder);
 
 Names fabric_names();                                                         // sorted
 NamedFabric load_fabric(const std::string& name, KeyNotes* notes = nullptr);  // throws InputError

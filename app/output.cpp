@@ -125,7 +125,7 @@ void Output::frame(const State& state) {
   }
 }
 
-void Output::finish(const State& state, RunRecord record) {
+void Output::finish(const State& state, RunRecord& record) {
   record.frame_times = frame_times_;
   for (Pc2Writer& cache : caches_) cache.close();
   for (FrameFields& fields : fields_) fields.close();

@@ -27,7 +27,7 @@ class Output {
 
   void frame(const State& state);  // pc2: a sample; obj: a file, from number 1; and its fields
   void step(const StepRow& row) { steps_->add(row); }
-  void finish(const State& state, RunRecord record);  // adds to it what was written
+  void finish(const State& state, RunRecord& record);  // adds to it what was written
 
   // What finish() left, and how much of it: "25 frames", or nothing.
   struct Written {

@@ -8,8 +8,8 @@
 
 #include "app/interrupt.h"
 #include "app/measure.h"
-#include "app/progress.h"
 #include "app/summary.h"
+#include "mesh/obj.h"
 #include "mesh/threads.h"
 
 namespace drape {
@@ -59,66 +59,63 @@ double last_motion(const Scene& scene, const Simulation& simulation) {
   return last;
 }
 
-class Run {
- public:
-  Run(const Scene& scene, Simulation& simulation, Output& output, const RunOptions& options);
-  int to_the_end();
+double step_of(const SimulationOptions& wanted, const std::optional<double>& time_step) {
+  const double h = time_step.value_or(wanted.time_step);
+  if (!(h > 0) || !std::isfinite(h))
+    throw InputError("time step = " + rounded(h, 6) + " s: a time step is greater than zero");
+  return h;
+}
 
- private:
-  bool step();
-  bool at_rest(const StepRow& row) const;
-  bool slow(double cloth_speed) const;
-  void record_step(const StepRow& row);
-  void write_due_frames();
-  void write_frame();
-  bool at_last_step() const { return next_step_ == step_count_; }
-  bool at_end() const { return next_step_ > step_count_; }
-  void conclude();
-  void note_failure(const StepFailure& failure);
-  void tell_once(bool& told, const std::string& line);
-  void tell_of_open_seams();
-  int exit_code() const { return record_.failure ? 1 : record_.interrupted ? 130 : 0; }
+double end_of(const SimulationOptions& wanted, double start, const std::optional<double>& duration) {
+  if (!duration) return std::max(start, wanted.duration);
+  if (!(*duration >= 0) || !std::isfinite(*duration))
+    throw InputError("duration = " + rounded(*duration, 6) + " s: a duration is not negative");
+  return start + *duration;
+}
 
-  const SimulationOptions& wanted_;
-  Simulation& simulation_;
-  Output& output_;
-  bool quiet_;
-  Progress progress_;
-  RunRecord record_;
-  State before_;  // the step under way
-  Clock::time_point start_ = Clock::now();
-  long step_count_, next_step_ = 1;
-  long next_frame_ = 0;
-  double last_motion_;         // s
-  double last_step_;           // s, of the last step
-  double settled_since_ = -1;  // s, -1: it moves
-  bool told_cut_ = false, told_not_converged_ = false;
-};
+}  // namespace
 
-Run::Run(const Scene& scene, Simulation& simulation, Output& output, const RunOptions& options)
-    : wanted_(scene.simulation),
+Run::Run(Simulation& simulation, const RunOptions& options)
+    : wanted_(simulation.scene->simulation),
       simulation_(simulation),
-      output_(output),
-      quiet_(options.quiet),
-      progress_(wanted_.duration, quiet_),
-      last_motion_(last_motion(scene, simulation)) {
-  const double h = wanted_.time_step, exact = wanted_.duration / h;
-  step_count_ = std::max(1L, std::lround(exact));
-  last_step_ = h;
-  if (std::abs(exact - static_cast<double>(step_count_)) >
-      1e-6 * exact) {  // not a whole number: the last step is shorter
+      h_(step_of(wanted_, options.time_step)),
+      start_time_(simulation.state.time),
+      end_time_(end_of(wanted_, start_time_, options.duration)),
+      progress_(end_time_, options.quiet),
+      last_motion_(last_motion(*simulation.scene, simulation)) {
+  if (!options.out.empty()) output_.emplace(options.out, *simulation.scene, simulation, options.frames);
+  plan(!options.duration);
+  describe();
+  write_due_frames();
+}
+
+// How many steps, and which of its frames is the first.
+void Run::plan(bool until_duration) {
+  const double exact = (end_time_ - start_time_) / h_;
+  last_step_ = h_;
+  if (exact > 1e-6) step_count_ = std::max(1L, std::lround(exact));
+  const bool whole = !(std::abs(exact - static_cast<double>(step_count_)) > 1e-6 * std::max(1.0, exact));
+  if (!whole) {  // the last step is shorter
     step_count_ = static_cast<long>(std::ceil(exact));
-    last_step_ = wanted_.duration - h * static_cast<double>(step_count_ - 1);
+    last_step_ = end_time_ - start_time_ - h_ * static_cast<double>(step_count_ - 1);
   }
-  record_.scene = scene.label;
-  record_.integrator = simulation.integrator->name();
+  const long before = std::lround(start_time_ / h_);
+  if (static_cast<double>(before) * h_ == start_time_) steps_before_ = before;
+  if (whole && steps_before_ > 0 && !until_duration)
+    end_time_ = static_cast<double>(steps_before_ + step_count_) * h_;
+  next_frame_ = std::max(0L, static_cast<long>(std::ceil((start_time_ - 1e-6 * h_) * wanted_.frame_rate)));
+}
+
+void Run::describe() {
+  record_.scene = simulation_.scene->label;
+  record_.integrator = simulation_.integrator->name();
   record_.contact = name(contact_mode(record_.integrator, wanted_.step.contact));
   record_.linear_solver = wanted_.linear_solver;
   record_.threads = threads();
-  record_.duration = wanted_.duration;
-  record_.time_step = h;
-  record_.warnings = simulation.messages;
-  for (const Cloth& c : simulation.cloths)
+  record_.duration = end_time_;
+  record_.time_step = h_;
+  record_.warnings = simulation_.messages;
+  for (const Cloth& c : simulation_.cloths)
     if (c.soft)
       record_.softs.push_back({c.name, c.end_particle - c.first_particle, c.mesh.vertex_count(),
                                c.mesh.triangle_count(), *c.soft});
@@ -127,49 +124,48 @@ Run::Run(const Scene& scene, Simulation& simulation, Output& output, const RunOp
           {c.name, c.mesh.vertex_count(), c.mesh.triangle_count(), c.report.edges, c.report.diagonals});
 }
 
-int Run::to_the_end() {
-  write_due_frames();
-  while (!at_end() && !interrupted() && step()) {
-  }
-  record_.interrupted = interrupted() && !at_end() && !record_.failure;
-  conclude();
-  return exit_code();
+// Whole steps from the start, not a sum that drifts by round-off.
+double Run::time_after(long step) const {
+  if (step == step_count_) return end_time_;
+  if (steps_before_ > 0) return static_cast<double>(steps_before_ + step) * h_;
+  return start_time_ + static_cast<double>(step) * h_;
 }
 
-// False when the run is over: it failed, or it has settled.
-bool Run::step() {
+const StepRow& Run::step() {
   State& state = simulation_.state;
   before_ = state;
-  StepRow row;
-  row.step = next_step_;
-  row.report = simulation_.advance(at_last_step() ? last_step_ : wanted_.time_step);
+  row_.step = steps_before_ + next_step_;
+  row_.report = simulation_.advance(at_last_step() ? last_step_ : h_);
   if (const int bad = first_not_finite(state); bad >= 0) {  // out of the range of numbers
-    if (row.report.done) row.report.failure = {"a position or velocity is not a finite number", bad, {}};
-    row.report.done = false;
+    if (row_.report.done) row_.report.failure = {"a position or velocity is not a finite number", bad, {}};
+    row_.report.done = false;
     state = before_;
   }
-  if (!row.report.done) {
-    note_failure(row.report.failure);
-    return false;
+  if (row_.report.done) state.time = time_after(next_step_);
+  row_.time = state.time;
+  row_.kinetic_energy = simulation_.system->kinetic_energy(state.v);
+  row_.elastic_energy = simulation_.system->elastic_energy(state.x);
+  row_.gravity_energy = simulation_.system->gravity_energy(state.x);
+  row_.max_speed = max_speed(state.v);
+  row_.max_edge_strain = largest_strain(simulation_.cloths, state.x);
+  if (!row_.report.done) {
+    note_failure(row_.report.failure);
+    return row_;
   }
-  // Whole steps from the start, not a sum that drifts by round-off.
-  state.time = at_last_step() ? wanted_.duration : static_cast<double>(next_step_) * wanted_.time_step;
-  row.time = state.time;
-  row.kinetic_energy = simulation_.system->kinetic_energy(state.v);
-  row.elastic_energy = simulation_.system->elastic_energy(state.x);
-  row.gravity_energy = simulation_.system->gravity_energy(state.x);
-  row.max_speed = max_speed(state.v);
-  row.max_edge_strain = largest_strain(simulation_.cloths, state.x);
-  record_step(row);
+  record_step(row_);
   ++next_step_;
   write_due_frames();
-  progress_.show(row);
+  progress_.show(row_);
+  watch_settling();
+  return row_;
+}
 
-  if (!at_rest(row))
+void Run::watch_settling() {
+  if (!at_rest(row_))
     settled_since_ = -1;
   else if (settled_since_ < 0)
-    settled_since_ = row.time;
-  return !(wanted_.stop_when_settled && settled_since_ >= 0 && row.time - settled_since_ >= settle_time);
+    settled_since_ = row_.time;
+  settled_ = wanted_.stop_when_settled && settled_since_ >= 0 && row_.time - settled_since_ >= settle_time;
 }
 
 // Nothing moves, nor is it going to.
@@ -192,9 +188,9 @@ void Run::tell_once(bool& told, const std::string& line) {
 void Run::record_step(const StepRow& row) {
   const StepReport& report = row.report;
   const auto write_start = Clock::now();
-  output_.step(row);
+  if (output_) output_->step(row);
   record_.write_ms += 1000 * seconds_since(write_start);
-  record_.steps = row.step;
+  record_.steps = next_step_;
   record_.step_ms.push_back(report.step_ms);
   record_.linear_iterations.push_back(report.linear_iterations);
   record_.inner_steps.push_back(report.inner_steps);
@@ -223,15 +219,17 @@ void Run::record_step(const StepRow& row) {
 }
 
 void Run::write_frame() {
+  framed_ = true;
+  if (!output_) return;
   const auto start = Clock::now();
-  output_.frame(simulation_.state);
+  output_->frame(simulation_.state);
   record_.write_ms += 1000 * seconds_since(start);
 }
 
 // Frame k belongs to the time k / rate: the first state at or after it.
 void Run::write_due_frames() {
   if (!(wanted_.frame_rate > 0)) return;
-  const double soon = simulation_.state.time + 1e-6 * wanted_.time_step;
+  const double soon = simulation_.state.time + 1e-6 * h_;
   while (static_cast<double>(next_frame_) <= soon * wanted_.frame_rate) {
     write_frame();
     ++next_frame_;
@@ -240,11 +238,11 @@ void Run::write_due_frames() {
 
 void Run::note_failure(const StepFailure& failure) {
   Failure noted;
-  noted.step = next_step_;
+  noted.step = row_.step;
   noted.time = simulation_.state.time;
   noted.what = failure.what;
   noted.term = failure.force;
-  std::string line = "error: step " + std::to_string(next_step_) + " (from " + rounded(noted.time, 4) +
+  std::string line = "step " + std::to_string(noted.step) + " (from " + rounded(noted.time, 4) +
                      " s) failed: " + failure.what;
   if (failure.particle >= 0 && failure.particle < simulation_.state.particles()) {
     const Cloth& cloth = simulation_.cloth_of(failure.particle);
@@ -261,7 +259,7 @@ void Run::note_failure(const StepFailure& failure) {
   if (!noted.term.empty()) line += "; the term is '" + noted.term + "'";
   line += "; try a smaller --time-step, a lower stiffness, or look at the mesh there with 'drape check'";
   progress_.clear();
-  std::fprintf(stderr, "%s\n", one_line(line).c_str());
+  failure_ = one_line(line);
   record_.failure = noted;
 }
 
@@ -278,8 +276,9 @@ void Run::tell_of_open_seams() {
     }
 }
 
-void Run::conclude() {
-  if (!(wanted_.frame_rate > 0)) write_frame();
+const RunRecord& Run::finish() {
+  record_.interrupted = !over();
+  if (!(wanted_.frame_rate > 0) || !framed_) write_frame();
   record_.simulated_seconds = simulation_.state.time;
   record_.settled = record_.steps > 0 && slow(record_.max_speed);
   for (double depth : simulation_.constraints->penetration(simulation_.state.x))
@@ -288,12 +287,12 @@ void Run::conclude() {
   record_.bodies = body_records(simulation_);
   record_.state_hash = state_hash(simulation_.state);
   record_.wall_seconds = seconds_since(start_);
-  output_.finish(simulation_.state, record_);
+  if (output_) output_->finish(simulation_.state, record_);
   progress_.clear();
-  if (!quiet_) std::fputs(summary(record_, output_).c_str(), stdout);
+  return record_;
 }
 
-}  // namespace
+std::string Run::summary() const { return output_ ? drape::summary(record_, *output_) : std::string(); }
 
 int run(const Scene& scene, const RunOptions& options) {
   if (scene.simulation.threads > 0) set_threads(scene.simulation.threads);
@@ -302,8 +301,12 @@ int run(const Scene& scene, const RunOptions& options) {
     for (const std::string& message : simulation.messages)
       std::fprintf(stderr, "%s\n", one_line(message).c_str());
   catch_interrupts();
-  Output output(options.out, scene, simulation, options.frames);
-  return Run(scene, simulation, output, options).to_the_end();
+  Run run(simulation, options);
+  while (!run.over() && !interrupted()) run.step();
+  if (!run.failure().empty()) std::fprintf(stderr, "error: %s\n", run.failure().c_str());
+  const RunRecord& record = run.finish();
+  if (!options.quiet) std::fputs(run.summary().c_str(), stdout);
+  return record.failure ? 1 : record.interrupted ? 130 : 0;
 }
 
 }  // namespace drape

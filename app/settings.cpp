@@ -59,26 +59,31 @@ Setting parse_setting(const std::string& text) {
   return {text.substr(0, equals), text.substr(equals + 1), "--set " + text.substr(0, equals)};
 }
 
-void apply(const Setting& setting, Node& root) {
-  const Names parts = split(setting.path);
+void apply(const std::string& path, Node value, Node& root) {
+  const std::string where = value.where;
+  const Names parts = split(path);
   Node* node = &root;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const bool last = i + 1 == parts.size();
-    if (parts[i].empty()) throw InputError(setting.where + ": the path has an empty part");
+    if (parts[i].empty()) throw InputError(where + ": the path has an empty part");
     if (node->kind == Node::Kind::array) {
-      node = &entry(*node, parts[i], setting.where);
+      node = &entry(*node, parts[i], where);
     } else if (node->kind == Node::Kind::table) {
       const bool is_list =
           i == 0 && !last && (parts[0] == "cloth" || parts[0] == "soft" || parts[0] == "obstacle");
       if (is_list && !node->members.contains(parts[0]))
-        throw InputError(setting.where + ": there is no [[" + parts[0] + "]]");
-      node = &node->members.try_emplace(parts[i], Node::of_table(setting.where)).first->second;
+        throw InputError(where + ": there is no [[" + parts[0] + "]]");
+      node = &node->members.try_emplace(parts[i], Node::of_table(where)).first->second;
       if (is_list) make_list(*node);
     } else {
-      throw InputError(setting.where + ": '" + parts[i - 1] + "' has no parts");
+      throw InputError(where + ": '" + parts[i - 1] + "' has no parts");
     }
   }
-  *node = parse_toml_value(setting.value, setting.where);
+  *node = std::move(value);
+}
+
+void apply(const Setting& setting, Node& root) {
+  apply(setting.path, parse_toml_value(setting.value, setting.where), root);
 }
 
 }  // namespace drape

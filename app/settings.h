@@ -20,5 +20,7 @@ struct Setting {
 Setting parse_setting(const std::string& text);  // "PATH=VALUE"; throws InputError
 
 void apply(const Setting& setting, Node& root);  // throws InputError when the path leads nowhere
+void apply(const std::string& path, Node value,
+           Node& root);  // the same, from data; value.where stands in messages
 
 }  // namespace drape

@@ -62,6 +62,7 @@ struct Simulation {
   std::unique_ptr<Constraints> constraints;
   std::unique_ptr<Integrator> integrator;  // refers to the two above
   State state;
+  std::vector<State> outgrown;         // as it was when particles became one: arrays may look at it still
   Names messages;                      // "warning: ..." and "note: ...", one line each
   std::shared_ptr<const Scene> scene;  // what it was made from
   // Makes the integrator, now and again when particles have become one.

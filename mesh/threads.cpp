@@ -1,5 +1,7 @@
 #include "mesh/threads.h"
 
+#include <pthread.h>
+
 #include <atomic>
 #include <cstdint>
 #include <exception>
@@ -112,6 +114,14 @@ std::atomic<int> chosen{0};
 std::mutex one_loop_at_a_time;
 thread_local bool inside_a_loop = false;
 
+std::unique_ptr<Helpers>& helpers_of_process() {
+  static std::unique_ptr<Helpers> helpers;
+  // A forked child has none of its parent's threads: it makes its own. Not destroyed: they cannot be joined.
+  static const int registered = pthread_atfork(nullptr, nullptr, [] { (void)helpers.release(); });
+  (void)registered;
+  return helpers;
+}
+
 }  // namespace
 
 int threads() {
@@ -126,13 +136,13 @@ void set_threads(int count) {
 }
 
 void run_in_parallel(int count, void (*f)(const void*, int), const void* context) {
-  static std::unique_ptr<Helpers> helpers;
   std::unique_lock lock(one_loop_at_a_time, std::defer_lock);
   // A loop within a loop, or of a second caller at the same time, is done by its caller alone.
   if (inside_a_loop || !lock.try_lock()) {
     for (int k = 0; k < count; ++k) f(context, k);
     return;
   }
+  std::unique_ptr<Helpers>& helpers = helpers_of_process();
   if (!helpers || helpers->count() != threads() - 1) {
     helpers.reset();
     helpers = std::make_unique<Helpers>(threads() - 1);

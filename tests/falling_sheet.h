@@ -8,7 +8,7 @@ namespace drape::test {
 
 // A hung sheet after some steps: the matrix of a real fall, slack and taut edges in it.
 struct FallingSheet : HungSheet {
-  Recording recording;
+  SystemRecording recording;
   ImplicitEuler stepper;
   Filter filter;
   VecX b, guess;

@@ -21,7 +21,7 @@ struct Recorded {
         std::make_unique<RecordingSolver>(make_linear_solver(scene.simulation.linear_solver), recording),
         scene.simulation.step);
   }
-  Recording recording;
+  SystemRecording recording;
   Simulation simulation;
 };
 

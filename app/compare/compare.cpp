@@ -90,7 +90,7 @@ class Path {
   const Scene& scene_;
   Simulation& simulation_;
   const CommonOptions& common_;
-  Recording recording_;
+  SystemRecording recording_;
 };
 
 bool compare_scene(const Scene& scene, Simulation& simulation, const CompareOptions& options,

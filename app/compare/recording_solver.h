@@ -17,7 +17,7 @@ struct LinearSystem {
   VecX solution;  // m/s, of the solver that decided the path
 };
 
-struct Recording {
+struct SystemRecording {
   bool on = false;                   // off: nothing is copied
   bool keep_first = false;           // of several solves, the system of the first stays
   std::optional<LinearSystem> last;  // the last system solved while on
@@ -26,7 +26,7 @@ struct Recording {
 class RecordingSolver final : public LinearSolver {
  public:
   // Keeps a reference to the recording.
-  RecordingSolver(std::unique_ptr<LinearSolver> solver, Recording& recording)
+  RecordingSolver(std::unique_ptr<LinearSolver> solver, SystemRecording& recording)
       : solver_(std::move(solver)), recording_(recording) {}
 
   std::string_view name() const override { return solver_->name(); }
@@ -44,7 +44,7 @@ class RecordingSolver final : public LinearSolver {
 
  private:
   std::unique_ptr<LinearSolver> solver_;
-  Recording& recording_;
+  SystemRecording& recording_;
 };
 
 }  // namespace drape

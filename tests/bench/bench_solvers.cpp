@@ -24,7 +24,7 @@ using namespace drape::bench;
 
 LinearSystem hung_sheet(int side) {
   Sheet sheet(side, 2000);
-  Recording recording{.keep_first = true, .last = {}};
+  SystemRecording recording{.keep_first = true, .last = {}};
   ImplicitEuler stepper(sheet.system, sheet.constraints,
                         std::make_unique<RecordingSolver>(make_linear_solver("ppcg+multigrid"), recording),
                         {.tolerance = 1e-3});

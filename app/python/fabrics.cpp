@@ -1,0 +1,190 @@
+// Fabric, named fabrics, and masses and forces made from them.
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "app/fabrics.h"
+#include "app/python/arrays.h"
+#include "app/python/forces.h"
+#include "app/words.h"
+#include "solver/choi_ko.h"
+#include "solver/noh_jung.h"
+#include "solver/soft.h"
+
+namespace drape::python {
+namespace {
+
+DampingKind damping_kind(const std::string& name) {
+  if (name == "relative") return DampingKind::relative;
+  if (name == "axial") return DampingKind::axial;
+  throw py::value_error("damping_kind: there is no '" + name + "'; " +
+                        suggestion(name, {"relative", "axial"}));
+}
+
+const char* name_of(DampingKind kind) { return kind == DampingKind::axial ? "axial" : "relative"; }
+
+using Given = std::optional<double>;
+
+Fabric made(double area_density, double stretch, double bend, Given stretch_spring, Given bend_spring,
+            Given buckling_clamp, double damping, const std::string& kind, bool neighbour_weighting) {
+  Fabric fabric{area_density,       stretch,        bend,    stretch_spring,
+                bend_spring,        buckling_clamp, damping, damping_kind(kind),
+                neighbour_weighting};
+  check(fabric);
+  return fabric;
+}
+
+std::string text(const Fabric& fabric) {
+  std::string all = "Fabric(area_density=" + rounded(fabric.area_density, 6) + " kg/m^2";
+  all += fabric.stretch_spring ? ", stretch_spring=" + rounded(*fabric.stretch_spring, 6) + " N/m"
+                               : ", stretch=" + rounded(fabric.stretch, 6) + " N/m";
+  all += fabric.bend_spring ? ", bend_spring=" + rounded(*fabric.bend_spring, 6) + " N m^2"
+                            : ", bend=" + rounded(fabric.bend, 6) + " N m";
+  return all + ", damping=" + rounded(fabric.damping, 6) + " N s/m)";
+}
+
+void add_fabric(py::module_& m) {
+  using namespace py::literals;
+  py::class_<Fabric>(
+      m, "Fabric",
+      "What a cloth is made of, in numbers a textile laboratory gives. SI units:\n"
+      "area_density [kg/m^2], stretch [N/m] membrane stiffness per width, bend [N m] bending rigidity\n"
+      "per width; stretch_spring [N/m] and bend_spring [N m^2] replace these two by the same constant\n"
+      "for every connection; buckling_clamp [N/m]; damping [N s/m] of every connection, 'relative' or\n"
+      "'axial'; neighbour_weighting after Noh & Jung, eq. 1-3.")
+      .def(py::init(&made), py::kw_only(), "area_density"_a = 0.15, "stretch"_a = 500.0, "bend"_a = 1e-5,
+           "stretch_spring"_a = py::none(), "bend_spring"_a = py::none(), "buckling_clamp"_a = py::none(),
+           "damping"_a = 0.0, "damping_kind"_a = "relative", "neighbour_weighting"_a = false,
+           "ValueError names a value that is negative, not finite, or zero where it may not be.")
+      .def_readwrite("area_density", &Fabric::area_density, "kg/m^2")
+      .def_readwrite("stretch", &Fabric::stretch, "N/m, membrane stiffness per width")
+      .def_readwrite("bend", &Fabric::bend, "N m, bending rigidity per width")
+      .def_readwrite("stretch_spring", &Fabric::stretch_spring, "N/m, of every edge; replaces stretch")
+      .def_readwrite("bend_spring", &Fabric::bend_spring, "N m^2, of every diagonal; replaces bend")
+      .def_readwrite("buckling_clamp", &Fabric::buckling_clamp, "N/m, of every diagonal; None: chosen")
+      .def_readwrite("damping", &Fabric::damping, "N s/m, of every connection")
+      .def_property(
+          "damping_kind", [](const Fabric& fabric) { return name_of(fabric.damping_kind); },
+          [](Fabric& fabric, const std::string& kind) { fabric.damping_kind = damping_kind(kind); },
+          "'relative' or 'axial'")
+      .def_readwrite("neighbour_weighting", &Fabric::neighbour_weighting, "Noh & Jung, eq. 1-3")
+      .def(
+          "copy", [](const Fabric& fabric) { return Fabric(fabric); },
+          "Another fabric with the same numbers.")
+      .def("__copy__", [](const Fabric& fabric) { return Fabric(fabric); })
+      .def("__deepcopy__", [](const Fabric& fabric, const py::object&) { return Fabric(fabric); })
+      .def("__repr__", &text);
+
+  py::class_<NamedFabric>(m, "NamedFabric",
+                          "A fabric with its name, its source, and what nobody measured of it.")
+      .def_readonly("name", &NamedFabric::name)
+      .def_readonly("description", &NamedFabric::description)
+      .def_readonly("source", &NamedFabric::source)
+      .def_readonly("assumed", &NamedFabric::assumed, "keys that nobody measured")
+      .def_property_readonly("fabric", [](const NamedFabric& named) { return Fabric(named.fabric); })
+      .def("__repr__", [](const NamedFabric& named) {
+        return "NamedFabric('" + named.name + "', " + text(named.fabric) + ")";
+      });
+  m.def("fabric_names", &fabric_names, "The names that load_fabric knows, sorted.");
+  m.def(
+      "load_fabric", [](const std::string& name) { return load_fabric(name); }, py::arg("name"),
+      "A named fabric. ValueError when there is none of that name.");
+  m.def("_set_data_folder", &set_data_folder, py::arg("folder"),
+        "Where the package keeps its named fabrics.");
+}
+
+void add_soft_bodies(py::module_& m) {
+  using namespace py::literals;
+  py::class_<Lattice, std::shared_ptr<Lattice>>(m, "Lattice",
+                                                "Particles on the corners of cells, joined by springs.")
+      .def_property_readonly(
+          "positions", [](const Lattice& lattice) { return copied_rows(lattice.positions); },
+          "(n, 3) [m], of the particles")
+      .def_property_readonly("particles", &Lattice::particle_count)
+      .def("__repr__", [](const Lattice& lattice) {
+        return "Lattice(" + counted(lattice.particle_count(), "particle") + ")";
+      });
+  m.def(
+      "box_lattice",
+      [](const std::array<int, 3>& particles, const Vec3& spacing) {
+        for (const int count : particles)
+          if (count < 2) throw py::value_error("particles: a lattice has at least 2 along each axis");
+        if (!(spacing.minCoeff() > 0) || !spacing.allFinite())
+          throw py::value_error("spacing: a spacing is greater than zero");
+        return box_lattice(particles, spacing);
+      },
+      "particles"_a, "spacing"_a,
+      "So many particles along x, y, z, at least 2, this far apart [m], centred.");
+  m.def(
+      "filled_lattice",
+      [](const TriangleMesh& surface, double spacing) {
+        if (!(spacing > 0)) throw py::value_error("spacing: a spacing is greater than zero");
+        return filled_lattice(surface, spacing, "the mesh");
+      },
+      "surface"_a, "spacing"_a,
+      "Cubes of this edge [m] inside a closed mesh. ValueError where it is not closed.");
+
+  py::class_<SoftMaterial>(m, "SoftMaterial", "What a soft body is made of; SI units.")
+      .def(py::init([](double density, Given mass, Given young, double structural, double shear, double bend,
+                       double damping, const std::string& kind) {
+             const SoftMaterial material{
+                 density, mass, false, young, structural, shear, bend, damping, damping_kind(kind)};
+             check(material);
+             return material;
+           }),
+           py::kw_only(), "density"_a = 300.0, "mass"_a = py::none(), "young"_a = 20e3, "structural"_a = 0.0,
+           "shear"_a = 0.0, "bend"_a = 0.0, "damping"_a = 0.0, "damping_kind"_a = "axial",
+           "density [kg/m^3] or mass [kg] of the whole body; young [Pa], or None and the stiffness of every\n"
+           "structural, shear and bend spring [N/m]; damping [N s/m].")
+      .def_readonly("density", &SoftMaterial::density, "kg/m^3")
+      .def_readonly("mass", &SoftMaterial::mass, "kg, of the whole body; replaces density")
+      .def_readonly("young", &SoftMaterial::young, "Pa; replaces the three below")
+      .def_readonly("structural", &SoftMaterial::structural, "N/m")
+      .def_readonly("shear", &SoftMaterial::shear, "N/m")
+      .def_readonly("bend", &SoftMaterial::bend, "N/m")
+      .def_readonly("damping", &SoftMaterial::damping, "N s/m");
+}
+
+}  // namespace
+
+void add_fabrics(py::module_& m) {
+  using namespace py::literals;
+  add_fabric(m);
+  add_soft_bodies(m);
+
+  py::class_<Forces>(m, "Forces", "Forces that were made and belong to no system yet: see System.add.")
+      .def_property_readonly("names", &Forces::names)
+      .def("__len__", [](const Forces& forces) { return forces.all.size(); })
+      .def("__repr__", [](const Forces& forces) { return "Forces(" + listed(forces.names()) + ")"; });
+
+  m.def(
+      "masses", [](const TriangleMesh& mesh, const Fabric& fabric) { return copied(masses(mesh, fabric)); },
+      "mesh"_a, "fabric"_a, "(n,) [kg]: lumped, weighted by neighbours if the fabric says so.");
+  m.def(
+      "masses",
+      [](const Lattice& lattice, const SoftMaterial& material) { return copied(masses(lattice, material)); },
+      "lattice"_a, "material"_a, "(n,) [kg]: an eighth of each cell to each of its corners.");
+  m.def(
+      "noh_jung",
+      [](const TriangleMesh& mesh, const Fabric& fabric, int first) {
+        return Forces{noh_jung(mesh, fabric, first)};
+      },
+      "mesh"_a, "fabric"_a, "first_particle"_a = 0,
+      "Stretch, buckling and damping of any triangle mesh that rests as it is.\n"
+      "[Noh & Jung, section 2; Choi & Ko 2002, eq. 9-13]\n"
+      "Vertex 0 is the particle `first_particle` of the system.");
+  m.def(
+      "choi_ko",
+      [](const TriangleMesh& mesh, const Fabric& fabric, int first) {
+        return Forces{choi_ko(mesh, fabric, first)};
+      },
+      "mesh"_a, "fabric"_a, "first_particle"_a = 0,
+      "The same for a regular grid of quads. [Choi & Ko 2002, section 3] ValueError when the mesh is none.");
+  m.def(
+      "soft_body",
+      [](const Lattice& lattice, const SoftMaterial& material, int first) {
+        return Forces{soft_body(lattice, material, first)};
+      },
+      "lattice"_a, "material"_a, "first_particle"_a = 0, "Springs and damping of a lattice.");
+}
+
+}  // namespace drape::python

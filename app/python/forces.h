@@ -1,0 +1,27 @@
+// Forces on their way from what makes them to a system.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "solver/force.h"
+
+namespace drape::python {
+
+struct Forces {
+  std::vector<std::unique_ptr<Force>> all;  // empty once a system has them
+  bool given = false;
+
+  explicit Forces(std::vector<std::unique_ptr<Force>> forces) : all(std::move(forces)) {}
+  Forces(Forces&&) = default;
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const auto& force : all) names.emplace_back(force->name());
+    return names;
+  }
+};
+
+}  // namespace drape::python

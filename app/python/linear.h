@@ -1,0 +1,35 @@
+// Linear solvers and systems as Python has them.
+#pragma once
+
+#include <memory>
+
+#include "app/compare/recording_solver.h"
+#include "app/python/bindings.h"
+
+namespace drape::python {
+
+using Solver = std::shared_ptr<LinearSolver>;
+
+Solver solver_of(const py::object& given);  // a name or a solver
+
+// A solver that somebody else has, too.
+class SharedSolver final : public LinearSolver {
+ public:
+  explicit SharedSolver(Solver solver) : solver_(std::move(solver)) {}
+  std::string_view name() const override { return solver_->name(); }
+  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
+                     VecX& dv) override {
+    return solver_->solve(A, b, filter, options, dv);
+  }
+
+ private:
+  Solver solver_;
+};
+
+// Shares the solver; keeps a reference to the recording.
+std::unique_ptr<LinearSolver> recorded(const Solver& solver, SystemRecording& recording);
+
+// The last system that was solved while recording, None without one. Not copied: a later one takes its place.
+py::object last_system(const SystemRecording& recording);
+
+}  // namespace drape::python

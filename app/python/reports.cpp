@@ -1,0 +1,84 @@
+// StepReport, the steps of a run, StepError.
+#include "app/python/reports.h"
+
+#include "app/words.h"
+
+namespace drape::python {
+namespace {
+
+std::string text(const StepReport& r) {
+  if (!r.done) return "not done: " + r.failure.what;
+  return counted(r.linear_iterations, "linear iteration") + ", residual=" + rounded(r.residual, 3) +
+         (r.converged ? "" : " (not converged)") + ", " + counted(r.contacts, "contact") + ", " +
+         rounded(r.step_ms, 3) + " ms";
+}
+
+py::handle step_error() {
+  static const py::object* const type =
+      new py::object(py::module_::import("drape").attr("StepError"));  // for good
+  return *type;
+}
+
+}  // namespace
+
+void raise_step_error(const std::string& what, const StepReport& report) {
+  py::object error = step_error()(what);
+  error.attr("report") = report;
+  PyErr_SetObject(step_error().ptr(), error.ptr());
+  throw py::error_already_set();
+}
+
+void require_done(const StepReport& report) {
+  if (report.done) return;
+  std::string what = "the step failed: " + report.failure.what;
+  if (report.failure.particle >= 0) what += ", worst at particle " + std::to_string(report.failure.particle);
+  if (!report.failure.force.empty()) what += "; the term is '" + report.failure.force + "'";
+  raise_step_error(what, report);
+}
+
+void add_reports_of_steps(py::module_& m) {
+  py::class_<StepReport>(m, "StepReport", "How a step went.")
+      .def_readonly("done", &StepReport::done, "False: the state is as it was before")
+      .def_property_readonly(
+          "failure", [](const StepReport& r) { return r.failure.what; }, "why, when not done")
+      .def_property_readonly(
+          "failure_particle", [](const StepReport& r) { return r.failure.particle; },
+          "where it is worst; -1: not known")
+      .def_property_readonly(
+          "failure_force", [](const StepReport& r) { return r.failure.force; },
+          "which term, when it is known")
+      .def_readonly("substeps", &StepReport::substeps,
+                    "pieces the step was cut into, because it failed whole")
+      .def_readonly("inner_steps", &StepReport::inner_steps, "of the integrators that choose them")
+      .def_readonly("inner_rejected", &StepReport::inner_rejected, "inner steps tried in vain")
+      .def_readonly("newton_iterations", &StepReport::newton_iterations)
+      .def_readonly("linear_solves", &StepReport::linear_solves)
+      .def_readonly("linear_iterations", &StepReport::linear_iterations)
+      .def_readonly("rescues", &StepReport::rescues,
+                    "Newton iterations cut short, so that energy is not made")
+      .def_readonly("guarded", &StepReport::guarded, "particles stopped at a surface outside the equations")
+      .def_readonly("residual", &StepReport::residual,
+                    "relative, the worst of the solves that the step ended with")
+      .def_readonly("converged", &StepReport::converged, "every solve reached its tolerance")
+      .def_readonly("contacts", &StepReport::contacts, "particles in contact at the end")
+      .def_readonly("penetration", &StepReport::penetration, "m, deepest particle inside a body at the start")
+      .def_readonly("assemble_ms", &StepReport::assemble_ms)
+      .def_readonly("solve_ms", &StepReport::solve_ms)
+      .def_readonly("collide_ms", &StepReport::collide_ms)
+      .def_readonly("step_ms", &StepReport::step_ms)
+      .def("__repr__", [](const StepReport& r) { return "StepReport(" + text(r) + ")"; });
+  py::class_<RunStep, StepReport>(m, "RunStep",
+                                  "A step of a run: its report, and the state after it in numbers.")
+      .def_readonly("step", &RunStep::step, "from 1")
+      .def_readonly("time", &RunStep::time, "s, at its end")
+      .def_readonly("kinetic_energy", &RunStep::kinetic_energy, "J")
+      .def_readonly("elastic_energy", &RunStep::elastic_energy, "J")
+      .def_readonly("gravity_energy", &RunStep::gravity_energy, "J, zero at the origin")
+      .def_readonly("max_speed", &RunStep::max_speed, "m/s, of a particle")
+      .def_readonly("max_edge_strain", &RunStep::max_edge_strain, "l / L - 1 of the most stretched edge")
+      .def("__repr__", [](const RunStep& r) {
+        return "RunStep(" + std::to_string(r.step) + ", time=" + rounded(r.time, 6) + " s, " + text(r) + ")";
+      });
+}
+
+}  // namespace drape::python

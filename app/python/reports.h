@@ -1,0 +1,31 @@
+// What Python is told of a step.
+#pragma once
+
+#include "app/python/bindings.h"
+#include "app/steps_csv.h"
+
+namespace drape::python {
+
+// A row of steps.csv, as one object.
+struct RunStep : StepReport {
+  long step;
+  double time, kinetic_energy, elastic_energy, gravity_energy, max_speed, max_edge_strain;
+
+  explicit RunStep(const StepRow& row)
+      : StepReport(row.report),
+        step(row.step),
+        time(row.time),
+        kinetic_energy(row.kinetic_energy),
+        elastic_energy(row.elastic_energy),
+        gravity_energy(row.gravity_energy),
+        max_speed(row.max_speed),
+        max_edge_strain(row.max_edge_strain) {}
+};
+
+// Raises drape.StepError with the report, unless the step was done.
+void require_done(const StepReport& report);
+[[noreturn]] void raise_step_error(const std::string& text, const StepReport& report);
+
+void add_reports_of_steps(py::module_& m);
+
+}  // namespace drape::python

@@ -1,0 +1,77 @@
+// State: time, positions and velocities, shared with NumPy.
+#include "app/measure.h"
+#include "app/python/arrays.h"
+#include "app/python/in_use.h"
+#include "app/words.h"
+#include "mesh/obj.h"
+#include "solver/state.h"
+
+namespace drape::python {
+namespace {
+
+State made(const py::object& x, const py::object& v, double time) {
+  State state;
+  state.time = time;
+  state.x = stacked_rows(x, "x");
+  state.v = v.is_none() ? VecX(VecX::Zero(state.x.size())) : stacked_rows(v, "v");
+  if (state.v.size() != state.x.size())
+    throw py::value_error("v: expected an array of shape (" + std::to_string(state.particles()) +
+                          ", 3) as x has it, but got (" + std::to_string(state.v.size() / 3) + ", 3)");
+  return state;
+}
+
+// Into the memory that is there: arrays may look at it.
+void assign(VecX& to, const py::object& from, const char* name) {
+  const Array array = numbers(from, name, {to.size() / 3, 3});
+  to = Eigen::Map<const VecX>(array.data(), array.size());
+}
+
+py::object x_of(const py::object& self) { return view_rows(self.cast<State&>().x, self, Access::write); }
+py::object v_of(const py::object& self) { return view_rows(self.cast<State&>().v, self, Access::write); }
+
+}  // namespace
+
+void add_states(py::module_& m) {
+  py::class_<State, std::shared_ptr<State>>(
+      m, "State",
+      "The only thing a step changes: time [s], positions x [m] and velocities v [m/s].\n\n"
+      "x and v are views: writing into them changes the state. A state can be copied and pickled,\n"
+      "to the last bit.")
+      .def(py::init(&made), py::arg("x"), py::arg("v") = py::none(), py::arg("time") = 0.0,
+           "x: (n, 3) positions [m]; v: (n, 3) velocities [m/s], by default 0; time [s]. Both are copied.")
+      .def_readwrite("time", &State::time, "s")
+      .def_property(
+          "x", &x_of,
+          [](State& state, const py::object& x) {
+            require_free(&state);
+            assign(state.x, x, "x");
+          },
+          "(n, 3) positions [m], a view that can be written")
+      .def_property(
+          "v", &v_of,
+          [](State& state, const py::object& v) {
+            require_free(&state);
+            assign(state.v, v, "v");
+          },
+          "(n, 3) velocities [m/s], a view that can be written")
+      .def_property_readonly("particles", &State::particles, "how many: n")
+      .def_property_readonly(
+          "hash", &state_hash,
+          "16 hexadecimal digits, the same when every bit of x and v is: state_hash in run.json")
+      .def(
+          "copy", [](const State& state) { return State(state); }, "Another state with the same numbers.")
+      .def("__copy__", [](const State& state) { return State(state); })
+      .def("__deepcopy__", [](const State& state, const py::object&) { return State(state); })
+      .def(py::pickle(
+          [](const State& state) {
+            return py::make_tuple(state.time, copied_rows(state.x), copied_rows(state.v));
+          },
+          [](const py::tuple& saved) { return made(saved[1], saved[2], saved[0].cast<double>()); }))
+      .def("__repr__", [](const State& state) {
+        return "State(time=" + shortest(state.time) + " s, " + counted(state.particles(), "particle") + ")";
+      });
+
+  m.def("at_rest", &at_rest, py::arg("mesh"), "The mesh as it stands, without velocity, at time 0.");
+}
+
+}  // namespace drape::python

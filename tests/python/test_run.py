@@ -1,0 +1,185 @@
+"""Runs: callbacks, what ends them, and what is in the folder then."""
+
+import csv
+import math
+import signal
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+import numpy as np
+from workshop import Workshop
+
+import drape
+
+FILES = ["run.json", "sheet.obj", "sheet.pc2", "steps.csv"]
+
+
+class Runs(Workshop):
+    def simulation(self, duration=0.2):
+        return drape.read_scene(self.folder / "scene.toml", {"simulation.duration": duration})
+
+    def rows(self, out):
+        with open(self.folder / out / "steps.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def complete(self, out):
+        """The files of a run that ended early are whole; how many steps it has."""
+        names = {p.name for p in (self.folder / out).iterdir()}
+        self.assertTrue(set(FILES) <= names, names)
+        self.assertFalse([n for n in names if "~" in n or n.endswith((".part", ".tmp"))], names)
+        record = self.record(out)
+        size = (self.folder / out / "sheet.pc2").stat().st_size
+        frames = len(record["frame_times"])
+        self.assertEqual(size, 32 + frames * 169 * 12)
+        self.assertEqual(len(self.rows(out)), record["steps"])
+        drape.read_obj(self.folder / out / "sheet.obj")
+        return record
+
+
+class Callbacks(Runs):
+    def test_every_step_is_told(self):
+        simulation, told = self.simulation(), []
+        record = simulation.run(out=self.folder / "o", callback=told.append)
+        rows = self.rows("o")
+        self.assertEqual([s.step for s in told], list(range(1, 21)))
+        self.assertEqual([int(r["step"]) for r in rows], list(range(1, 21)))
+        for step, row in zip(told, rows):
+            for key in ("time", "kinetic_energy", "elastic_energy", "max_speed", "residual"):
+                self.assertTrue(math.isclose(getattr(step, key), float(row[key]), rel_tol=1e-3), key)  # as rounded there
+            self.assertEqual(step.linear_iterations, int(row["linear_iterations"]))
+        self.assertIsInstance(told[0], drape.StepReport)
+        self.assertFalse(record.get("interrupted", False))
+
+    def test_the_state_is_there_in_a_callback(self):
+        simulation, heights = self.simulation(), []
+        simulation.run(callback=lambda step: heights.append(simulation.state.x[:, 1].min()))
+        self.assertEqual(len(heights), 20)
+        self.assertLess(heights[-1], heights[0])
+
+    def test_false_ends_the_run(self):
+        simulation = self.simulation()
+        simulation.run(out=self.folder / "o", callback=lambda step: step.step < 7)
+        self.assertEqual(self.complete("o")["steps"], 7)
+        self.assertEqual(simulation.time, 0.07)
+
+    def test_an_exception_ends_the_run_cleanly_and_goes_on(self):
+        class Mine(Exception):
+            pass
+
+        def fail(step):
+            if step.step == 5:
+                raise Mine("because")
+
+        simulation = self.simulation()
+        with self.assertRaisesRegex(Mine, "because"):
+            simulation.run(out=self.folder / "o", callback=fail)
+        record = self.complete("o")
+        self.assertEqual(record["steps"], 5)
+        self.assertEqual(record["state_hash"], simulation.state_hash)
+        simulation.run(out=self.folder / "o")  # and it can go on
+        self.assertEqual(self.complete("o")["steps"], 15)
+
+    def test_a_callback_cannot_step(self):
+        simulation = self.simulation()
+        with self.assertRaisesRegex(RuntimeError, "around this callback"):
+            simulation.run(callback=lambda step: simulation.advance())
+        simulation.advance()
+
+    def test_a_loop_left_early_lets_go(self):
+        simulation = self.simulation()
+        for step in simulation:
+            if step.step == 3:
+                break
+        del step
+        simulation.run()
+        self.assertEqual(simulation.time, 0.2)
+
+    def test_a_step_that_fails(self):
+        simulation = self.simulation()
+
+        def spoil(step):
+            if step.step == 4:
+                simulation.state.v[7] = np.nan
+
+        with self.assertRaises(drape.StepError) as caught:
+            simulation.run(out=self.folder / "o", callback=spoil)
+        self.assertIn("step 5 (from 0.04 s) failed: ", str(caught.exception))
+        self.assertIn(" of sheet (at ", str(caught.exception))
+        self.assertEqual(self.complete("o")["steps"], 4)
+        self.assertEqual(self.record("o")["state"], "failed")
+
+    def test_a_folder_that_cannot_be(self):
+        (self.folder / "file").write_text("")
+        simulation = self.simulation()
+        with self.assertRaisesRegex(ValueError, "cannot be made an output folder"):
+            simulation.run(out=self.folder / "file")
+        with self.assertRaisesRegex(ValueError, "frames: there is no 'pc3'; did you mean 'pc2'"):
+            simulation.run(frames="pc3")
+        with self.assertRaisesRegex(ValueError, "duration = -1 s"):
+            simulation.run(-1)
+        with self.assertRaisesRegex(ValueError, "time step = 0 s"):
+            simulation.advance(0)
+        simulation.run()
+
+    def test_without_out_the_frames_are_gone_with_the_simulation(self):
+        simulation = self.simulation()
+        simulation.run()
+        folder = simulation.folder
+        self.assertTrue((folder / "sheet.pc2").is_file())
+        del simulation
+        self.assertFalse(folder.exists())
+
+    def test_other_threads_go_on_during_a_run(self):
+        simulation = self.simulation(1)
+        counted, over = [0], threading.Event()
+
+        def count():
+            while not over.is_set():
+                counted[0] += 1
+                time.sleep(0)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        simulation.run()
+        over.set()
+        thread.join()
+        self.assertGreater(counted[0], 200)
+
+
+INTERRUPTED = """
+import sys, drape
+simulation = drape.read_scene("scene.toml", {"simulation.duration": 1000})
+try:
+    simulation.run(out="o", callback=lambda step: print(step.step, flush=True))
+except KeyboardInterrupt:
+    print("interrupted", simulation.state_hash, flush=True)
+"""
+
+
+class Interrupts(Runs):
+    def test_ctrl_c(self):
+        run = subprocess.Popen([sys.executable, "-c", INTERRUPTED], cwd=self.folder, stdout=subprocess.PIPE, text=True)
+        self.addCleanup(run.stdout.close)
+        for line in run.stdout:
+            if int(line) == 10:
+                break
+        run.send_signal(signal.SIGINT)
+        said, steps = "", 10
+        for line in run.stdout:
+            if line.startswith("interrupted"):
+                said = line
+            else:
+                steps = int(line)
+        self.assertEqual(run.wait(), 0)
+        self.assertTrue(said, "KeyboardInterrupt did not come")
+        record = self.complete("o")
+        self.assertLessEqual(steps, record["steps"])
+        self.assertLess(record["steps"], 50_000)
+        self.assertEqual(record["state_hash"], said.split()[1])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,239 @@
+"""A step by hand: the same bits as C++, laws of mechanics, linear systems to take out."""
+
+import multiprocessing
+import os
+import subprocess
+import threading
+import time
+import unittest
+
+import numpy as np
+from workshop import falling_sheet
+
+import drape
+
+
+class Step(unittest.TestCase):
+    def test_the_same_bits_as_in_c_plus_plus(self):
+        program = os.environ.get("DRAPE_SINGLE_STEP")
+        if not program:
+            self.skipTest("DRAPE_SINGLE_STEP does not name the C++ program to compare with")
+        expected = subprocess.run([program], check=True, capture_output=True, text=True).stdout.split()
+        for name, hash_after in zip(expected[0::2], expected[1::2]):
+            with self.subTest(name):
+                system, constraints, state = falling_sheet(height=0.3021)
+                state.x[:, 1] += 0.05 * state.x[:, 0] * state.x[:, 2]
+                stepper = drape.make_integrator(name, system, constraints, "mpcg")
+                for _ in range(12):
+                    report = stepper.advance(state, 5e-4)
+                self.assertEqual(state.hash, hash_after)
+                self.assertGreater(report.contacts, 0)
+        self.assertEqual(len(set(expected[1::2])), 3)
+
+    def test_free_fall(self):
+        sheet = drape.grid(5, 5, 1, 1)
+        fabric = drape.Fabric()
+        system = drape.System(drape.masses(sheet, fabric))
+        system.add(drape.noh_jung(sheet, fabric))
+        system.add(drape.gravity([0, -9.81, 0]))
+        state = drape.at_rest(sheet)
+        report = drape.ImplicitEuler(system, drape.Constraints()).advance(state, 0.01)
+        np.testing.assert_allclose(state.x[:, 1], -9.81 * 0.01**2, rtol=1e-9)
+        self.assertTrue(report.done and report.converged)
+        self.assertEqual(report.contacts, 0)
+        self.assertIn("linear iteration", repr(report))
+        self.assertAlmostEqual(system.masses.sum(), 0.15)
+        np.testing.assert_allclose(system.force(state).sum(axis=0), [0, -9.81 * 0.15, 0], atol=1e-9)
+
+    def test_pins_hold_and_others_do_not(self):
+        system, constraints, state = falling_sheet(7, height=3)
+        constraints.pin([0, 6])
+        before = state.x.copy()
+        stepper = drape.Bdf2(system, constraints, "cholmod" if "cholmod" in drape.linear_solvers() else "mpcg")
+        for _ in range(5):
+            stepper.advance(state, 0.01)
+        moved = np.linalg.norm(state.x - before, axis=1)
+        np.testing.assert_array_equal(moved[[0, 6]], 0)
+        self.assertGreater(moved.max(), 0.005)
+        np.testing.assert_array_equal(constraints.pinned, [0, 6])
+
+    def test_contacts_are_told(self):
+        system, constraints, state = falling_sheet()
+        stepper = drape.ImplicitEuler(system, constraints)
+        while not constraints.contacts:
+            report = stepper.advance(state, 0.01)
+        self.assertEqual(len(constraints.contacts), report.contacts)
+        contact = constraints.contacts[0]
+        distance, normal = drape.closest(drape.Sphere([0, 0, 0], 0.3), state.x[[contact.particle]])
+        np.testing.assert_allclose(contact.normal, normal[0], atol=1e-3)
+        self.assertAlmostEqual(distance[0], 2e-3, places=4)
+        self.assertEqual(constraints.penetration(state).max(), 0)
+
+    def test_what_is_written_into_a_state_counts(self):
+        system, constraints, state = falling_sheet(5, height=9)
+        stepper = drape.ImplicitEuler(system, constraints)
+        stepper.advance(state, 0.01)
+        state.v[:] = [3, 0, 0]
+        x = state.x.copy()
+        stepper.advance(state, 0.01)
+        np.testing.assert_allclose((state.x - x)[:, 0], 0.03, rtol=1e-6)
+
+    def test_a_failed_step_raises_and_leaves_the_state(self):
+        system, constraints, state = falling_sheet(5)
+        state.v[3] = np.nan
+        before = state.x.copy()
+        with self.assertRaises(drape.StepError) as caught:
+            drape.ImplicitEuler(system, constraints).advance(state, 0.01)
+        self.assertIsInstance(caught.exception, RuntimeError)
+        self.assertFalse(caught.exception.report.done)
+        self.assertIn(caught.exception.report.failure, str(caught.exception))
+        np.testing.assert_array_equal(state.x, before)
+        self.assertEqual(state.time, 0)
+
+    def test_an_integrator_keeps_what_it_needs(self):
+        stepper, state = (lambda s, c, x: (drape.ImplicitEuler(s, c), x))(*falling_sheet())
+        _ = [np.full(3000, np.nan) for _ in range(50)]
+        stepper.advance(state, 0.01)
+        self.assertEqual(stepper.system.particles, 121)
+        self.assertEqual(stepper.constraints.bodies, 1)
+
+    def test_soft_bodies(self):
+        lattice = drape.box_lattice([4, 4, 4], [0.1, 0.1, 0.1])
+        material = drape.SoftMaterial(young=2e4, density=300)
+        system = drape.System(drape.masses(lattice, material))
+        system.add(drape.soft_body(lattice, material))
+        self.assertAlmostEqual(system.masses.sum(), 300 * 0.3**3)
+        state = drape.State(lattice.positions * 1.01)
+        self.assertGreater(system.elastic_energy(state), 0)
+        drape.ImplicitEuler(system, drape.Constraints()).advance(state, 0.001)
+
+
+class LinearSystems(unittest.TestCase):
+    def recorded(self):
+        system, constraints, state = falling_sheet(9)
+        constraints.pin(0)
+        stepper = drape.ImplicitEuler(system, constraints)
+        for _ in range(4):
+            stepper.advance(state, 0.01)
+        self.assertIsNone(stepper.last_system)
+        stepper.record_systems = True
+        stepper.advance(state, 0.01)
+        return stepper.last_system
+
+    def test_every_solver_solves_it(self):
+        system = self.recorded()
+        reference = None
+        for name in drape.linear_solvers():
+            with self.subTest(name):
+                report = drape.make_linear_solver(name).solve(system, tolerance=1e-9)
+                self.assertTrue(report.converged, report)
+                self.assertLess(system.residual(report.solution), 2e-9)
+                reference = report.solution if reference is None else reference
+                np.testing.assert_allclose(report.solution, reference, atol=1e-6)
+                if len(report.history):
+                    self.assertLessEqual(report.history[-1], 1e-9)
+                    self.assertGreater(report.history[0], report.history[-1])
+                    self.assertEqual(len(report.history), report.iterations + 1)
+
+    def test_the_matrix_is_the_one_of_the_step(self):
+        system = self.recorded()
+        data, indices, indptr = system.bsr()
+        n = system.particles
+        dense = np.zeros((n, 3, n, 3))
+        for i in range(n):
+            for k in range(indptr[i], indptr[i + 1]):
+                dense[i, :, indices[k], :] = data[k]
+        dense = dense.reshape(3 * n, 3 * n)
+        np.testing.assert_allclose(dense, dense.T, atol=1e-12)
+        self.assertGreater(np.linalg.eigvalsh(dense).min(), 0)
+        self.assertGreater(system.constrained, 0)
+        # Where a particle is free, A dv = b.
+        residual = (dense @ system.solution.ravel() - system.b.ravel()).reshape(n, 3)
+        free = np.sort(np.linalg.norm(residual, axis=1))[: n - system.constrained]
+        self.assertLess(free.max(), 1e-4 * np.abs(system.b).max())
+
+
+class Threads(unittest.TestCase):
+    def test_other_threads_go_on_during_a_step(self):
+        system, constraints, state = falling_sheet(61)
+        stepper = drape.ImplicitEuler(system, constraints)
+        counted, over = [0], threading.Event()
+
+        def count():
+            while not over.is_set():
+                counted[0] += 1
+                time.sleep(0)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        during = []
+        for _ in range(5):
+            before = counted[0]
+            stepper.advance(state, 0.01)
+            during.append(counted[0] - before)
+        over.set()
+        thread.join()
+        # With the lock held the thread would get a turn between steps at most.
+        self.assertGreater(max(during), 20)
+
+    def test_two_steps_of_one_state_at_once_are_refused(self):
+        system, constraints, state = falling_sheet(61)
+        steppers = [drape.ImplicitEuler(system, constraints) for _ in range(2)]
+        refused, done = [], []
+
+        def steps(stepper):
+            for _ in range(10):
+                try:
+                    stepper.advance(state, 0.001)
+                    done.append(1)
+                except RuntimeError as error:
+                    refused.append(str(error))
+
+        threads = [threading.Thread(target=steps, args=(s,)) for s in steppers]
+        for t in threads:
+            t.start()
+        for t in threads:
+            t.join()
+        self.assertEqual(len(refused) + len(done), 20)
+        self.assertTrue(refused)
+        self.assertIn("is under way", refused[0])
+        self.assertTrue(np.isfinite(state.x).all())
+
+    def test_a_forked_child_steps(self):
+        def child(send):
+            drape.set_threads(3)  # other threads than its parent has
+            send.send(self.three_steps())
+
+        before, here = drape.threads(), self.three_steps()
+        drape.set_threads(2)
+        self.three_steps()
+        receive, send = multiprocessing.Pipe(duplex=False)
+        process = multiprocessing.get_context("fork").Process(target=child, args=(send,))
+        process.start()
+        self.assertTrue(receive.poll(60), "the child does not answer")
+        self.assertEqual(receive.recv(), here)
+        process.join()
+        drape.set_threads(before)
+
+    def three_steps(self):
+        system, constraints, state = falling_sheet(31)
+        stepper = drape.ImplicitEuler(system, constraints, "mpcg+block-ic0")
+        for _ in range(3):
+            stepper.advance(state, 0.01)
+        return state.hash
+
+    def test_the_number_of_threads_changes_no_bit(self):
+        before = drape.threads()
+        hashes = set()
+        for count in (1, 2, 3):
+            drape.set_threads(count)
+            self.assertEqual(drape.threads(), count)
+            hashes.add(self.three_steps())
+        drape.set_threads(before)
+        self.assertEqual(len(hashes), 1)
+        with self.assertRaisesRegex(ValueError, "0 is not a number of threads"):
+            drape.set_threads(0)
+
+
+if __name__ == "__main__":
+    unittest.main()
