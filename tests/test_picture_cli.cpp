@@ -15,8 +15,8 @@ using Catch::StartsWith;
 namespace {
 
 // A sheet has fallen on a ball: 8 frames.
-struct Run : Workshop {
-  Run() { REQUIRE(drape("simulate s.toml --out o --quiet").exit_code == 0); }
+struct ShortRun : Workshop {
+  ShortRun() { REQUIRE(drape("simulate s.toml --out o --quiet").exit_code == 0); }
   Image read(const std::string& name) const { return read_png(content(path / name)); }
 };
 
@@ -25,7 +25,7 @@ bool empty(const Pixel& p) { return p == background; }
 }  // namespace
 
 TEST_CASE("a run is drawn at the size that was asked, and again only when told so", "[picture]") {
-  const Run shop;
+  const ShortRun shop;
   const Outcome drawn = shop.drape("picture o");
   CHECK(drawn.exit_code == 0);
   CHECK(drawn.out == "wrote o/picture.png\n");
@@ -41,7 +41,7 @@ TEST_CASE("a run is drawn at the size that was asked, and again only when told s
 }
 
 TEST_CASE("frames of a sequence are seen by the same camera", "[picture]") {
-  const Run shop;
+  const ShortRun shop;
   const Outcome drawn = shop.drape("picture o --frame all --view front --size 160x120 -o p.png");
   CHECK(drawn.exit_code == 0);
   const auto frames = shop.json("o/run.json")["frame_times"].size();
@@ -67,7 +67,7 @@ TEST_CASE("frames of a sequence are seen by the same camera", "[picture]") {
 }
 
 TEST_CASE("named frames become a sheet, with their times under them", "[picture]") {
-  const Run shop;
+  const ShortRun shop;
   CHECK(shop.drape("picture o --grid --frame 1,3,last --size 600x200 -o sheet.png").exit_code == 0);
   const Image sheet = shop.read("sheet.png");
   CHECK(sheet.width == 600);
@@ -89,7 +89,7 @@ TEST_CASE("named frames become a sheet, with their times under them", "[picture]
 }
 
 TEST_CASE("colours come with a legend whose ends are those of the map", "[picture]") {
-  const Run shop;
+  const ShortRun shop;
   for (const std::string field : {"strain", "speed", "contact"}) {
     INFO(field);
     CHECK(shop.drape("picture o --color " + field + " --size 640x480 --frame 6 -o " + field + ".png")
@@ -119,7 +119,7 @@ TEST_CASE("a mesh is drawn as a cloth, what comes with it as a body", "[picture]
 }
 
 TEST_CASE("of a damaged run what is there is drawn, and what is missing is said", "[picture]") {
-  const Run shop;
+  const ShortRun shop;
   std::filesystem::remove(shop.path / "o/sheet.pc2");
   const Outcome last = shop.drape("picture o --size 64x48 -o last.png");
   CHECK(last.exit_code == 0);
@@ -128,7 +128,7 @@ TEST_CASE("of a damaged run what is there is drawn, and what is missing is said"
 }
 
 TEST_CASE("what cannot be drawn is refused in one line and leaves nothing", "[picture]") {
-  const Run shop;
+  const ShortRun shop;
   shop.write("empty.obj", "v 0 0 0\n");
   const auto before = shop.files();
   struct Refusal {

@@ -57,8 +57,8 @@ std::string sheet(int n) {
   return text;
 }
 
-struct Run : Folder {
-  explicit Run(int n = 8) {
+struct ShortRun : Folder {
+  explicit ShortRun(int n = 8) {
     write("sheet.obj", sheet(n));
     write("scene.toml", scene);
     REQUIRE(run(read_scene(path / "scene.toml", {}), {path / "out", Frames::pc2, true}) == 0);
@@ -82,8 +82,8 @@ TEST_CASE("a polygon's sides are the page's lines, each once", "[view]") {
 }
 
 TEST_CASE("a page has the run as it was recorded", "[view]") {
-  const Run run;
-  const Recording recording(run.out());
+  const ShortRun done;
+  const Recording recording(done.out());
   const PageData page = page_data(recording);
   const std::string html = page.blocks.html();
   CHECK(page.head["title"].text() == "scene");
@@ -119,13 +119,13 @@ TEST_CASE("a page has the run as it was recorded", "[view]") {
 TEST_CASE("a page needs nothing from outside, and names in it are text", "[view]") {
   require_viewer();
   if (!has_viewer()) return;
-  const Run run;
-  const std::string before = content(run.out() / "run.json");
+  const ShortRun done;
+  const std::string before = content(done.out() / "done.json");
   const std::size_t at = before.find("\"scene\": \"");
   REQUIRE(at != std::string::npos);
-  run.write("out/run.json",
-            before.substr(0, at + 10) + "<\\/script><b>&@@DATA@@\\u2028" + before.substr(at + 10));
-  const std::string html = view_html(run.out());
+  done.write("out/done.json",
+             before.substr(0, at + 10) + "<\\/script><b>&@@DATA@@\\u2028" + before.substr(at + 10));
+  const std::string html = view_html(done.out());
   CHECK_THAT(html, StartsWith("<!DOCTYPE html>"));
   CHECK_THAT(html, EndsWith("</html>\n"));
   CHECK(html.find("</script><b>") == std::string::npos);
@@ -139,27 +139,27 @@ TEST_CASE("a page needs nothing from outside, and names in it are text", "[view]
 TEST_CASE("drape view writes a page, and a page again", "[view]") {
   require_viewer();
   if (!has_viewer()) return;
-  const Run run;
-  const Outcome first = run.drape("view out");
+  const ShortRun done;
+  const Outcome first = done.drape("view out");
   CHECK(first.exit_code == 0);
   CHECK(first.err.empty());
   CHECK_THAT(first.out, StartsWith("wrote out/view.html (11 frames, "));
-  CHECK(run.drape("view out").exit_code == 0);
-  CHECK(run.drape("view out -o page.html").exit_code == 0);
-  CHECK(content(run.path / "page.html") == content(run.out() / "view.html"));
+  CHECK(done.drape("view out").exit_code == 0);
+  CHECK(done.drape("view out -o page.html").exit_code == 0);
+  CHECK(content(done.path / "page.html") == content(done.out() / "view.html"));
 
-  run.write("mine.html", "<p>mine");
-  const Outcome refused = run.drape("view out -o mine.html");
+  done.write("mine.html", "<p>mine");
+  const Outcome refused = done.drape("view out -o mine.html");
   CHECK(refused.exit_code == 2);
   CHECK_THAT(refused.err, StartsWith("error: mine.html: is there already") && Contains("--force"));
-  CHECK(content(run.path / "mine.html") == "<p>mine");
-  CHECK(run.drape("view out -o mine.html --force").exit_code == 0);
-  CHECK_THAT(content(run.path / "mine.html"), StartsWith("<!DOCTYPE html>"));
+  CHECK(content(done.path / "mine.html") == "<p>mine");
+  CHECK(done.drape("view out -o mine.html --force").exit_code == 0);
+  CHECK_THAT(content(done.path / "mine.html"), StartsWith("<!DOCTYPE html>"));
 
-  const Outcome nowhere = run.drape("view out -o none/page.html");
+  const Outcome nowhere = done.drape("view out -o none/page.html");
   CHECK(nowhere.exit_code == 2);
   CHECK_THAT(nowhere.err, StartsWith("error: none/page.html: cannot write"));
-  const Outcome folder = run.drape("view out -o out/bodies --force");
+  const Outcome folder = done.drape("view out -o out/bodies --force");
   CHECK(folder.exit_code == 2);
   CHECK_THAT(folder.err, Contains("is a folder"));
 }
@@ -180,15 +180,15 @@ TEST_CASE("nothing to show", "[view]") {
 }
 
 TEST_CASE("a damaged folder is shown, and what is missing is said", "[view]") {
-  const Run run;
-  const fs::path out = run.out();
+  const ShortRun done;
+  const fs::path out = done.out();
   std::string file;
-  SECTION("no run.json") { fs::remove(out / (file = "run.json")); }
-  SECTION("run.json is not JSON") { run.write("out/" + (file = "run.json"), "{\"scene\": "); }
+  SECTION("no done.json") { fs::remove(out / (file = "done.json")); }
+  SECTION("done.json is not JSON") { done.write("out/" + (file = "done.json"), "{\"scene\": "); }
   SECTION("no steps.csv") { fs::remove(out / (file = "steps.csv")); }
   SECTION("steps.csv cut short") {
     const std::string text = content(out / (file = "steps.csv"));
-    run.write("out/steps.csv", text.substr(0, text.size() / 2));
+    done.write("out/steps.csv", text.substr(0, text.size() / 2));
   }
   SECTION("frames cut short") { fs::resize_file(out / (file = "sheet.pc2"), 32 + 12 * 64 * 4 + 7); }
   SECTION("no frames") { fs::remove(out / (file = "sheet.pc2")); }
@@ -206,7 +206,7 @@ TEST_CASE("a damaged folder is shown, and what is missing is said", "[view]") {
   if (file == "steps.csv" && !fs::exists(out / file)) CHECK(page.head["steps"].is_null());
 
   if (!has_viewer()) return;
-  const Outcome outcome = run.drape("view out");
+  const Outcome outcome = done.drape("view out");
   CHECK(outcome.exit_code == 0);
   CHECK_THAT(outcome.err, StartsWith("warning: ") && Contains(file));
   CHECK_THAT(content(out / "view.html"), Contains(file));
