@@ -120,10 +120,10 @@ TEST_CASE("a page needs nothing from outside, and names in it are text", "[view]
   require_viewer();
   if (!has_viewer()) return;
   const ShortRun done;
-  const std::string before = content(done.out() / "done.json");
+  const std::string before = content(done.out() / "run.json");
   const std::size_t at = before.find("\"scene\": \"");
   REQUIRE(at != std::string::npos);
-  done.write("out/done.json",
+  done.write("out/run.json",
              before.substr(0, at + 10) + "<\\/script><b>&@@DATA@@\\u2028" + before.substr(at + 10));
   const std::string html = view_html(done.out());
   CHECK_THAT(html, StartsWith("<!DOCTYPE html>"));
@@ -183,8 +183,8 @@ TEST_CASE("a damaged folder is shown, and what is missing is said", "[view]") {
   const ShortRun done;
   const fs::path out = done.out();
   std::string file;
-  SECTION("no done.json") { fs::remove(out / (file = "done.json")); }
-  SECTION("done.json is not JSON") { done.write("out/" + (file = "done.json"), "{\"scene\": "); }
+  SECTION("no run.json") { fs::remove(out / (file = "run.json")); }
+  SECTION("run.json is not JSON") { done.write("out/" + (file = "run.json"), "{\"scene\": "); }
   SECTION("no steps.csv") { fs::remove(out / (file = "steps.csv")); }
   SECTION("steps.csv cut short") {
     const std::string text = content(out / (file = "steps.csv"));
