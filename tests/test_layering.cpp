@@ -104,13 +104,26 @@ TEST_CASE("an installed header needs the standard library, Eigen and other insta
   CHECK(looked_at > 50);
 }
 
+TEST_CASE("Python is known in app/python only", "[layering]") {
+  int bindings = 0;
+  for (const std::string& room : rooms)
+    for (const auto& [file, path] : includes(room)) {
+      if (!path.starts_with("pybind11") && path != "Python.h") continue;
+      INFO(file << " includes " << path);
+      CHECK(file.starts_with("app/python/"));
+      ++bindings;
+    }
+  CHECK(bindings > 3);
+}
+
 TEST_CASE("of the internal headers only solver/sundials.h shows a library besides Eigen", "[layering]") {
   for (const std::string& room : rooms)
     for (const auto& [file, path] : includes(room)) {
       if (!file.ends_with(".h") || file == "solver/sundials.h") continue;
       INFO(file << " includes " << path);
       const std::string folder = path.substr(0, path.find('/'));
-      const bool ours = level(folder) < rooms.size() || path == "immintrin.h";  // the compiler's
-      CHECK((ours || path.starts_with("Eigen/") || path.find('.') == path.npos));
+      const bool ours = level(folder) < rooms.size() || path == "immintrin.h";       // the compiler's
+      const bool binding = folder == "pybind11" && file.starts_with("app/python/");  // what it is made of
+      CHECK((ours || binding || path.starts_with("Eigen/") || path.find('.') == path.npos));
     }
 }
