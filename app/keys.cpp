@@ -1,5 +1,6 @@
 #include "app/keys.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 
@@ -150,6 +151,8 @@ int print_keys(const KeysWords& words) {
         print_plain(section, file.name);
     }
   }
+  std::sort(known.begin(), known.end());
+  known.erase(std::unique(known.begin(), known.end()), known.end());
   if (!found) throw InputError("there is no table '" + words.table + "'; " + suggestion(words.table, known));
   return 0;
 }

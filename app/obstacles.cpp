@@ -1,6 +1,7 @@
 #include "app/obstacles.h"
 
 #include "app/body_frames.h"
+#include "app/body_mesh.h"
 #include "app/level_set_cache.h"
 #include "mesh/obj.h"
 #include "mesh/solid.h"
@@ -65,6 +66,15 @@ LevelSetBody load_level_set(const ObstacleEntry& entry, bool keep, Body& body, N
   return std::make_shared<const LevelSet>(grid.moved(entry.placement.rotation, entry.placement.translate));
 }
 
+// A built-in shape beyond all sense is a wrong unit, and nothing that could be written as floats.
+void check_extent(const ObstacleEntry& entry, const Shape& shape) {
+  for (const Vec3& x : drawn(shape).positions)
+    if (!(x.cwiseAbs().maxCoeff() <= largest_size))
+      throw InputError(entry.where + ": the " + std::string(name(shape)) + " reaches " +
+                       rounded(x.cwiseAbs().maxCoeff(), 3) + " m from the origin, more than " +
+                       rounded(largest_size, 3) + " m; check the units");
+}
+
 }  // namespace
 
 void add_obstacles(const Scene& scene, bool keep_level_sets, Simulation& simulation) {
@@ -76,6 +86,7 @@ void add_obstacles(const Scene& scene, bool keep_level_sets, Simulation& simulat
       obstacle.shape = load_body(entry, body, simulation.messages);
     if (std::holds_alternative<LevelSetBody>(obstacle.shape))
       obstacle.shape = load_level_set(entry, keep_level_sets, body, simulation.messages);
+    check_extent(entry, obstacle.shape);
     if (entry.rigid) obstacle.rigid = rigid_body(entry, obstacle, scene.simulation.gravity);
     try {
       simulation.constraints->add(std::move(obstacle));

@@ -177,6 +177,10 @@ void Recording::find_shapes() {
       if (!poses.contains(name)) names.insert(name);  // else it is a body
     for (const std::string& name : names) {
       const fs::path last = folder_ / (name + ".obj");
+      // Any folder may hold meshes; one without traces of a run is none.
+      if (!fs::exists(folder_ / "steps.csv") && !fs::exists(folder_ / (name + ".pc2")) &&
+          !fs::exists(frame_path(folder_, name, 1)))
+        continue;
       add_shape(name, fs::exists(last) ? last : frame_path(folder_, name, 1), false);
     }
   }
@@ -200,6 +204,8 @@ void Recording::add_body(const Json& body, const std::map<std::string, std::vect
   const auto found = poses.find(name);
   const std::vector<Pose> moved = moves && found != poses.end() ? found->second : std::vector<Pose>();
   const Pose last = place_of(body["place"]);
+  if (moves && moved.empty() && times_told_ && !times_.empty())
+    miss(folder_ / "bodies.csv", "does not tell how '" + name + "' moved; it is shown where it ended");
   if (!body["normal"].is_null()) {
     planes_.push_back(
         {name, vector_of(body["point"], Vec3::Zero()), vector_of(body["normal"], Vec3::UnitY())});
@@ -256,11 +262,13 @@ void Recording::find_frames(std::size_t k) {
   for (const char* field : {"velocity", "strain", "contact"}) find_field(k, field);
 }
 
-// Runs of earlier versions have none: no loss.
+// Runs of earlier versions have none, nor do they tell of frames: no loss.
 void Recording::find_field(std::size_t k, const char* name) {
   const fs::path path = field_path(folder_, shapes_[k].name, name);
-  if (frame_counts_[k] == 0 || !fs::exists(path)) return;
+  if (frame_counts_[k] == 0) return;
+  if (!fs::exists(path) && run_["frames"].is_null()) return;
   try {
+    if (!fs::exists(path)) throw InputError(path.string() + ": is missing");
     const NpyReader reader(path);
     std::vector<int> expected = {shapes_[k].mesh.vertex_count()};
     if (std::string_view(name) == "velocity") expected.push_back(3);

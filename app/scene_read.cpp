@@ -9,6 +9,7 @@
 #include "app/soft_read.h"
 #include "app/table.h"
 #include "mesh/obj.h"
+#include "mesh/threads.h"
 
 namespace drape {
 namespace {
@@ -86,6 +87,8 @@ SimulationOptions read_simulation(const Table* given) {
              "at which what starts inside a body is brought out");
   table.read("threads", options.threads, 1,
              {"how many; the result does not depend on it", "as many as processors"});
+  if (options.threads > most_threads)
+    table.fail("threads", "expected at most " + std::to_string(most_threads));
   table.read("stop_when_settled", options.stop_when_settled,
              "end when no cloth and no body with a mass has been faster than settle_speed for 0.2 s, and no "
              "motion or frame is still to come");

@@ -51,6 +51,14 @@ def bring_styles(out):
         style.write_text(text)
 
 
+def bring_scripts(out):
+    """Debian's Furo is not bundled: its script imports another, which a page from a disk may not."""
+    script = out / "_static/scripts/furo.js"
+    text, imported = script.read_text(), 'import Gumshoe from "./gumshoe-patched.js";\n'
+    if imported in text:
+        script.write_text(script.with_name("gumshoe-patched.js").read_text() + text.replace(imported, ""))
+
+
 def interface(out):
     settings = (root / "docs/Doxyfile").read_text() + f"\nINPUT = docs/interface.dox {' '.join(public_headers())}\nOUTPUT_DIRECTORY = {out}\n"
     run(["doxygen", "-"], input=settings, text=True)
@@ -74,6 +82,7 @@ def check(out):
 def main(out):
     pages(out)
     bring_styles(out)
+    bring_scripts(out)
     interface(out)
     check(out)
     print(f"the site: {out}/index.html")

@@ -132,6 +132,9 @@ int threads() {
 void set_threads(int count) {
   if (count < 1)
     throw InputError("threads: " + std::to_string(count) + " is not a number of threads; give 1 or more");
+  if (count > most_threads)
+    throw InputError("threads: " + std::to_string(count) + " are more than the " +
+                     std::to_string(most_threads) + " that there may be");
   chosen = count;
 }
 
