@@ -225,7 +225,7 @@ class Cloths(Workshop):
     def refused_during_steps(self, simulation, reads):
         for name, read in reads.items():
             def run(over):
-                simulation.run(1000, frames="none", callback=lambda step: not over.is_set())
+                simulation.run(1, frames="none", callback=lambda step: not over.is_set())
 
             with self.subTest(name), in_another_thread(run) as thread:
                 self.assertIn("is under way", refusal(read, thread))

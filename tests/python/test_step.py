@@ -241,8 +241,9 @@ class Threads(unittest.TestCase):
         }
 
         def steps(over):
-            while not over.is_set():
-                stepper.advance(state, 0.001)
+            for _ in range(100):
+                if not over.is_set():
+                    stepper.advance(state, 0.001)
 
         for name, read in reads.items():
             with self.subTest(name), in_another_thread(steps) as thread:

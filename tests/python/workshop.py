@@ -68,7 +68,7 @@ class Workshop(unittest.TestCase):
 
 @contextlib.contextmanager
 def in_another_thread(work):
-    """work(over) in a thread, until `over`, an Event, is set: at the end of the block."""
+    """work(over) in a thread; `over`, an Event, is set at the end of the block."""
     over = threading.Event()
     thread = threading.Thread(target=work, args=(over,))
     thread.start()
