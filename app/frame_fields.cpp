@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "app/recording.h"
+#include "app/touch.h"
 
 namespace drape {
 namespace {

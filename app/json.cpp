@@ -10,6 +10,8 @@ namespace {
 
 using Library = nlohmann::ordered_json;
 
+constexpr int deepest = 200;  // lists in lists: what reads and frees them calls itself
+
 Library converted(const Json& json);
 
 struct Convert {
@@ -85,12 +87,18 @@ std::string compact_json_text(const Json& json) {
 }
 
 Json parse_json(std::string_view text, const std::string& name) {
+  const auto not_too_deep = [&](int depth, Library::parse_event_t, Library&) {
+    if (depth > deepest) throw InputError(name + ": lists are nested deeper than " + std::to_string(deepest));
+    return true;
+  };
   try {
-    return read(Library::parse(text));
+    return read(Library::parse(text, not_too_deep));
   } catch (const Library::parse_error& error) {
     const auto end = std::min(text.size(), error.byte);
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
     throw InputError(name + ":" + std::to_string(line) + ": is not JSON, or was cut short");
+  } catch (const Library::exception&) {
+    throw InputError(name + ": a number in it is out of range");
   }
 }
 

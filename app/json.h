@@ -29,6 +29,7 @@ struct Json {
   Json(const std::vector<int>& numbers) : value(List(numbers.begin(), numbers.end())) {}
   Json(const std::vector<double>& numbers) : value(List(numbers.begin(), numbers.end())) {}
 
+  bool is(bool b) const { return std::holds_alternative<bool>(value) && std::get<bool>(value) == b; }
   bool is_null() const { return std::holds_alternative<std::monostate>(value); }
   // What a reader finds: null or an empty list where it is of another kind or absent.
   const Json& operator[](std::string_view member) const;

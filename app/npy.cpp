@@ -91,10 +91,13 @@ NpyReader::NpyReader(const std::filesystem::path& path) : path_(path), file_(pat
     fail("has another type or order than float32 or bytes, a frame after the other");
   frames_ = frame_shape_.front();
   frame_shape_.erase(frame_shape_.begin());
-  for (const int size : frame_shape_) count_ *= static_cast<std::size_t>(size);
   start_ = sizeof start + header.size();
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
+  for (const int along : frame_shape_) {
+    if (along < 0 || frames_ < 0 || count_ > size) fail("has a shape that it cannot have");
+    count_ *= static_cast<std::size_t>(along);
+  }
   if (error || size != start_ + static_cast<std::uintmax_t>(frames_) * count_ * (bytes_ ? 1 : 4))
     fail("has not the size that its header tells; was it cut short?");
 }

@@ -126,6 +126,7 @@ void Output::frame(const State& state) {
 }
 
 void Output::finish(const State& state, RunRecord& record) {
+  record.frames = frames_ == Frames::pc2 ? "pc2" : frames_ == Frames::obj ? "obj" : "none";
   record.frame_times = frame_times_;
   for (Pc2Writer& cache : caches_) cache.close();
   for (FrameFields& fields : fields_) fields.close();

@@ -32,6 +32,16 @@ std::vector<RecordedPlane> Recording::planes(int frame) const {
 }
 
 std::vector<Vec3> Recording::positions(std::size_t k, int frame) const {
+  std::vector<Vec3> positions = read_positions(k, frame);
+  const std::size_t expected = shapes_[k].mesh.positions.size();
+  if (positions.size() != expected)
+    throw InputError(frame_path(folder_, shapes_[k].name, frame + 1).string() + ": has " +
+                     counted(static_cast<long>(positions.size()), "vertex") + ", expected the " +
+                     std::to_string(expected) + " of " + shapes_[k].name + ".obj; is it of another run?");
+  return positions;
+}
+
+std::vector<Vec3> Recording::read_positions(std::size_t k, int frame) const {
   const RecordedShape& shape = shapes_[k];
   const Source& source = sources_[k];
   if (!shape.moves) return shape.mesh.positions;

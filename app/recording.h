@@ -4,21 +4,18 @@
 //   What is missing or damaged is told as data (missing()); what is left is there to be looked at.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "app/json.h"
+#include "app/touch.h"
 #include "app/words.h"
 #include "constraints/pose.h"
 #include "mesh/triangle_mesh.h"
 
 namespace drape {
-
-// What a vertex does at the end of a step.
-enum class Touch : std::uint8_t { free = 0, slides = 1, sticks = 2 };
 
 struct RecordedShape {
   std::string name;    // of its files, NAME.obj
@@ -77,20 +74,25 @@ class Recording {
   };
 
   void read_run();
+  void read_times();
   void read_steps();
   void add_shape(const std::string& name, const std::filesystem::path& file, bool body);
   void add_body(const Json& body, const std::map<std::string, std::vector<Pose>>& poses);
   void find_shapes();
   void find_frames(std::size_t shape);
+  void use_cache(std::size_t shape, const std::filesystem::path& cache);
+  bool wrote(std::string_view frames) const;  // this kind, as far as run.json tells
   void find_field(std::size_t shape, const char* name);
   void settle_frames();
   std::map<std::string, std::vector<Pose>> read_poses();
   void miss(const std::filesystem::path& file, const std::string& what);
+  std::vector<Vec3> read_positions(std::size_t shape, int frame) const;
   std::vector<float> field(std::size_t shape, const char* name, int frame) const;
 
   std::filesystem::path folder_;
   Names missing_;
   Json run_;
+  bool times_told_ = false;  // by run.json
   RecordedSteps steps_;
   std::vector<double> times_;
   std::vector<RecordedShape> shapes_;

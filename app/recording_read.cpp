@@ -95,7 +95,28 @@ void Recording::read_run() {
                                               ": is missing; has the run not finished, or is this "
                                               "not the output of a run?");
   }
-  for (const Json& time : run_["frame_times"].items()) times_.push_back(time.number(0));
+  read_times();
+}
+
+void Recording::read_times() {
+  const Json::List& told = run_["frame_times"].items();
+  double last = -std::numeric_limits<double>::infinity();
+  for (const Json& time : told) {
+    times_.push_back(time.number(std::numeric_limits<double>::quiet_NaN()));
+    if (!(times_.back() >= last)) {  // nor is it a number
+      miss(folder_ / "run.json", "frame_times are not times that rise");
+      times_.clear();
+      return;
+    }
+    last = times_.back();
+  }
+  times_told_ = !run_["frame_times"].is_null();
+}
+
+// Runs of earlier versions do not tell: then what is there counts.
+bool Recording::wrote(std::string_view frames) const {
+  const std::string told = run_["frames"].text();
+  return told.empty() || told == frames;
 }
 
 void Recording::read_steps() {
@@ -119,7 +140,7 @@ void Recording::read_steps() {
 std::map<std::string, std::vector<Pose>> Recording::read_poses() {
   std::map<std::string, std::vector<Pose>> poses;
   const fs::path file = folder_ / "bodies.csv";
-  if (!fs::exists(file)) return poses;
+  if (!fs::exists(file) || (times_told_ && times_.empty())) return poses;
   try {
     const std::vector<CsvRow> rows = read_csv(file);
     for (std::size_t k = 1; k < rows.size(); ++k) {
@@ -137,6 +158,8 @@ std::map<std::string, std::vector<Pose>> Recording::read_poses() {
 }
 
 void Recording::add_shape(const std::string& name, const fs::path& file, bool body) {
+  if (name.empty() || name.front() == '.' || name.find_first_of("/\\") != name.npos)
+    return miss(folder_ / "run.json", "'" + one_line(name) + "' is no name of a file");
   try {
     shapes_.push_back({name, body, false, read_obj(file)});
     sources_.emplace_back();
@@ -165,56 +188,68 @@ void Recording::find_shapes() {
   if (run_.is_null())
     for (const std::string& name : obj_names(folder_ / "bodies", ".obj"))
       add_shape(name, folder_ / "bodies" / (name + ".obj"), true);
-  for (const Json& body : run_["bodies"].items()) add_body(body, poses);
   frame_counts_.resize(shapes_.size(), 0);
+  for (const Json& body : run_["bodies"].items()) add_body(body, poses);
 }
 
 void Recording::add_body(const Json& body, const std::map<std::string, std::vector<Pose>>& poses) {
   const std::string file = body["file"].text();
   const std::string name = file.empty() ? body["name"].text() : fs::path(file).stem().string();
+  const bool deforms = body["deforms"].is(true),
+             moves = body["moves"].is(true) || body["reacts"].is(true);  // as a whole
   const auto found = poses.find(name);
+  const std::vector<Pose> moved = moves && found != poses.end() ? found->second : std::vector<Pose>();
+  const Pose last = place_of(body["place"]);
   if (!body["normal"].is_null()) {
     planes_.push_back(
         {name, vector_of(body["point"], Vec3::Zero()), vector_of(body["normal"], Vec3::UnitY())});
-    plane_poses_.push_back(found == poses.end() ? std::vector<Pose>() : found->second);
+    plane_poses_.push_back(moved.empty() ? std::vector<Pose>{last} : moved);
   }
   if (file.empty()) return;
-  add_shape(name, folder_ / file, true);
-  if (shapes_.empty() || shapes_.back().name != name || !shapes_.back().body) return;  // it was missing
-  const std::size_t k = shapes_.size() - 1;
+  const std::size_t k = shapes_.size();
+  add_shape(name, folder_ / "bodies" / (name + ".obj"), true);
+  if (shapes_.size() == k) return;  // it was missing
+  frame_counts_.push_back(0);
   Source& source = sources_[k];
-  source.last = place_of(body["place"]);
-  if (fs::exists(folder_ / "bodies" / (name + ".pc2")))
-    source.cache = folder_ / "bodies" / (name + ".pc2");
-  else if (count_frame_files(folder_, name) > 0)
+  source.last = last;
+  const fs::path cache = folder_ / "bodies" / (name + ".pc2");
+  if (deforms && wrote("pc2") && times_told_ && !times_.empty())
+    use_cache(k, cache);
+  else if (deforms && wrote("obj") && count_frame_files(folder_, name) > 0)
     source.files = true;
-  else if (found != poses.end())
-    source.poses = found->second;
+  else
+    source.poses = moved;
   shapes_[k].moves = !source.cache.empty() || source.files || !source.poses.empty();
 }
 
-// Of a cloth. An empty cache of a run without frames is no loss.
+// What is damaged is told; the whole samples are used.
+void Recording::use_cache(std::size_t k, const fs::path& cache) {
+  try {
+    const Pc2Reader reader(cache, Pc2Reader::Damaged::read);
+    if (!reader.damage().empty()) miss(cache, reader.damage());
+    if (reader.points() != shapes_[k].mesh.vertex_count())
+      throw InputError(cache.string() + ": has " + std::to_string(reader.points()) + " points, but " +
+                       shapes_[k].name + ".obj has " + std::to_string(shapes_[k].mesh.vertex_count()) +
+                       " vertices");
+    sources_[k].cache = cache;
+    frame_counts_[k] = reader.samples();
+  } catch (const InputError& error) {
+    missing_.push_back(error.what());
+  }
+}
+
+// Of a cloth. Of a run without frames nothing is missing.
 void Recording::find_frames(std::size_t k) {
   const std::string& name = shapes_[k].name;
   const fs::path cache = folder_ / (name + ".pc2");
-  const bool expected = run_.is_null() || !times_.empty();
-  frame_counts_.resize(shapes_.size(), 0);
-  if (fs::exists(cache)) {
-    try {
-      const Pc2Reader reader(cache, Pc2Reader::Damaged::read);
-      if (!reader.damage().empty()) miss(cache, reader.damage());
-      if (reader.points() != shapes_[k].mesh.vertex_count())
-        throw InputError(cache.string() + ": has " + std::to_string(reader.points()) + " points, but " +
-                         name + ".obj has " + std::to_string(shapes_[k].mesh.vertex_count()) + " vertices");
-      sources_[k].cache = cache;
-      frame_counts_[k] = reader.samples();
-    } catch (const InputError& error) {
-      missing_.push_back(error.what());
-    }
-  } else if (const int files = count_frame_files(folder_, name); files > 0) {
+  frame_counts_.push_back(0);
+  if (times_told_ && times_.empty()) return;
+  if (wrote("pc2") && fs::exists(cache)) {
+    use_cache(k, cache);
+  } else if (const int files = wrote("obj") ? count_frame_files(folder_, name) : 0; files > 0) {
     sources_[k].files = true;
     frame_counts_[k] = files;
-  } else if (expected) {
+  } else {
     miss(cache, "is missing, and so is frames/" + name + "_0001.obj: only the last shape is there");
   }
   shapes_[k].moves = frame_counts_[k] > 0;
@@ -227,33 +262,41 @@ void Recording::find_field(std::size_t k, const char* name) {
   if (frame_counts_[k] == 0 || !fs::exists(path)) return;
   try {
     const NpyReader reader(path);
-    const int vertices = shapes_[k].mesh.vertex_count();
-    if (reader.frames() < frame_counts_[k] || reader.frame_shape().front() != vertices)
-      throw InputError(path.string() + ": has " + std::to_string(reader.frames()) + " frames of " +
-                       std::to_string(reader.frame_shape().front()) + " vertices, expected " +
-                       std::to_string(frame_counts_[k]) + " of " + std::to_string(vertices));
+    std::vector<int> expected = {shapes_[k].mesh.vertex_count()};
+    if (std::string_view(name) == "velocity") expected.push_back(3);
+    if (reader.frame_shape() != expected)
+      throw InputError(path.string() + ": has other numbers in a frame than " + shapes_[k].name +
+                       ".obj has " + counted(expected.front(), "vertex"));
+    if (times_told_ && reader.frames() < std::min(frame_counts_[k], static_cast<int>(times_.size())))
+      throw InputError(path.string() + ": has only " + counted(reader.frames(), "frame"));
     sources_[k].fields.push_back(name);
   } catch (const InputError& error) {
     missing_.push_back(error.what());
   }
 }
 
-// As many frames as every cloth has that has any.
+// As many frames as every shape has that has any, and no more than the run tells: others are of another run.
 void Recording::settle_frames() {
   int frames = 0;
   for (const int count : frame_counts_)
     if (count > 0) frames = frames == 0 ? count : std::min(frames, count);
   const auto told = static_cast<int>(times_.size());
-  if (!run_.is_null() && frames > 0 && frames < told && missing_.empty())
-    miss(folder_,
-         "has " + std::to_string(frames) + " of the " + std::to_string(told) + " frames that run.json tells");
+  if (times_told_) {
+    if (frames > 0 && frames < told && missing_.empty())
+      miss(folder_, "has " + std::to_string(frames) + " of the " + std::to_string(told) +
+                        " frames that run.json tells");
+    frames = std::min(frames, told);
+  }
   if (frames == 0) {
     times_ = {run_["simulated_seconds"].number(0)};
     for (RecordedShape& shape : shapes_) shape.moves = false;
+    for (std::vector<Pose>& poses : plane_poses_)
+      if (poses.size() > 1) poses.erase(poses.begin(), poses.end() - 1);
     return;
   }
-  for (int k = told; k < frames; ++k) times_.push_back(k / usual_rate);
   times_.resize(static_cast<std::size_t>(frames));
+  if (!times_told_)
+    for (int k = 0; k < frames; ++k) times_[static_cast<std::size_t>(k)] = k / usual_rate;
 }
 
 }  // namespace drape

@@ -112,6 +112,7 @@ std::string run_json(const RunRecord& record) {
       {"steps_not_converged", record.steps_not_converged},
       {"inner_steps", Json::Members{{"mean", inner_steps.mean}, {"max", static_cast<long>(inner_steps.max)}}},
       {"inner_rejected", record.inner_rejected},
+      {"frames", record.frames},
       {"frame_times", record.frame_times},
       {"state_hash", record.state_hash},
       {"warnings", record.warnings},

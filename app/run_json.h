@@ -61,6 +61,7 @@ struct RunRecord {
   double max_penetration = 0;                                          // m, of the whole run
   bool settled = false, interrupted = false;
   std::string state_hash;
+  std::string frames;               // how they were written: pc2, obj, none
   std::vector<double> frame_times;  // s, of the states that the frames are of
   std::optional<Failure> failure;
 

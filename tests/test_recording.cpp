@@ -187,11 +187,114 @@ TEST_CASE("what is missing or damaged is told, and the rest is there", "[recordi
     CHECK(Recording(out).strains(0, 2).empty());
     CHECK(Recording(out).velocities(0, 2).size() == 25);
   }
+  SECTION("a field of another shape") {
+    NpyWriter writer(out / "fields" / "sheet.velocity.npy", NpyWriter::Kind::float32, {25});
+    for (int frame = 0; frame < 6; ++frame) writer.add(std::vector<float>(25, 1));
+    writer.close();
+    writer.keep();
+    CHECK(told("sheet.velocity.npy: has other numbers in a frame") == 6);
+    CHECK(Recording(out).velocities(0, 2).empty());
+  }
+  SECTION("times that are none") {
+    const std::string before = content(out / "run.json");
+    const std::size_t at = before.find("0.05,");
+    folder.write("out/run.json", before.substr(0, at) + "null," + before.substr(at + 5));
+    CHECK(told("frame_times are not times that rise") == 6);
+  }
+  SECTION("a name that leads out of the folder") {
+    std::string text = content(out / "run.json");
+    for (std::size_t at; (at = text.find("\"block\"")) != text.npos;) text.replace(at, 7, "\"../x\"");
+    for (std::size_t at; (at = text.find("bodies/block.obj")) != text.npos;)
+      text.replace(at, 16, "bodies/.x.obj");
+    folder.write("out/run.json", text);
+    CHECK(told("'.x' is no name of a file") == 6);
+  }
   SECTION("a body's shape") {
     fs::remove(out / "bodies" / "block.obj");
     CHECK(told("block.obj") == 6);
     CHECK(Recording(out).shapes().size() == 2);
   }
+}
+
+TEST_CASE("files of another run in the same folder are not taken for this run's", "[recording]") {
+  const Folder folder;
+  const std::vector<Frames> kinds = {Frames::pc2, Frames::obj, Frames::none};
+  for (const Frames first : kinds)
+    for (const Frames second : kinds) {
+      INFO("kinds " << int(first) << " and " << int(second));
+      // The first is longer, its sheet lies elsewhere, and its block moves; the second's block stands.
+      write_sheet(folder);
+      std::string other = scene;
+      other.replace(other.find("0.25 s"), 6, "0.35 s");
+      other.replace(other.find("mesh ="), 6, "translate = [0, 3, 0]\nmesh =");
+      folder.write("first.toml", other);
+      std::string standing = scene;
+      standing.erase(standing.find("motion = { velocity = [0, 1, 0] }"), 33);
+      folder.write("second.toml", standing);
+      std::filesystem::remove_all(folder.path / "out");
+      const fs::path out = folder.path / "out", alone = folder.path / "alone";
+      REQUIRE(run(read_scene(folder.path / "first.toml", {}), {out, first, true}) == 0);
+      REQUIRE(run(read_scene(folder.path / "second.toml", {}), {out, second, true}) == 0);
+      REQUIRE(run(read_scene(folder.path / "second.toml", {}), {alone, second, true}) == 0);
+      const Recording both(out), fresh(alone);
+      CHECK(both.missing().empty());
+      REQUIRE(both.frames() == fresh.frames());
+      CHECK(both.frames() == (second == Frames::none ? 1 : 6));
+      for (int frame = 0; frame < both.frames(); ++frame) {
+        CHECK(both.time(frame) == fresh.time(frame));
+        CHECK(both.velocities(0, frame) == fresh.velocities(0, frame));
+        for (std::size_t shape = 0; shape < 3; ++shape)
+          CHECK(both.positions(shape, frame) == fresh.positions(shape, frame));
+      }
+      std::filesystem::remove_all(alone);
+    }
+}
+
+TEST_CASE("a plane that rises is where it is, with frames and without", "[recording]") {
+  const Folder folder;
+  write_sheet(folder);
+  folder.write("scene.toml",
+               "[simulation]\nduration = 0.1\n[[cloth]]\nmesh = \"sheet.obj\"\n[[obstacle]]\nshape = "
+               "\"plane\"\npoint = [0, -0.5, 0]\nmotion = { velocity = [0, 1, 0] }\n");
+  for (const Frames kind : {Frames::pc2, Frames::none}) {
+    REQUIRE(run(read_scene(folder.path / "scene.toml", {}), {folder.path / "out", kind, true}) == 0);
+    const Recording recording(folder.path / "out");
+    const int last = recording.frames() - 1;
+    CHECK(recording.planes(last)[0].point[1] == Approx(-0.5 + recording.time(last)));
+  }
+}
+
+TEST_CASE("a body's damaged cache and frames of another mesh are told", "[recording]") {
+  const Folder folder;
+  write_sheet(folder);
+  folder.write("ball_1.obj",
+               "v -1 -1 -1\nv 1 -1 -1\nv 0 -1 1\nv 0 -0.5 0\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 3 2\n");
+  folder.write("ball_2.obj",
+               "v -1 -1 -1\nv 1 -1 -1\nv 0 -1 1\nv 0 -0.4 0\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 3 2\n");
+  folder.write(
+      "scene.toml",
+      "[simulation]\nduration = 0.2\n[[cloth]]\nmesh = \"sheet.obj\"\n[[obstacle]]\nname = "
+      "\"ball\"\nshape = \"mesh\"\nmesh = \"ball_1.obj\"\nframes = \"ball_%d.obj\"\nframe_rate = 10\n");
+  const Scene described = read_scene(folder.path / "scene.toml", {});
+  const fs::path out = folder.path / "out";
+  REQUIRE(run(described, {out, Frames::pc2, true}) == 0);
+  REQUIRE(Recording(out).missing().empty());
+  CHECK(Recording(out).positions(1, 5)[3][1] == Approx(-0.4));
+  fs::resize_file(out / "bodies" / "ball.pc2", 32 + 2 * 4 * 12 + 1);
+  const Recording damaged(out);
+  REQUIRE(damaged.missing().size() == 1);
+  CHECK(damaged.missing()[0].find("ball.pc2: is cut short") != std::string::npos);
+  CHECK(damaged.frames() == 2);
+
+  REQUIRE(run(described, {out, Frames::obj, true}) == 0);
+  folder.write("out/frames/sheet_0002.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  CHECK_THROWS_WITH(Recording(out).positions(0, 1), Catch::Contains("sheet_0002.obj: has 3 vertices"));
+}
+
+TEST_CASE("JSON that is deep or out of range is refused in one line", "[recording]") {
+  for (const std::string& text : {std::string(200000, '['), std::string("[1e999]"), std::string("{\"a\": ")})
+    CHECK_THROWS_AS(parse_json(text, "run.json"), InputError);
+  CHECK(parse_json(std::string(100, '[') + std::string(100, ']'), "a").items().size() == 1);
 }
 
 TEST_CASE("a folder with nothing to show is refused", "[recording]") {

@@ -15,7 +15,8 @@ using namespace py::literals;
 
 // A number, or an array of them.
 std::vector<int> particles_of(const py::object& given) {
-  const bool one = py::isinstance<py::int_>(given);
+  const bool one =
+      py::isinstance<py::array>(given) ? py::array(given).ndim() == 0 : PyIndex_Check(given.ptr()) != 0;
   const IntArray array =
       one ? integers(py::make_tuple(given), "particles", {1}) : integers(given, "particles", {-1});
   const std::vector<int> all(array.data(), array.data() + array.size());
@@ -34,15 +35,17 @@ std::vector<int> particles_of(const py::object& given, const State& state) {
   return all;
 }
 
-struct Touch {
+// A contact as Python is told of it.
+struct TouchingParticle {
   int particle, body;
   bool sticks;
   Vec3 normal;
   double gap, impulse;
 };
 
-std::vector<Touch> touching(const Constraints& constraints) {
-  std::vector<Touch> all;
+std::vector<TouchingParticle> touching(const Constraints& constraints) {
+  require_free(&constraints);
+  std::vector<TouchingParticle> all;
   for (const Contact& contact : constraints.contacts())
     if (contact.active())
       all.push_back({contact.particle, contact.plane[0].obstacle, contact.grip == Grip::stick,
@@ -51,13 +54,13 @@ std::vector<Touch> touching(const Constraints& constraints) {
 }
 
 void add_touches(py::module_& m) {
-  py::class_<Touch>(m, "Contact", "A particle that touches a body, after the last step.")
-      .def_readonly("particle", &Touch::particle)
-      .def_readonly("body", &Touch::body, "number of the obstacle, from 0")
-      .def_readonly("sticks", &Touch::sticks, "else it slides")
-      .def_readonly("normal", &Touch::normal, "(3,) unit, out of the body")
-      .def_readonly("impulse", &Touch::impulse, "N s, along the normal, of the last step")
-      .def("__repr__", [](const Touch& touch) {
+  py::class_<TouchingParticle>(m, "Contact", "A particle that touches a body, after the last step.")
+      .def_readonly("particle", &TouchingParticle::particle)
+      .def_readonly("body", &TouchingParticle::body, "number of the obstacle, from 0")
+      .def_readonly("sticks", &TouchingParticle::sticks, "else it slides")
+      .def_readonly("normal", &TouchingParticle::normal, "(3,) unit, out of the body")
+      .def_readonly("impulse", &TouchingParticle::impulse, "N s, along the normal, of the last step")
+      .def("__repr__", [](const TouchingParticle& touch) {
         return "Contact(particle " + std::to_string(touch.particle) +
                (touch.sticks ? " sticks to" : " slides on") + " body " + std::to_string(touch.body) + ")";
       });
@@ -119,6 +122,8 @@ void add_constraints(py::module_& m) {
       .def(
           "penetration",
           [](const Constraints& constraints, const State& state) {
+            require_free(&constraints);
+            require_free(&state);
             return copied(constraints.penetration(state.x));
           },
           "state"_a, "(n,) [m]: how deep each particle is inside a body, 0 outside.")

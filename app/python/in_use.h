@@ -1,6 +1,7 @@
 // While a step is taken the interpreter goes on, and so may other Python threads. What the step changes or
 // reads is marked here, and whoever wants to change it meanwhile gets a RuntimeError instead of a crash.
-// (Reading arrays is allowed: what they show during a step is not defined.)
+// (Reading arrays is allowed: what they show during a step is not defined. What is copied, or may get other
+// memory, is not read meanwhile.)
 //   All of this is called with the interpreter's lock held, which guards the marks.
 #pragma once
 

@@ -84,7 +84,8 @@ void add_kind(py::module_& m, const char* python_name, const char* name, const c
                            const py::object& solver, const StepOptions& options) {
              return std::make_unique<Kind>(name, std::move(system), std::move(constraints), solver, options);
            }),
-           "system"_a, "constraints"_a, "solver"_a = "mpcg", "options"_a = StepOptions());
+           "system"_a.none(false), "constraints"_a.none(false), "solver"_a = "mpcg",
+           "options"_a = StepOptions());
 }
 
 void add_options(py::module_& m) {
@@ -143,7 +144,11 @@ void add_integrators(py::module_& m) {
           "record_systems", [](const Stepper& s) { return s.recording.on; },
           [](Stepper& s, bool on) { s.recording.on = on; }, "whether the linear system of each step is kept")
       .def_property_readonly(
-          "last_system", [](const Stepper& s) { return last_system(s.recording); },
+          "last_system",
+          [](const Stepper& s) {
+            require_free(&s);
+            return last_system(s.recording);
+          },
           "the last LinearSystem that was solved while record_systems was True, a copy; or None")
       .def("__repr__", [](const Stepper& s) {
         return "Integrator('" + std::string(s.integrator->name()) + "', " +
@@ -158,7 +163,8 @@ void add_integrators(py::module_& m) {
          const py::object& solver, const StepOptions& options) {
         return std::make_unique<Stepper>(name, std::move(system), std::move(constraints), solver, options);
       },
-      "name"_a, "system"_a, "constraints"_a, "solver"_a = "mpcg", "options"_a = StepOptions(),
+      "name"_a, "system"_a.none(false), "constraints"_a.none(false), "solver"_a = "mpcg",
+      "options"_a = StepOptions(),
       "An integrator that integrators() lists. The solver is a name or a LinearSolver.");
   m.def(
       "integrators",

@@ -12,8 +12,9 @@ namespace {
 using namespace py::literals;
 
 Friction friction_of(const py::object& given) {
-  if (py::isinstance<py::float_>(given) || py::isinstance<py::int_>(given))
-    return Friction(given.cast<double>());
+  const bool one = py::isinstance<py::float_>(given) || py::isinstance<py::int_>(given) ||
+                   (py::hasattr(given, "ndim") && py::array(given).ndim() == 0);
+  if (one) return Friction(*numbers(py::make_tuple(given), "friction", {1}).data());
   const Array pair = numbers(given, "friction", {2});
   return Friction(pair.data()[0], pair.data()[1]);
 }

@@ -29,13 +29,26 @@ Node of_integer(const py::handle& value, const std::string& where) {
   return node;
 }
 
+std::string text_of(const py::handle& value, const std::string& where) {
+  Py_ssize_t size = 0;
+  const char* const text = PyUnicode_AsUTF8AndSize(value.ptr(), &size);
+  if (text) return {text, static_cast<std::size_t>(size)};
+  PyErr_Clear();
+  throw InputError(where + ": " + one_line(std::string(py::repr(value)).substr(0, 60)) +
+                   " has a lone surrogate, which no file can hold");
+}
+
+bool is_mapping(const py::handle& value) {
+  return py::isinstance(value, py::module_::import("collections.abc").attr("Mapping"));
+}
+
 Node of_dict(const py::dict& dict, const std::string& where, int depth) {
   Node node = Node::of_table(where);
   for (const auto& [key, value] : dict) {
     if (!py::isinstance<py::str>(key))
       throw InputError(where + ": a key is a text, but here is " + std::string(py::repr(key)));
     const std::string place = where + "[" + std::string(py::repr(key)) + "]";
-    node.members.emplace(key.cast<std::string>(), of(value, place, depth + 1));
+    node.members.emplace(text_of(key, where), of(value, place, depth + 1));
   }
   return node;
 }
@@ -52,8 +65,8 @@ Node of(const py::handle& value, const std::string& where, int depth) {
   if (py::isinstance<py::bool_>(value)) return of_boolean(value.cast<bool>(), where);
   if (py::isinstance<py::int_>(value)) return of_integer(value, where);
   if (py::isinstance<py::float_>(value)) return Node::of_number(value.cast<double>(), where);
-  if (py::isinstance<py::str>(value)) return Node::of_text(value.cast<std::string>(), where);
-  if (py::isinstance<py::dict>(value)) return of_dict(value.cast<py::dict>(), where, depth);
+  if (py::isinstance<py::str>(value)) return Node::of_text(text_of(value, where), where);
+  if (is_mapping(value)) return of_dict(py::dict(py::reinterpret_borrow<py::object>(value)), where, depth);
   if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value))
     return of_sequence(value.cast<py::sequence>(), where, depth);
   if (py::hasattr(value, "__fspath__")) return Node::of_text(py::str(value.attr("__fspath__")()), where);

@@ -2,6 +2,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
+
 #include "app/measure.h"
 #include "app/python/arrays.h"
 #include "app/python/in_use.h"
@@ -33,11 +35,29 @@ struct Whole {
 };
 using Shared = std::shared_ptr<Whole>;
 
+// Between two steps: what is copied from it has the same time everywhere.
+const Simulation& between_steps(const Whole& whole) {
+  require_free(&whole.simulation.state);
+  return whole.simulation;
+}
+
+fs::path path_of(const py::object& given) {
+  if (!py::isinstance<py::str>(given) && !py::isinstance<py::bytes>(given) &&
+      !py::hasattr(given, "__fspath__"))
+    throw py::type_error("scene: expected a path or a dict, but got a " +
+                         std::string(py::str(py::type::of(given).attr("__name__"))));
+  try {
+    return given.cast<fs::path>();
+  } catch (const py::cast_error&) {
+    throw py::value_error("scene: " + std::string(py::repr(given)) + " cannot be a path");
+  }
+}
+
 // A dict, or the path of a TOML file; paths in it are relative to `folder`, by default that of the file or
 // the current one.
 Scene scene_of(const py::object& given, const py::dict& settings, const std::optional<fs::path>& folder) {
   const bool data = py::isinstance<py::dict>(given);
-  const fs::path path = data ? fs::path() : given.cast<fs::path>();
+  const fs::path path = data ? fs::path() : path_of(given);
   Node root = data ? node_of(given, "scene") : read_toml(path);
   for (const auto& [key, value] : settings) {
     const std::string where = "settings[" + std::string(py::repr(key)) + "]";
@@ -69,10 +89,12 @@ struct Part {
   }
   // (vertices, 3) of x or v.
   py::object rows(const VecX& all) const {
+    require_free(&whole->simulation.state.x);
     const Cloth& c = cloth();
     if (plain())
       return view(all.data() + 3 * c.first_particle, {c.embedding.vertices(), 3}, py::cast(whole),
                   Access::write);
+    require_free(&whole->simulation.state);
     py::object copy = copied_rows(c.embedding.positions(all));
     copy.attr("setflags")("write"_a = false);
     return copy;
@@ -107,7 +129,7 @@ class PartialRun {
 
   RunStep step() {
     if (over()) throw py::value_error("the run is over");
-    const InUse state({&whole_->simulation.state, this});
+    const InUse state(used());
     StepRow row;
     {
       const py::gil_scoped_release release;
@@ -129,6 +151,16 @@ class PartialRun {
   }
 
  private:
+  // By a step. Where seams may close, arrays may get other memory: so also what stands for that.
+  std::vector<const void*> used() const {
+    const Simulation& simulation = whole_->simulation;
+    std::vector<const void*> all = {&simulation.state, this};
+    const auto sewn = [](const Cloth& cloth) { return !cloth.seams.empty(); };
+    if (std::any_of(simulation.cloths.begin(), simulation.cloths.end(), sewn))
+      all.push_back(&simulation.state.x);
+    return all;
+  }
+
   Shared whole_;
   std::optional<InUse> in_use_;
   std::optional<Run> run_;
@@ -166,7 +198,7 @@ void add_runs(py::module_& m) {
   py::class_<PartialRun>(m, "Run", "A run under way; Simulation.run and `for step in simulation` make them.")
       .def(py::init<Shared, const std::optional<fs::path>&, const std::string&, std::optional<double>,
                     std::optional<double>>(),
-           "simulation"_a, "out"_a = py::none(), "frames"_a = "pc2", "duration"_a = py::none(),
+           "simulation"_a.none(false), "out"_a = py::none(), "frames"_a = "pc2", "duration"_a = py::none(),
            "time_step"_a = py::none(),
            "From where the simulation is, for `duration` [s] or what is left of the scene's.")
       .def_property_readonly("over", &PartialRun::over,
@@ -198,17 +230,21 @@ void add_simulations(py::module_& m) {
           "duration", [](const Whole& w) { return w.simulation.scene->simulation.duration; },
           "s, of the scene")
       .def_property_readonly(
-          "state_hash", [](const Whole& whole) { return state_hash(whole.simulation.state); },
+          "state_hash", [](const Whole& whole) { return state_hash(between_steps(whole).state); },
           "16 hexadecimal digits, as in run.json: the same when every bit is")
       .def_property_readonly(
-          "masses", [](const Whole& whole) { return copied(whole.simulation.system->masses()); },
+          "masses", [](const Whole& whole) { return copied(between_steps(whole).system->masses()); },
           "(n,) [kg], of the particles")
       .def_property(
           "record_systems", [](const Whole& whole) { return whole.recording.on; },
           [](Whole& whole, bool on) { whole.recording.on = on; },
           "whether the linear system of each step is kept")
       .def_property_readonly(
-          "last_system", [](const Whole& whole) { return last_system(whole.recording); },
+          "last_system",
+          [](const Whole& whole) {
+            between_steps(whole);
+            return last_system(whole.recording);
+          },
           "the last LinearSystem that was solved while record_systems was True, a copy; or None");
   add_runs(m);
   m.def("view_html", &view_html, "folder"_a, py::call_guard<py::gil_scoped_release>(),

@@ -26,8 +26,19 @@ void assign(VecX& to, const py::object& from, const char* name) {
   to = Eigen::Map<const VecX>(array.data(), array.size());
 }
 
-py::object x_of(const py::object& self) { return view_rows(self.cast<State&>().x, self, Access::write); }
-py::object v_of(const py::object& self) { return view_rows(self.cast<State&>().v, self, Access::write); }
+// The vectors have the same memory during a step, except where particles may become fewer.
+py::object rows(const py::object& self, const VecX& all) {
+  require_free(&self.cast<State&>().x);
+  return view_rows(all, self, Access::write);
+}
+
+py::object x_of(const py::object& self) { return rows(self, self.cast<State&>().x); }
+py::object v_of(const py::object& self) { return rows(self, self.cast<State&>().v); }
+
+State copy_of(const State& state) {
+  require_free(&state);
+  return state;
+}
 
 }  // namespace
 
@@ -56,14 +67,18 @@ void add_states(py::module_& m) {
           "(n, 3) velocities [m/s], a view that can be written")
       .def_property_readonly("particles", &State::particles, "how many: n")
       .def_property_readonly(
-          "hash", &state_hash,
+          "hash",
+          [](const State& state) {
+            require_free(&state);
+            return state_hash(state);
+          },
           "16 hexadecimal digits, the same when every bit of x and v is: state_hash in run.json")
-      .def(
-          "copy", [](const State& state) { return State(state); }, "Another state with the same numbers.")
-      .def("__copy__", [](const State& state) { return State(state); })
-      .def("__deepcopy__", [](const State& state, const py::object&) { return State(state); })
+      .def("copy", &copy_of, "Another state with the same numbers.")
+      .def("__copy__", &copy_of)
+      .def("__deepcopy__", [](const State& state, const py::object&) { return copy_of(state); })
       .def(py::pickle(
           [](const State& state) {
+            require_free(&state);
             return py::make_tuple(state.time, copied_rows(state.x), copied_rows(state.v));
           },
           [](const py::tuple& saved) { return made(saved[1], saved[2], saved[0].cast<double>()); }))

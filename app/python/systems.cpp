@@ -45,6 +45,8 @@ double energy(const System& system, const State& state) {
 template <class F>
 auto with_state(F f) {
   return [f](const System& system, const State& state) {
+    require_free(&system);
+    require_free(&state);
     check_state(system, state);
     return f(system, state);
   };

@@ -2,9 +2,11 @@
 
 import csv
 import math
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
@@ -64,6 +66,71 @@ class Callbacks(Runs):
         simulation.run(out=self.folder / "o", callback=lambda step: step.step < 7)
         self.assertEqual(self.complete("o")["steps"], 7)
         self.assertEqual(simulation.time, 0.07)
+
+    def test_what_is_false_and_what_is_not(self):
+        for result, steps in ((False, 1), (np.bool_(False), 1), (np.False_, 1), (np.bool_(True), 20), (None, 20)):
+            with self.subTest(result=result, kind=type(result)):
+                self.assertEqual(self.simulation().run(callback=lambda step: result)["steps"], steps)
+
+    def test_a_run_inside_a_run_is_refused_and_spoils_nothing(self):
+        for out in (None, self.folder / "o"):
+            for inner in (lambda s: s.run(), lambda s: s.view(), lambda s: s.advance(), lambda s: list(s)):
+                simulation, refused = self.simulation(), []
+
+                def nest(step):
+                    with self.assertRaisesRegex(RuntimeError, "is under way"):
+                        inner(simulation)
+                    refused.append(step.step)
+
+                record = simulation.run(out=out, callback=nest)
+                self.assertEqual((len(refused), record["steps"], record["frame_times"][-1]), (20, 20, 0.2))
+                self.assertEqual(self.complete(simulation.folder), record)
+
+    def test_a_run_that_is_refused_leaves_the_one_before(self):
+        self.addCleanup(setattr, tempfile, "tempdir", tempfile.tempdir)
+        tempfile.tempdir = str(self.folder)
+        simulation = self.simulation()
+        simulation.run(0.1)
+        folder = simulation.folder
+        self.assertEqual(folder.parent, self.folder)
+        with self.assertRaises(ValueError):
+            simulation.run(duration=-1)
+        with self.assertRaises(ValueError):
+            simulation.run(frames="pc3")
+        self.assertEqual(simulation.folder, folder)
+        self.assertTrue((folder / "run.json").is_file())
+        self.assertEqual(list(self.folder.glob("drape-*")), [folder])
+        if drape.has_viewer():
+            self.assertIn("<html", simulation.view().page)
+        simulation.run(0.05)
+        self.assertEqual(list(self.folder.glob("drape-*")), [simulation.folder])
+        self.assertTrue((simulation.folder / "run.json").is_file())
+
+    def test_what_ended_a_run_comes_before_what_its_files_say_then(self):
+        class Mine(Exception):
+            pass
+
+        simulation = self.simulation()
+
+        def spoil(step):
+            shutil.rmtree(self.folder / "o")
+            (self.folder / "o").write_text("")
+            raise Mine("because")
+
+        with self.assertRaisesRegex(Mine, "because") as caught:
+            simulation.run(out=self.folder / "o", callback=spoil)
+        self.assertIsInstance(caught.exception.__context__, ValueError)
+        self.assertIsNone(simulation.folder)
+        simulation.advance()  # it is free again
+
+    def test_a_state_that_is_no_number_any_more(self):
+        simulation = self.simulation()
+
+        def spoil(step):
+            simulation.state.x[:] = np.nan
+
+        with self.assertRaisesRegex(drape.StepError, "^step 2 "):
+            simulation.run(out=self.folder / "o", callback=spoil)
 
     def test_an_exception_ends_the_run_cleanly_and_goes_on(self):
         class Mine(Exception):

@@ -1,11 +1,13 @@
 """Scenes from TOML and dicts: the same bits and the same files as the program's, the same errors."""
 
+import collections
 import os
+import types
 import unittest
 from pathlib import Path
 
 import numpy as np
-from workshop import SCENE_TOML, SEWN_QUICKLY, SOURCE, Workshop, scene_dict
+from workshop import SCENE_TOML, SEWN_QUICKLY, SOURCE, Workshop, in_another_thread, refusal, scene_dict
 
 import drape
 
@@ -77,6 +79,21 @@ class SameAsTheProgram(Workshop):
         self.assertEqual(list(parts), [])
 
 
+    def test_any_mapping_is_a_dict(self):
+        def frozen(value):
+            if isinstance(value, dict):
+                return types.MappingProxyType({key: frozen(member) for key, member in value.items()})
+            return tuple(map(frozen, value)) if isinstance(value, list) else value
+
+        hashes = set()
+        for make in (dict, frozen, collections.ChainMap, collections.UserDict):
+            scene = make(scene_dict(self.folder))
+            simulation = drape.read_scene(scene, types.MappingProxyType({"simulation.duration": 0.03}))
+            simulation.run()
+            hashes.add(simulation.state_hash)
+        self.assertEqual(len(hashes), 1)
+
+
 class Folders(Workshop):
     def test_paths_of_a_dict_are_relative_to_the_current_folder_or_to_the_one_given(self):
         scene = scene_dict("")
@@ -127,6 +144,23 @@ class Refusals(Workshop):
         self.assertIn("a key is a text, but here is 3", self.refused({3: 4}))
         self.assertIn("the integer is out of range", self.refused({"simulation": {"threads": 2**70}}))
 
+    def test_what_is_no_scene_at_all(self):
+        for wrong, kind in ((3, "int"), (None, "NoneType"), ([], "list"), (1.5, "float")):
+            with self.subTest(wrong), self.assertRaises(TypeError) as caught:
+                drape.read_scene(wrong)
+            self.assertEqual(str(caught.exception), f"scene: expected a path or a dict, but got a {kind}")
+        for path in ("\ud800.toml", "a\0b.toml"):
+            self.assertEqual(self.refused(path), f"scene: {path!r} cannot be a path")
+
+    def test_texts_that_no_file_can_hold(self):
+        scene = scene_dict(self.folder)
+        scene["cloth"][0]["name"] = "a\udc80"
+        self.assertEqual(self.refused(scene),
+                         "scene['cloth'][0]['name']: 'a\\udc80' has a lone surrogate, which no file can hold")
+        self.assertIn("lone surrogate", self.refused({"\ud800": 1}))
+        self.assertIn("lone surrogate", self.refused(scene_dict(self.folder), {"cloth.0.name": "\ud800"}))
+        self.refused(scene_dict(self.folder), {"\ud800": 1})
+
     def test_a_setting_says_which(self):
         scene = self.folder / "scene.toml"
         self.assertIn("settings['cloth.0.bend']: ", self.refused(scene, {"cloth.0.bend": "8 kg"}))
@@ -171,6 +205,42 @@ class Cloths(Workshop):
         self.assertEqual(len(skirt.positions), skirt.mesh.vertex_count)
         self.assertFalse(skirt.positions.flags.writeable)  # a copy
         simulation.advance()
+
+    def test_what_a_step_replaces_is_not_read_meanwhile(self):
+        simulation = drape.read_scene(SOURCE / "data/scenes/skirt-sewn.toml", SEWN_QUICKLY)
+        simulation.record_systems = True
+        (skirt,) = simulation.cloths
+        state = simulation.state
+        arrays = {"positions": lambda: skirt.positions, "velocities": lambda: skirt.velocities}
+        rest = {"hash": lambda: simulation.state_hash, "masses": lambda: simulation.masses,
+                "last_system": lambda: simulation.last_system}
+        # Before any seam has closed, and when all have: then only what is copied.
+        self.refused_during_steps(simulation, {**arrays, **rest, "x": lambda: state.x, "v": lambda: state.v})
+        before = len(state.x)
+        for _ in range(40):
+            simulation.advance()
+        self.assertLess(len(state.x), before, "no seam has closed")
+        self.refused_during_steps(simulation, {**arrays, **rest})
+
+    def refused_during_steps(self, simulation, reads):
+        for name, read in reads.items():
+            def run(over):
+                simulation.run(1000, frames="none", callback=lambda step: not over.is_set())
+
+            with self.subTest(name), in_another_thread(run) as thread:
+                self.assertIn("is under way", refusal(read, thread))
+            read()
+
+    def test_arrays_of_a_cloth_without_seams_can_be_read_during_a_step(self):
+        simulation = drape.read_scene(self.folder / "scene.toml")
+        (sheet,) = simulation.cloths
+
+        def run(over):
+            simulation.run(1, frames="none")
+
+        with in_another_thread(run) as thread:
+            self.assertEqual(refusal(lambda: (sheet.positions, simulation.state.x), thread), "")
+        self.assertEqual(simulation.time, 1)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ import time
 import unittest
 
 import numpy as np
-from workshop import falling_sheet
+from workshop import falling_sheet, in_another_thread, refusal
 
 import drape
 
@@ -96,6 +96,33 @@ class Step(unittest.TestCase):
         stepper.advance(state, 0.01)
         self.assertEqual(stepper.system.particles, 121)
         self.assertEqual(stepper.constraints.bodies, 1)
+
+    def test_none_is_no_system_and_no_constraints(self):
+        system, constraints, _ = falling_sheet(5)
+        for make in (drape.ImplicitEuler, drape.Bdf2, lambda *given: drape.make_integrator("bdf2", *given)):
+            for given in ((None, constraints), (system, None), (None, None)):
+                with self.subTest(make=make, given=given), self.assertRaises(TypeError):
+                    make(*given)
+        with self.assertRaises(TypeError):
+            drape._drape.Run(None, None, "none")
+
+    def test_one_particle_is_any_integer(self):
+        for one in (3, np.int64(3), np.uint8(3), np.array(3)):
+            with self.subTest(type(one)):
+                constraints = drape.Constraints()
+                constraints.pin(one)
+                np.testing.assert_array_equal(constraints.pinned, [3])
+        for wrong in (3.0, True, np.bool_(True), np.float64(3), np.array(3.0), None, "3", [[3]], np.int64(-1)):
+            with self.subTest(wrong=wrong), self.assertRaisesRegex(ValueError, "^particles: "):
+                drape.Constraints().pin(wrong)
+
+    def test_friction_is_any_number_or_a_pair(self):
+        for friction in (1, np.int64(1), np.float32(1), np.array(1.0), (1, 1)):
+            with self.subTest(type(friction)):
+                self.assertEqual(drape.Obstacle(drape.Plane(), friction).friction, (1, 1))
+        for wrong in (None, "1", [1], [1, 1, 1], 10**400):
+            with self.subTest(wrong=wrong), self.assertRaisesRegex(ValueError, "^friction: "):
+                drape.Obstacle(drape.Plane(), wrong)
 
     def test_soft_bodies(self):
         lattice = drape.box_lattice([4, 4, 4], [0.1, 0.1, 0.1])
@@ -198,6 +225,29 @@ class Threads(unittest.TestCase):
         self.assertTrue(refused)
         self.assertIn("is under way", refused[0])
         self.assertTrue(np.isfinite(state.x).all())
+
+    def test_what_a_step_replaces_is_not_read_meanwhile(self):
+        system, constraints, state = falling_sheet(61)
+        stepper = drape.ImplicitEuler(system, constraints)
+        stepper.record_systems = True
+        stepper.advance(state, 0.001)
+        reads = {
+            "last_system": lambda: stepper.last_system,
+            "contacts": lambda: constraints.contacts,
+            "penetration": lambda: constraints.penetration(state),
+            "hash": lambda: state.hash,
+            "copy": state.copy,
+            "force": lambda: system.force(state),
+        }
+
+        def steps(over):
+            while not over.is_set():
+                stepper.advance(state, 0.001)
+
+        for name, read in reads.items():
+            with self.subTest(name), in_another_thread(steps) as thread:
+                self.assertIn("is under way", refusal(read, thread))
+            read()
 
     def test_a_forked_child_steps(self):
         def child(send):

@@ -1,9 +1,12 @@
 """What the tests of the Python module share: a folder to work in, a scene, the program to compare with."""
 
+import contextlib
 import json
 import os
 import subprocess
 import tempfile
+import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -61,6 +64,30 @@ class Workshop(unittest.TestCase):
 
     def record(self, out):
         return json.loads((self.folder / out / "run.json").read_text())
+
+
+@contextlib.contextmanager
+def in_another_thread(work):
+    """work(over) in a thread, until `over`, an Event, is set: at the end of the block."""
+    over = threading.Event()
+    thread = threading.Thread(target=work, args=(over,))
+    thread.start()
+    try:
+        yield thread
+    finally:
+        over.set()
+        thread.join()
+
+
+def refusal(read, thread):
+    """What the RuntimeError says that read() comes to, tried as long as the thread works; empty without one."""
+    while thread.is_alive():
+        try:
+            read()
+        except RuntimeError as error:
+            return str(error)
+        time.sleep(0)
+    return ""
 
 
 def falling_sheet(n=11, height=0.31):

@@ -8,14 +8,17 @@ import shutil
 import tempfile
 import weakref
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, Mapping, Optional, Union
+from typing import Any, Callable, Dict, Iterator, Mapping, Optional, Tuple, Union
+
+import numpy as np
 
 from . import _drape
 from .view import View
 
 PathLike = Union[str, "os.PathLike[str]"]
 Record = Dict[str, Any]
-Callback = Callable[[_drape.RunStep], Optional[bool]]
+Callback = Callable[[_drape.RunStep], Union[bool, np.bool_, None]]
+_Begun = Tuple[_drape.Run, Path, Optional[Callable[[], Any]]]
 
 
 class Simulation(_drape.Simulation):
@@ -63,22 +66,26 @@ class Simulation(_drape.Simulation):
         out: the folder for the files that `drape simulate` writes. Without one the frames go to a temporary
         folder for view(), which is gone with the simulation.
         frames: "pc2", "obj" or "none".
-        callback: is called with every step, a RunStep; when it returns False the run ends there.
+        callback: is called with every step, a RunStep; when it returns False, of Python or NumPy, the run ends there.
 
         Ctrl-C, an exception in the callback and a step that fails (StepError) end the run as Ctrl-C ends the
         program: what was written is complete up to the last frame, run.json says so, and the exception goes on.
         """
-        folder = self._scratch_folder() if out is None else Path(out)
-        run = _drape.Run(self, folder, frames, duration)
+        begun = self._begin(None if out is None else Path(out), frames, duration)
+        run = begun[0]
         try:
             while not run.over:
                 step = run.step()
-                if callback is not None and callback(step) is False:
+                result = callback(step) if callback is not None else None
+                if result is not None and not result:
                     break
-        finally:
-            record: Record = json.loads(run.finish())
-            self._folder = folder
-        return record
+        except BaseException as first:
+            try:
+                self._finish(*begun)
+            except Exception:
+                raise first  # with this one as its context: what ended the run comes before what follows
+            raise
+        return self._finish(*begun)
 
     @property
     def folder(self) -> Optional[Path]:
@@ -91,19 +98,38 @@ class Simulation(_drape.Simulation):
         width: as HTML has it; height: in pixels. ValueError when the viewer is not in this build.
         """
         if self._folder is None:
-            folder = self._scratch_folder()
-            _drape.Run(self, folder, "pc2", 0).finish()
-        else:
-            folder = self._folder
-        return View(_drape.view_html(folder), width, height)
+            self._finish(*self._begin(None, "pc2", 0))
+        return View(_drape.view_html(self._folder), width, height)
 
-    def _scratch_folder(self) -> Path:
-        """A new one; the one before is removed, and this one with the simulation."""
-        if self._forget_scratch is not None:
-            self._forget_scratch()
+    def _begin(self, out: Optional[Path], frames: str, duration: Optional[float]) -> _Begun:
+        """A run, its folder, and what removes that: it is a temporary one without `out`.
+
+        Nothing of the run before is touched: this one may be refused.
+        """
+        if out is not None:
+            return _drape.Run(self, out, frames, duration), out, None
         folder = tempfile.mkdtemp(prefix="drape-")
-        self._forget_scratch = weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
-        return Path(folder)
+        forget = weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+        try:
+            return _drape.Run(self, folder, frames, duration), Path(folder), forget
+        except BaseException:
+            forget()
+            raise
+
+    def _finish(self, run: _drape.Run, folder: Path, forget: Optional[Callable[[], Any]]) -> Record:
+        """Its files are the last run's from now on; a temporary folder from before is removed."""
+        try:
+            record: Record = json.loads(run.finish())
+        except BaseException:
+            if forget is not None:
+                forget()
+            raise
+        self._folder = folder
+        if forget is not None:
+            if self._forget_scratch is not None:
+                self._forget_scratch()
+            self._forget_scratch = forget
+        return record
 
     def __repr__(self) -> str:
         names = ", ".join(cloth.name for cloth in self.cloths)

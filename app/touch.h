@@ -1,0 +1,10 @@
+// Whether a vertex touches a body at the end of a step, as recordings have it.
+#pragma once
+
+#include <cstdint>
+
+namespace drape {
+
+enum class Touch : std::uint8_t { free = 0, slides = 1, sticks = 2 };
+
+}  // namespace drape
