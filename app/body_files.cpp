@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/body_mesh.h"
+#include "app/run_files.h"
 #include "mesh/obj.h"
 
 namespace drape {
@@ -55,9 +56,7 @@ AtomicFile written(const fs::path& path, const TriangleMesh& mesh) {
 }  // namespace
 
 fs::path frame_path(const fs::path& folder, const std::string& name, int frame) {
-  char number[16];
-  std::snprintf(number, sizeof number, "_%04d.obj", frame);
-  return folder / "frames" / (name + number);
+  return folder / "frames" / numbered(name, static_cast<std::size_t>(frame), ".obj");
 }
 
 Names body_file_names(const Names& bodies, const Names& cloths) {

@@ -29,6 +29,10 @@ void catch_interrupts() {
 
 bool interrupted() { return asked_to_end != 0; }
 
+void end_if_interrupted() {
+  if (interrupted()) throw Interrupted();
+}
+
 void ignore_broken_outputs() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "app/markup.h"
 #include "app/words.h"
 
 namespace drape {
@@ -167,23 +168,6 @@ std::string legend_entry(const Series& series, std::size_t k) {
 }
 
 }  // namespace
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '&')
-      safe += "&amp;";
-    else if (c == '<')
-      safe += "&lt;";
-    else if (c == '>')
-      safe += "&gt;";
-    else if (c == '"')
-      safe += "&quot;";
-    else
-      safe += c;
-  }
-  return safe;
-}
 
 std::string svg(const Plot& plot) {
   constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -27,6 +27,4 @@ struct Plot {
 // "<svg ...>...</svg>"; a sentence in its place when no point can be shown.
 std::string svg(const Plot& plot);
 
-std::string escaped(const std::string& text);  // for HTML and SVG
-
 }  // namespace drape

@@ -14,7 +14,9 @@
 #include "app/export/source.h"
 #include "app/export/usda.h"
 #include "app/export/vtk.h"
+#include "app/markup.h"
 #include "app/recording.h"
+#include "app/run_files.h"
 #include "export_readers.h"
 #include "exported.h"
 #include "mesh/obj.h"
@@ -77,9 +79,9 @@ TEST_CASE("every format holds every vertex of every frame in order", "[export]")
     check_same(read_usda(folder.file("usda/run.usda"), usd_names({name}).front()), recording, s, half_ulp);
     Places obj, ply, vtp;
     for (std::size_t k = 1; k <= 6; ++k) {
-      obj.push_back(read_obj(folder.path / "obj" / sequence_name(name, k, ".obj")).positions);
-      const ReadPolygons of_ply = read_ply(folder.file("ply/" + sequence_name(name, k, ".ply")));
-      const ReadPolygons of_vtp = read_vtp(folder.file("vtk/" + sequence_name(name, k, ".vtp")));
+      obj.push_back(read_obj(folder.path / "obj" / numbered(name, k, ".obj")).positions);
+      const ReadPolygons of_ply = read_ply(folder.file("ply/" + numbered(name, k, ".ply")));
+      const ReadPolygons of_vtp = read_vtp(folder.file("vtk/" + numbered(name, k, ".vtp")));
       ply.push_back(of_ply.places);
       vtp.push_back(of_vtp.places);
       CHECK(of_ply.faces == of_vtp.faces);
@@ -123,7 +125,7 @@ TEST_CASE("what an export says it writes is all that it writes", "[export]") {
 }
 
 TEST_CASE("names are escaped in XML, USD and JSON", "[export]") {
-  CHECK(xml_text("a&b<c>\"d\"é") == "a&amp;b&lt;c&gt;&quot;d&quot;é");
+  CHECK(escaped("a&b<c>\"d\"é") == "a&amp;b&lt;c&gt;&quot;d&quot;é");
   CHECK(usd_string("a\"b\\c") == "\"a\\\"b\\\\c\"");
   CHECK(usd_names({"a b", "a_b", "7", "", "a b"}) == Names{"a_b", "a_b_2", "_7", "_", "a_b_3"});
   const Exported folder;
@@ -244,4 +246,42 @@ TEST_CASE("a polygon of more corners than a byte counts is kept", "[export]") {
 TEST_CASE("a glTF file that would not fit its own header is refused", "[export]") {
   CHECK_NOTHROW(glb_start("{}", 1000, "a.glb"));
   CHECK_THROWS_WITH(glb_start("{}", 4'294'967'290u, "a.glb"), Contains("a.glb") && Contains("--every"));
+}
+
+TEST_CASE("of frames at one time the first is exported, so that times rise", "[export]") {
+  const Exported folder;
+  REQUIRE(folder
+              .drape("simulate scene.toml --out dense --quiet --set simulation.frame_rate='\"250 Hz\"' --set "
+                     "simulation.time_step='\"10 ms\"'")
+              .exit_code == 0);
+  const Recording recording(folder.path / "dense");
+  const ExportSource source = export_source(recording, 1);
+  REQUIRE(source.frame_count() == 21);  // 0.2 s in steps of 10 ms, and the start
+  CHECK(source.skipped == recording.frames() - 21);
+  CHECK(source.skipped > 20);
+  for (std::size_t k = 1; k < source.frame_count(); ++k) {
+    CHECK(source.time(k) == Approx(source.time(k - 1) + 0.01));
+    const int before = source.frames[k] - 1;
+    CHECK(recording.time(before) < source.time(k));
+  }
+  CHECK(usual_frame_rate(source) == Approx(100));
+
+  for (const std::string format : {"gltf", "usda", "mdd"}) {
+    const Outcome outcome = folder.exported("dense", format);
+    CHECK(outcome.exit_code == 0);
+    CHECK_THAT(outcome.err, Catch::StartsWith("note: " + std::to_string(source.skipped) + " frames"));
+  }
+  CHECK(read_mdd(folder.file("mdd/wall.mdd")).size() == 21);
+  CHECK(read_glb(folder.file("gltf/dense.glb"), "wall").size() == 21);
+  // Keys of USD are whole codes, each once.
+  const std::string usda = folder.file("usda/dense.usda");
+  CHECK_THAT(usda, Contains("timeCodesPerSecond = 100\n"));
+  std::istringstream lines(usda.substr(usda.find("point3f[] points.timeSamples")));
+  std::string line;
+  std::getline(lines, line);
+  for (int code = 0; code <= 20; ++code) {
+    std::getline(lines, line);
+    CHECK(line.substr(0, line.find(':')) == "            " + std::to_string(code));
+  }
+  CHECK(folder.exported("run", "csv").err.empty());
 }

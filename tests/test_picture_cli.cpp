@@ -159,6 +159,8 @@ TEST_CASE("what cannot be drawn is refused in one line and leaves nothing", "[pi
            Refusal{"o --with nothing.obj", "nothing.obj"},
            Refusal{"o -o p.jpg", "ends in .png"},
            Refusal{"o -o no/where/p.png", "no/where/p.png: cannot write"},
+           Refusal{"o --force -o o/frames/p.png", "o/frames/p.png: is a name of the run's own files"},
+           Refusal{"o sheet.obj --force -o o/bodies/p.png", "is a name of the run's own files"},
            Refusal{"", "OUT"},
        }) {
     INFO(words);
@@ -174,4 +176,21 @@ TEST_CASE("what cannot be drawn is refused in one line and leaves nothing", "[pi
   CHECK(refused.exit_code == 2);
   CHECK_THAT(refused.err, Contains("p_0003.png: is there already"));
   CHECK_FALSE(std::filesystem::exists(shop.path / "p_0001.png"));
+}
+
+TEST_CASE("interrupted pictures are whole or not there", "[picture]") {
+  const ShortRun shop;
+  for (const std::string signal : {"INT", "TERM"}) {
+    INFO(signal);
+    const Outcome outcome = shop.drape("picture o --frame all --size 4000x4000 --force -o p.png",
+                                       "timeout --preserve-status -s " + signal + " 1");
+    CHECK(outcome.exit_code == 130);
+    CHECK_THAT(outcome.err, StartsWith("interrupted: "));
+    CHECK(outcome.out.empty());
+    for (const std::string& name : shop.files()) {
+      CHECK_THAT(name, !Catch::EndsWith(".part"));
+      if (name.ends_with(".png")) CHECK(shop.read(name).width == 4000);
+    }
+    CHECK_FALSE(std::filesystem::exists(shop.path / "p_0008.png"));
+  }
 }

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "app/pc2.h"
 #include "app/recording.h"
 #include "app/run.h"
 #include "app/view/page_data.h"
@@ -162,6 +163,46 @@ TEST_CASE("drape view writes a page, and a page again", "[view]") {
   const Outcome folder = done.drape("view out -o out/bodies --force");
   CHECK(folder.exit_code == 2);
   CHECK_THAT(folder.err, Contains("is a folder"));
+}
+
+TEST_CASE("a page takes the place of no file of the run", "[view]") {
+  require_viewer();
+  if (!has_viewer()) return;
+  const ShortRun done;
+  for (const std::string file : {"run.json", "steps.csv", "bodies.csv", "sheet.obj", "sheet.pc2",
+                                 "bodies/ball.obj", "fields/sheet.strain.npy"}) {
+    INFO(file);
+    const std::string before = content(done.out() / file);
+    REQUIRE_FALSE(before.empty());
+    const Outcome outcome = done.drape("view out --force -o out/" + file);
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, StartsWith("error: out/" + file + ": is a name of the run's own files"));
+    CHECK(content(done.out() / file) == before);
+  }
+}
+
+TEST_CASE("an interrupted page is not there", "[view]") {
+  require_viewer();
+  if (!has_viewer()) return;
+  const ShortRun done;
+  // Many frames, as if they had been recorded: whatever is missing else is no matter.
+  fs::create_directory(done.path / "long");
+  done.write("long/sheet.obj", sheet(100));
+  Pc2Writer cache(done.path / "long/sheet.pc2", 10000);
+  std::vector<Vec3> x(10000);
+  for (int k = 0; k < 400; ++k) {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = Vec3::Constant(std::sin(0.1 * k + double(i)));
+    cache.add(x);
+  }
+  cache.close();
+  cache.keep();
+  for (const std::string signal : {"INT", "TERM"}) {
+    const Outcome outcome = done.drape("view long", "timeout --preserve-status -s " + signal + " 0.5");
+    CHECK(outcome.exit_code == 130);
+    CHECK_THAT(outcome.err, EndsWith("interrupted: no page was written\n"));
+    CHECK(outcome.out.empty());
+    CHECK(done.files("long") == std::set<std::string>{"sheet.obj", "sheet.pc2"});
+  }
 }
 
 TEST_CASE("nothing to show", "[view]") {

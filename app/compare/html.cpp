@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/compare/tables.h"
+#include "app/markup.h"
 
 namespace drape {
 namespace {

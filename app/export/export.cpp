@@ -15,6 +15,7 @@
 #include "app/export/vtk.h"
 #include "app/interrupt.h"
 #include "app/recording.h"
+#include "app/run_files.h"
 #include "mesh/obj.h"
 
 namespace drape {
@@ -44,8 +45,8 @@ std::size_t in_sequence(const Names& files, std::size_t first, const ExportSourc
   const std::size_t count = source.frame_count(), last = first + count - 1;
   const std::string ending = std::filesystem::path(files[first]).extension().string();
   for (const RecordedShape& shape : source.recording.shapes())
-    if (last < files.size() && files[first] == sequence_name(shape.name, 1, ending) &&
-        files[last] == sequence_name(shape.name, count, ending))
+    if (last < files.size() && files[first] == numbered(shape.name, 1, ending) &&
+        files[last] == numbered(shape.name, count, ending))
       return count;
   return 1;
 }
@@ -59,6 +60,14 @@ void tell(const std::filesystem::path& folder, const Names& files, const ExportS
     std::printf("%s\n", one_line(line).c_str());
     i += count;
   }
+}
+
+void tell_skipped(const ExportSource& source) {
+  if (source.skipped == 0) return;
+  std::fprintf(stderr,
+               "note: %s of the time of the frame before left out: frames are asked for more often than "
+               "there are steps\n",
+               counted(source.skipped, "frame").c_str());
 }
 
 }  // namespace
@@ -82,11 +91,12 @@ int export_folder(const ExportWords& words) {
   catch_interrupts();
   try {
     format.write(source, files, notes);
-  } catch (const ExportInterrupted&) {
+  } catch (const Interrupted&) {
     std::fprintf(stderr, "interrupted: nothing was exported\n");
     return 130;
   }
   files.keep();
+  tell_skipped(source);
   tell(folder, names, source);
   for (const std::string& note : notes) std::printf("%s\n", one_line(note).c_str());
   return 0;

@@ -1,33 +1,13 @@
 #include "app/export/files.h"
 
-#include <algorithm>
-#include <cstdio>
-#include <utility>
+#include <unistd.h>
 
+#include "app/run_files.h"
 #include "mesh/obj.h"
 
 namespace drape {
-namespace {
 
 namespace fs = std::filesystem;
-
-// A run's own folder holds OBJ, CSV, JSON and caches that exports may not take the place of.
-bool is_of_the_run(const fs::path& file, const fs::path& run) {
-  const fs::path name = fs::weakly_canonical(file), folder = fs::weakly_canonical(run);
-  const std::string ending = name.extension().string();
-  const bool kind = ending == ".obj" || ending == ".csv";
-  return kind && (name.parent_path() == folder ||
-                  (name.parent_path().parent_path() == folder &&
-                   (name.parent_path().filename() == "bodies" || name.parent_path().filename() == "frames")));
-}
-
-}  // namespace
-
-std::string sequence_name(const std::string& name, std::size_t number, const std::string& ending) {
-  char digits[24];
-  std::snprintf(digits, sizeof digits, "_%04zu", number);
-  return name + digits + ending;
-}
 
 ExportFiles::ExportFiles(fs::path folder, const Names& names, bool force, const fs::path& run)
     : folder_(std::move(folder)), run_(run), force_(force) {
@@ -36,9 +16,13 @@ ExportFiles::ExportFiles(fs::path folder, const Names& names, bool force, const 
     throw InputError(folder_.string() + ": is a file; -o names a folder");
   for (const std::string& name : names) {
     const fs::path path = folder_ / name;
+    if (!names_.insert(name).second)
+      throw InputError(
+          path.string() +
+          ": two files of this export would have this name, since a shape of the run has the name "
+          "of another's frames; rename one of them in the scene, or export to gltf or usda");
+    spare_run(path, run_);
     if (!fs::exists(fs::symlink_status(path, error))) continue;
-    if (is_of_the_run(path, run_))
-      throw InputError(path.string() + ": is a file of the run itself; name another folder with -o");
     if (!force_) throw InputError(path.string() + ": is there already; --force replaces it");
     if (fs::is_directory(path, error)) throw InputError(path.string() + ": is a folder; remove it first");
   }
@@ -75,16 +59,50 @@ AtomicFile& ExportFiles::open(const std::string& name) {
 
 void ExportFiles::end_sequence(const std::string& name, std::size_t count, const std::string& ending) {
   for (std::size_t number = count + 1;; ++number) {
-    const fs::path path = folder_ / sequence_name(name, number, ending);
-    if (!fs::is_regular_file(path) || is_of_the_run(path, run_)) return;
+    const std::string file = numbered(name, number, ending);
+    const fs::path path = folder_ / file;
+    if (names_.contains(file) || !fs::is_regular_file(path) || is_of_run(path, run_)) return;
     stale_.push_back(path);
   }
 }
 
+// A link is no copy and is gone in a moment; where there are none, the file itself goes.
+void ExportFiles::set_aside(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(path, error)) || fs::is_directory(path, error)) return;
+  fs::path beside = path;
+  beside.replace_filename("." + path.filename().string() + "." + std::to_string(getpid()) + ".old");
+  fs::create_hard_link(path, beside, error);
+  if (error) fs::rename(path, beside, error);
+  if (error) throw InputError(path.string() + ": cannot be replaced: " + error.message());
+  aside_.emplace_back(path, beside);
+}
+
+void ExportFiles::put_back(std::size_t kept) {
+  std::error_code ignored;
+  for (std::size_t k = 0; k < kept; ++k) fs::remove(files_[k].path(), ignored);
+  for (const auto& [path, beside] : aside_) {
+    fs::rename(beside, path, ignored);
+    fs::remove(beside, ignored);  // renaming a link onto its own file does nothing
+  }
+  aside_.clear();
+}
+
 void ExportFiles::keep() {
   if (!files_.empty()) files_.back().close();
-  for (AtomicFile& file : files_) file.keep();
+  std::size_t kept = 0;
+  try {
+    for (AtomicFile& file : files_) {
+      set_aside(file.path());
+      file.keep();
+      ++kept;
+    }
+  } catch (const InputError&) {
+    put_back(kept);
+    throw;
+  }
   std::error_code ignored;
+  for (const auto& [path, beside] : aside_) fs::remove(beside, ignored);
   if (force_)
     for (const fs::path& path : stale_) fs::remove(path, ignored);
   kept_ = true;

@@ -8,7 +8,7 @@ Names sequence_files(const ExportSource& source, const std::string& ending) {
     const std::string& name = source.shape(s).name;
     if (!source.moves(s)) names.push_back(name + ending);
     for (std::size_t k = 0; source.moves(s) && k < source.frame_count(); ++k)
-      names.push_back(sequence_name(name, k + 1, ending));
+      names.push_back(numbered(name, k + 1, ending));
   }
   return names;
 }

@@ -3,6 +3,7 @@
 
 #include "app/export/files.h"
 #include "app/export/source.h"
+#include "app/run_files.h"
 
 namespace drape {
 
@@ -19,7 +20,7 @@ void write_sequence(const ExportSource& source, const std::string& ending, Expor
       continue;
     }
     for (std::size_t k = 0; k < source.frame_count(); ++k)
-      files.write(sequence_name(name, k + 1, ending), make(s, k));
+      files.write(numbered(name, k + 1, ending), make(s, k));
     files.end_sequence(name, source.frame_count(), ending);
   }
 }

@@ -6,9 +6,14 @@
 #include "mesh/obj.h"
 
 namespace drape {
+namespace {
+
+bool rises(double before, double now) { return static_cast<float>(now) > static_cast<float>(before); }
+
+}  // namespace
 
 std::vector<Vec3> ExportSource::positions(std::size_t s, std::size_t k) const {
-  if (interrupted()) throw ExportInterrupted();
+  end_if_interrupted();
   return recording.positions(s, frames[k]);
 }
 
@@ -16,7 +21,12 @@ ExportSource export_source(const Recording& recording, int every) {
   const std::filesystem::path folder = std::filesystem::weakly_canonical(recording.folder());
   ExportSource source{recording, {}, folder.filename().string()};
   if (source.name.empty()) source.name = "drape";
-  for (int frame = 0; frame < recording.frames(); frame += every) source.frames.push_back(frame);
+  for (int frame = 0; frame < recording.frames(); frame += every) {
+    if (source.frames.empty() || rises(recording.time(source.frames.back()), recording.time(frame)))
+      source.frames.push_back(frame);
+    else
+      ++source.skipped;
+  }
   if (source.frames.empty()) throw InputError(recording.folder().string() + ": has no frames to export");
   return source;
 }
@@ -28,7 +38,7 @@ double usual_frame_rate(const ExportSource& source) {
   if (spacings.empty()) return 24;
   const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
   std::nth_element(spacings.begin(), middle, spacings.end());
-  return *middle > 0 ? 1 / *middle : 24;
+  return 1 / *middle;
 }
 
 }  // namespace drape

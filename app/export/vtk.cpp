@@ -2,6 +2,7 @@
 
 #include "app/export/bytes.h"
 #include "app/export/sequence.h"
+#include "app/markup.h"
 
 namespace drape {
 namespace {
@@ -72,32 +73,15 @@ std::string pvd_text(const ExportSource& source) {
   for (std::size_t k = 0; k < source.frame_count(); ++k) {
     for (std::size_t s = 0; s < source.shape_count(); ++s) {
       const std::string& name = source.shape(s).name;
-      const std::string file = source.moves(s) ? sequence_name(name, k + 1, ".vtp") : name + ".vtp";
+      const std::string file = source.moves(s) ? numbered(name, k + 1, ".vtp") : name + ".vtp";
       text += "<DataSet timestep=\"" + shortest(source.time(k)) + "\" part=\"" + std::to_string(s) +
-              "\" name=\"" + xml_text(name) + "\" file=\"" + xml_text(file) + "\"/>\n";
+              "\" name=\"" + escaped(name) + "\" file=\"" + escaped(file) + "\"/>\n";
     }
   }
   return text + "</Collection>\n</VTKFile>\n";
 }
 
 }  // namespace
-
-std::string xml_text(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (c == '&')
-      escaped += "&amp;";
-    else if (c == '<')
-      escaped += "&lt;";
-    else if (c == '>')
-      escaped += "&gt;";
-    else if (c == '"')
-      escaped += "&quot;";
-    else
-      escaped += c;
-  }
-  return escaped;
-}
 
 std::string vtp_bytes(const VtpData& data, const Faces& faces, double time) {
   Appended appended;

@@ -19,8 +19,6 @@ struct VtpData {
 };
 std::string vtp_bytes(const VtpData& data, const Faces& faces, double time);
 
-std::string xml_text(std::string_view text);  // & < > " escaped
-
 // NAME_0001.vtp and on, NAME.vtp of what stands, and one .pvd.
 Names vtk_files(const ExportSource& source);
 void write_vtk(const ExportSource& source, ExportFiles& files, Names& notes);

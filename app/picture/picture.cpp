@@ -5,8 +5,10 @@
 #include <filesystem>
 
 #include "app/atomic_file.h"
+#include "app/interrupt.h"
 #include "app/picture/options.h"
 #include "app/picture/sheet.h"
+#include "app/run_files.h"
 #include "mesh/obj.h"
 
 namespace drape {
@@ -52,14 +54,14 @@ std::string label_of(const Subject& subject, int frame, bool several) {
   return subject.title() + (time.empty() ? "" : ", " + time);
 }
 
-struct Output {
+struct PictureFile {
   std::filesystem::path path;
   std::vector<SheetPanel> panels;
 };
 
 // One picture of everything, or one of each frame: NAME_0001.png ...
-std::vector<Output> outputs_of(const PictureWords& words, const std::vector<Subject>& subjects,
-                               SheetOptions& options) {
+std::vector<PictureFile> files_of(const PictureWords& words, const std::vector<Subject>& subjects,
+                                  SheetOptions& options) {
   const std::filesystem::path path = out_path(words);
   const bool sheet = words.grid || subjects.size() > 1;
   std::vector<std::vector<int>> frames;
@@ -67,21 +69,20 @@ std::vector<Output> outputs_of(const PictureWords& words, const std::vector<Subj
   for (const Subject& subject : subjects)
     frames.push_back(frames_named(words.frame, subject.frames(), words.grid ? spread : 1, subject.path()));
   if (!sheet && frames[0].size() == 1) return {{path, {{&subjects[0], frames[0][0], ""}}}};
-  std::vector<Output> outputs;
+  std::vector<PictureFile> files;
   if (!sheet) {
-    outputs.reserve(frames[0].size());
+    files.reserve(frames[0].size());
     for (int frame : frames[0]) {
-      char number[16];
-      std::snprintf(number, sizeof number, "_%04d", frame + 1);
-      std::filesystem::path numbered = path;
-      numbered.replace_filename(path.stem().string() + number + ".png");
-      outputs.push_back({numbered, {{&subjects[0], frame, ""}}});
+      const auto number = static_cast<std::size_t>(frame) + 1;
+      files.push_back(
+          {std::filesystem::path(path).replace_filename(numbered(path.stem().string(), number, ".png")),
+           {{&subjects[0], frame, ""}}});
     }
-    return outputs;
+    return files;
   }
   std::size_t longest = 0;
   for (const auto& row : frames) longest = std::max(longest, row.size());
-  Output all{path, {}};
+  PictureFile all{path, {}};
   for (std::size_t k = 0; k < subjects.size(); ++k)  // a row for each run, where there are several of both
     for (std::size_t i = 0; i < (subjects.size() > 1 ? longest : frames[k].size()); ++i)
       all.panels.push_back(i < frames[k].size()
@@ -89,44 +90,61 @@ std::vector<Output> outputs_of(const PictureWords& words, const std::vector<Subj
                                             label_of(subjects[k], frames[k][i], subjects.size() > 1)}
                                : SheetPanel{nullptr, 0, ""});
   if (subjects.size() > 1 && longest > 1) options.columns = static_cast<int>(longest);
-  outputs.push_back(std::move(all));
-  return outputs;
+  files.push_back(std::move(all));
+  return files;
 }
 
-void refuse_existing(const std::vector<Output>& outputs) {
-  for (const Output& output : outputs)
-    if (std::filesystem::exists(output.path))
-      throw InputError(output.path.string() +
-                       ": is there already; --force replaces it, -o gives another name");
+void refuse_taken(const std::vector<PictureFile>& files, const PictureWords& words) {
+  for (const PictureFile& file : files) {
+    for (const std::string& input : words.inputs)
+      if (std::filesystem::is_directory(input)) spare_run(file.path, input);
+    if (!words.force && std::filesystem::exists(file.path))
+      throw InputError(file.path.string() + ": is there already; --force replaces it, -o gives another name");
+  }
+}
+
+// Draws them one by one and counts those that are written. Throws Interrupted, with all of those whole.
+void draw(const std::vector<PictureFile>& files, const SheetOptions& options, std::size_t& written) {
+  std::vector<SheetPanel> all;
+  for (const PictureFile& file : files)
+    for (const SheetPanel& panel : file.panels)
+      if (panel.subject) all.push_back(panel);
+  const Sheet sheet(all, files.front().panels.size(), options);
+  for (const PictureFile& file : files) {
+    const std::string bytes = png(sheet.draw(file.panels));
+    end_if_interrupted();
+    AtomicFile out(file.path);
+    out.write(bytes);
+    out.keep();
+    ++written;
+  }
 }
 
 }  // namespace
 
 int picture(const PictureWords& words) {
+  catch_interrupts();
   SheetOptions options;
   std::tie(options.width, options.height) = size_named(words.size);
   options.view = view_named(words.view);
   options.field = field_asked(words.color);
   options.edges = words.edges;
   const std::vector<Subject> subjects = subjects_of(words);
-  const std::vector<Output> outputs = outputs_of(words, subjects, options);
-  if (!words.force) refuse_existing(outputs);
-
-  std::vector<SheetPanel> all;
-  for (const Output& output : outputs)
-    for (const SheetPanel& panel : output.panels)
-      if (panel.subject) all.push_back(panel);
-  const Sheet sheet(all, outputs.front().panels.size(), options);
-  for (const Output& output : outputs) {
-    AtomicFile file(output.path);
-    file.write(png(sheet.draw(output.panels)));
-    file.keep();
+  const std::vector<PictureFile> files = files_of(words, subjects, options);
+  refuse_taken(files, words);
+  std::size_t written = 0;
+  try {
+    draw(files, options, written);
+  } catch (const Interrupted&) {
+    std::fprintf(stderr, "interrupted: %zu of %s drawn\n", written,
+                 counted(static_cast<long>(files.size()), "picture").c_str());
+    return 130;
   }
-  if (outputs.size() == 1)
-    std::printf("wrote %s\n", outputs.front().path.c_str());
+  if (files.size() == 1)
+    std::printf("wrote %s\n", files.front().path.c_str());
   else
-    std::printf("wrote %s to %s (%s)\n", outputs.front().path.c_str(), outputs.back().path.c_str(),
-                counted(static_cast<long>(outputs.size()), "picture").c_str());
+    std::printf("wrote %s to %s (%s)\n", files.front().path.c_str(), files.back().path.c_str(),
+                counted(static_cast<long>(files.size()), "picture").c_str());
   return 0;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "app/interrupt.h"
 #include "mesh/obj.h"
 
 namespace drape::drawing {
@@ -73,6 +74,7 @@ std::vector<double> Subject::values(std::size_t shape, int frame, Field field) c
 }
 
 Still Subject::still(int frame, std::optional<Field> field) const {
+  end_if_interrupted();
   Still still;
   int cloths = 0;
   bool coloured = false;

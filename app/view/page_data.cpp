@@ -4,6 +4,7 @@
 #include <bit>
 #include <functional>
 
+#include "app/interrupt.h"
 #include "app/view/track.h"
 #include "mesh/obj.h"
 
@@ -18,6 +19,7 @@ Json track(PageBlocks& blocks, int frames, std::size_t components, std::size_t v
   std::vector<Range> ranges(components);
   std::vector<char> any(components, 0);
   for (int frame = 0; frame < frames; ++frame) {
+    end_if_interrupted();
     const std::vector<double> all = values(frame);
     for (std::size_t c = 0; c < components; ++c) {
       bool known = any[c] != 0;
@@ -26,7 +28,10 @@ Json track(PageBlocks& blocks, int frames, std::size_t components, std::size_t v
     }
   }
   TrackWriter writer(blocks, ranges, vertices);
-  for (int frame = 0; frame < frames; ++frame) writer.add(values(frame));
+  for (int frame = 0; frame < frames; ++frame) {
+    end_if_interrupted();
+    writer.add(values(frame));
+  }
   not_finite += writer.not_finite();
   return writer.finish();
 }

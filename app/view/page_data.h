@@ -18,7 +18,7 @@ struct PageData {
   PageBlocks blocks;
 };
 
-PageData page_data(const Recording& recording);
+PageData page_data(const Recording& recording);  // throws Interrupted between frames
 
 std::string title_of(const Recording& recording);
 

@@ -4,7 +4,9 @@
 #include <fstream>
 
 #include "app/atomic_file.h"
-#include "app/plot.h"
+#include "app/interrupt.h"
+#include "app/markup.h"
+#include "app/run_files.h"
 #include "app/view/page_data.h"
 #include "app/view/page_template.h"
 #include "mesh/obj.h"
@@ -68,7 +70,8 @@ bool is_page_of_drape(const fs::path& path) {
 }
 
 // A page made before may be replaced, nothing else.
-void require_free(const fs::path& out, bool force) {
+void require_free(const fs::path& out, const fs::path& run, bool force) {
+  spare_run(out, run);
   std::error_code ignored;
   if (fs::is_directory(out, ignored))
     throw InputError(out.string() + ": is a folder; give the name of a file");
@@ -86,12 +89,20 @@ std::string view_html(const fs::path& folder) {
 }
 
 int view(const ViewWords& words) {
+  catch_interrupts();
   require_viewer();
   const fs::path out = words.out.empty() ? fs::path(words.folder) / "view.html" : fs::path(words.out);
   const Recording recording(words.folder);
-  require_free(out, words.force);
+  require_free(out, recording.folder(), words.force);
   for (const std::string& line : recording.missing()) std::fprintf(stderr, "warning: %s\n", line.c_str());
-  const std::string html = page_of(recording);
+  std::string html;
+  try {
+    html = page_of(recording);
+    end_if_interrupted();
+  } catch (const Interrupted&) {
+    std::fprintf(stderr, "interrupted: no page was written\n");
+    return 130;
+  }
   AtomicFile file(out);
   file.write(html);
   file.keep();

@@ -103,7 +103,8 @@ test("arrow keys step, Home and End go to the ends", async () => {
   await page.keyboard.press("ArrowRight");
   await page.keyboard.press("ArrowRight");
   assert.equal(await frame(), 2);
-  assert.match(await page.locator("#frame").innerText(), /2 \/ 25/);
+  assert.match(await page.locator("#frame").innerText(), /^\s*3 \/ 26$/); // from 1, as in picture --frame
+  assert.match(await page.locator("#scrub").getAttribute("aria-valuetext"), /^frame 3, /);
   assert.equal(await page.locator("#time").innerText(), "0.040 s");
 });
 
@@ -310,7 +311,7 @@ test("without WebGL the numbers are there", async () => {
   await other.waitForFunction(() => window.drape);
   assert.match(await other.locator("#no-webgl").innerText(), /no WebGL/);
   await other.keyboard.press("End");
-  assert.match(await other.locator("#frame").innerText(), /25 \/ 25/);
+  assert.match(await other.locator("#frame").innerText(), /26 \/ 26/);
   assert.equal(await other.locator("#plots figure").count(), 6);
   await other.locator("#vertex-number").fill("7");
   await other.locator("#vertex-number").blur();

@@ -1,4 +1,4 @@
-// Play, pause, scrub, step, speed, loop: the time that is shown.
+// Play, pause, scrub, step, speed, loop: the time that is shown. Frames count from 0 in here, from 1 for people.
 const fallback_rate = 25; // 1/s, where the frames have no times
 
 export class Transport {
@@ -54,7 +54,7 @@ export class Transport {
   #show(frame) {
     this.frame = frame;
     this.slider.value = frame;
-    this.slider.setAttribute("aria-valuetext", `frame ${frame}, ${this.times[frame].toFixed(3)} s`);
+    this.slider.setAttribute("aria-valuetext", `frame ${frame + 1}, ${this.times[frame].toFixed(3)} s`);
     this.changed(frame);
   }
 

@@ -33,9 +33,9 @@ function make_plots(steps, seek) {
 }
 
 function clock(times) {
-  const last = times.length - 1, digits = String(last).length;
+  const count = times.length, digits = String(count).length;
   return (frame) => {
-    get("frame").textContent = `${String(frame).padStart(digits, "\u2007")} / ${last}`;
+    get("frame").textContent = `${String(frame + 1).padStart(digits, "\u2007")} / ${count}`;
     get("time").textContent = times[frame].toFixed(3) + " s";
   };
 }
