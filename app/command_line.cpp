@@ -262,6 +262,8 @@ void add_picture(CLI::App& app, int& exit_code) {
          "front, back, left, right, side, top, or degrees round and above, such as 30,20 (30,20)");
   option("--color", words->color, "WHAT", "what colours show: strain, speed or contact");
   option("--size", words->size, "WxH", "of the picture in pixels (1280x960)");
+  command->add_flag("--whole", words->whole,
+                    "all of the bodies in the picture, not only what is near the cloth");
   command->add_flag("--grid", words->grid, "frames side by side on one sheet (12 when none are named)");
   command->add_flag("--edges", words->edges, "the edges of the triangles, too");
   command->add_flag("--force", words->force, "replace a file that is there");

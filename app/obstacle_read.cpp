@@ -57,7 +57,7 @@ fs::path read_path(Table& table, const fs::path& folder, const About& about) {
   std::string text;
   table.read_required("mesh", text, about);
   if (text.empty()) table.fail("mesh", "expected the name of an OBJ file");
-  if (fs::is_directory(folder / text)) table.fail("mesh", "is a folder; name an OBJ file in it");
+  if (fs::is_directory(folder / text)) table.fail("mesh", "is a directory; name an OBJ file in it");
   return (folder / text).lexically_normal();
 }
 

@@ -77,7 +77,8 @@ class Recording {
   void read_times();
   void read_steps();
   void add_shape(const std::string& name, const std::filesystem::path& file, bool body);
-  void add_body(const Json& body, const std::map<std::string, std::vector<Pose>>& poses);
+  void add_body(const Json& body, const std::string& name,
+                const std::map<std::string, std::vector<Pose>>& poses);
   void find_shapes();
   void find_frames(std::size_t shape);
   void use_cache(std::size_t shape, const std::filesystem::path& cache);

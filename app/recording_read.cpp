@@ -193,28 +193,36 @@ void Recording::find_shapes() {
     for (const std::string& name : obj_names(folder_ / "bodies", ".obj"))
       add_shape(name, folder_ / "bodies" / (name + ".obj"), true);
   frame_counts_.resize(shapes_.size(), 0);
-  for (const Json& body : run_["bodies"].items()) add_body(body, poses);
+  Names cloths, bodies;
+  for (const RecordedShape& shape : shapes_) cloths.push_back(shape.name);
+  for (const Json& body : run_["bodies"].items()) bodies.push_back(body["name"].text());
+  const Names files = body_file_names(bodies, cloths);
+  for (std::size_t k = 0; k < bodies.size(); ++k) add_body(run_["bodies"].items()[k], files[k], poses);
 }
 
-void Recording::add_body(const Json& body, const std::map<std::string, std::vector<Pose>>& poses) {
-  const std::string file = body["file"].text();
-  const std::string name = file.empty() ? body["name"].text() : fs::path(file).stem().string();
+// name: of its files.
+void Recording::add_body(const Json& body, const std::string& name,
+                         const std::map<std::string, std::vector<Pose>>& poses) {
   const bool deforms = body["deforms"].is(true),
              moves = body["moves"].is(true) || body["reacts"].is(true);  // as a whole
   const auto found = poses.find(name);
   const std::vector<Pose> moved = moves && found != poses.end() ? found->second : std::vector<Pose>();
   const Pose last = place_of(body["place"]);
-  if (moves && moved.empty() && times_told_ && !times_.empty())
-    miss(folder_ / "bodies.csv", "does not tell how '" + name + "' moved; it is shown where it ended");
+  const bool lost = moves && moved.empty() && times_told_ && !times_.empty();
+  const auto miss_places = [&] {
+    if (lost)
+      miss(folder_ / "bodies.csv", "does not tell how '" + name + "' moved; it is shown where it ended");
+  };
   if (!body["normal"].is_null()) {
     planes_.push_back(
         {name, vector_of(body["point"], Vec3::Zero()), vector_of(body["normal"], Vec3::UnitY())});
     plane_poses_.push_back(moved.empty() ? std::vector<Pose>{last} : moved);
   }
-  if (file.empty()) return;
+  if (body["file"].is_null()) return miss_places();
   const std::size_t k = shapes_.size();
   add_shape(name, folder_ / "bodies" / (name + ".obj"), true);
   if (shapes_.size() == k) return;  // it was missing
+  miss_places();
   frame_counts_.push_back(0);
   Source& source = sources_[k];
   source.last = last;

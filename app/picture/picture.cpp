@@ -129,6 +129,7 @@ int picture(const PictureWords& words) {
   options.view = view_named(words.view);
   options.field = field_asked(words.color);
   options.edges = words.edges;
+  options.whole = words.whole;
   const std::vector<Subject> subjects = subjects_of(words);
   const std::vector<PictureFile> files = files_of(words, subjects, options);
   refuse_taken(files, words);

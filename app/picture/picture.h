@@ -12,6 +12,7 @@ struct PictureWords {
   std::vector<std::string> with;    // OBJ files, drawn as bodies
   std::string frame;                // "12", "last", "all", "1,5,last"; empty: the last
   std::string view, color, size;    // "front", "30,20" ...; "strain" ...; "1280x960"; empty: chosen
+  bool whole = false;               // all of the bodies in the picture
   bool grid = false;                // frames side by side
   bool edges = false;               // of the triangles
   bool force = false;               // replace a file that is there

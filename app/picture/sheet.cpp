@@ -30,7 +30,7 @@ struct Extent {
 // f(point) of what must be on the picture: the cloths, and what of bodies is near them. A body that is no
 // larger than the cloths may be farther away.
 template <class F>
-void for_framed(const Still& still, const F& f) {
+void for_framed(const Still& still, bool whole, const F& f) {
   Extent cloths;
   for (const StillPart& part : still.parts)
     if (!part.body)
@@ -40,7 +40,7 @@ void for_framed(const Still& still, const F& f) {
     for (const Vec3& p : part.positions) own.add(p);
     const double reach = (own.size() <= cloths.size() ? around_small : around) * cloths.size();
     for (const Vec3& p : part.positions)
-      if (cloths.empty() || !part.body || cloths.holds(p, reach)) f(p);
+      if (whole || cloths.empty() || !part.body || cloths.holds(p, reach)) f(p);
   }
 }
 
@@ -92,7 +92,7 @@ void Sheet::choose_columns(const std::vector<SheetPanel>& all) {
   const Camera axes = facing(options_.view);
   Eigen::Array2d low = Eigen::Array2d::Constant(infinite), high = -low;
   for (const SheetPanel& panel : all)
-    for_framed(panel.subject->still(panel.frame, {}), [&](const Vec3& p) {
+    for_framed(panel.subject->still(panel.frame, {}), options_.whole, [&](const Vec3& p) {
       const Eigen::Array2d seen(p.dot(axes.right), p.dot(axes.up));
       low = low.min(seen), high = high.max(seen);
     });
@@ -113,7 +113,7 @@ void Sheet::survey(const std::vector<SheetPanel>& all) {
   std::vector<float> values;
   for (const SheetPanel& panel : all) {
     const Still still = panel.subject->still(panel.frame, options_.field);
-    for_framed(still, [&](const Vec3& p) {
+    for_framed(still, options_.whole, [&](const Vec3& p) {
       framing.add(p);
       low_ = low_.cwiseMin(p), high_ = high_.cwiseMax(p);
     });

@@ -20,6 +20,7 @@ struct SheetOptions {
   int width = 1280, height = 960;  // pixels
   View view;
   std::optional<Field> field;
+  bool whole = false;  // all of the bodies is to be seen
   bool edges = false;
   int columns = 0;  // 0: so that what is shown is largest
 };

@@ -192,8 +192,8 @@ std::vector<int> polygon_sides(const TriangleMesh& mesh) {
 }
 
 std::string title_of(const Recording& recording) {
-  const std::filesystem::path scene(recording.run()["scene"].text());
-  if (!scene.stem().empty()) return one_line(scene.stem().string());
+  const std::filesystem::path scene(recording.run()["scene"].text());  // of a drop, its command line
+  if (scene.extension() == ".toml") return one_line(scene.stem().string());
   const std::filesystem::path folder = std::filesystem::absolute(recording.folder() / "").parent_path();
   return one_line(folder.filename().string());
 }

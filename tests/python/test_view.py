@@ -34,6 +34,19 @@ class Views(Workshop):
         self.assertEqual(frame.attributes["srcdoc"], PAGE)
         self.assertEqual(frame.attributes["height"], "321")
 
+    def test_a_file_that_is_no_page_is_not_replaced(self):
+        mine = self.folder / "mine.py"
+        mine.write_text("keep = True\n")
+        with self.assertRaisesRegex(ValueError, "mine.py: is there already, and is no page of drape"):
+            drape.View(PAGE).save(mine)
+        self.assertEqual(mine.read_text(), "keep = True\n")
+        drape.View(PAGE).save(mine, force=True)
+        self.assertEqual(mine.read_text(encoding="utf-8"), PAGE)
+        page = self.folder / "page.html"
+        for height in (100, 200):  # a page of drape may be replaced
+            drape.View('<meta name="generator" content="drape view">' + str(height)).save(page)
+        self.assertTrue(page.read_text().endswith("200"))
+
     def test_a_page_can_be_saved(self):
         drape.View(PAGE).save(self.folder / "page.html")
         self.assertEqual((self.folder / "page.html").read_text(encoding="utf-8"), PAGE)

@@ -7,6 +7,8 @@ import os
 from pathlib import Path
 from typing import Union
 
+MARK = b'<meta name="generator" content="drape view">'  # of every page of drape
+
 
 class View:
     """A page that plays a run. A notebook shows it; `save` writes it for a browser."""
@@ -16,8 +18,12 @@ class View:
         self.width = width
         self.height = height
 
-    def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        Path(path).write_text(self.page, encoding="utf-8")
+    def save(self, path: Union[str, "os.PathLike[str]"], force: bool = False) -> None:
+        """Writes the page. ValueError when there is a file that is no page of drape, unless forced."""
+        file = Path(path)
+        if not force and file.exists() and MARK not in file.read_bytes()[:1000]:
+            raise ValueError(f"{file}: is there already, and is no page of drape; choose another, or force=True")
+        file.write_text(self.page, encoding="utf-8")
 
     def _repr_html_(self) -> str:
         # In a frame of its own, so that neither page's styles and scripts touch the other's.

@@ -4,7 +4,7 @@ export function view_box(shapes, planes) {
   const cloths = shapes.filter((shape) => !shape.body);
   for (const shape of cloths.length ? cloths : shapes) widen(box, reach(shape));
   if (cloths.length) {
-    const most = 0.75 * Math.max(...[0, 1, 2].map((c) => box.high[c] - box.low[c]));
+    const most = 2 * Math.max(...[0, 1, 2].map((c) => box.high[c] - box.low[c]));
     const limit = { low: box.low.map((x) => x - most), high: box.high.map((x) => x + most) };
     for (const shape of shapes.filter((s) => s.body)) {
       const body = reach(shape);
