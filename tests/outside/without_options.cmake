@@ -6,7 +6,7 @@ foreach(step "configure" "build")
         -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DDRAPE_WERROR=ON -DDRAPE_CHOLMOD=OFF -DDRAPE_SUNDIALS=OFF
         -DDRAPE_OPENVDB=OFF -DDRAPE_NATIVE=OFF -DDRAPE_VIEWER=OFF -DDRAPE_TESTS=OFF)
   else()
-    set(command --build ${WORK_DIR} --target drape)
+    set(command --build ${WORK_DIR} --target drape_library)
   endif()
   execute_process(COMMAND ${CMAKE_COMMAND} ${command} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
