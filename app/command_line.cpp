@@ -279,7 +279,7 @@ void add_export(CLI::App& app, int& exit_code) {
   command->add_option("-o,--out", words->out, "folder of the files (OUT/export)")->type_name("DIR");
   command->add_option("--every", words->every, "every so many frames (1)")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, 1000000));
   command->add_flag("--force", words->force, "replace files that are there");
   command->callback([=, &exit_code] { exit_code = export_folder(*words); });
 }

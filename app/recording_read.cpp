@@ -208,10 +208,12 @@ void Recording::add_body(const Json& body, const std::string& name,
   const auto found = poses.find(name);
   const std::vector<Pose> moved = moves && found != poses.end() ? found->second : std::vector<Pose>();
   const Pose last = place_of(body["place"]);
-  const bool lost = moves && moved.empty() && times_told_ && !times_.empty();
+  const bool lost = moves && times_told_ && moved.size() < times_.size();
   const auto miss_places = [&] {
     if (lost)
-      miss(folder_ / "bodies.csv", "does not tell how '" + name + "' moved; it is shown where it ended");
+      miss(folder_ / "bodies.csv", "has " + counted(static_cast<long>(moved.size()), "place") + " of '" +
+                                       name + "', expected " + std::to_string(times_.size()) +
+                                       "; it is shown where it was last known");
   };
   if (!body["normal"].is_null()) {
     planes_.push_back(

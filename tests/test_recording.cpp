@@ -316,7 +316,13 @@ TEST_CASE("places of bodies that are lost are told", "[recording]") {
   fs::remove(folder.path / "out" / "bodies.csv");
   const Recording recording(folder.path / "out");
   REQUIRE(recording.missing().size() == 2);  // the ball and the block
-  CHECK(recording.missing()[1].find("does not tell how 'block' moved") != std::string::npos);
+  CHECK(recording.missing()[1].find("has 0 places of 'block', expected 6") != std::string::npos);
+  run_into(folder, "out", Frames::pc2);
+  const std::string all = content(folder.path / "out/bodies.csv");  // a header and six rows of each
+  folder.write("out/bodies.csv", all.substr(0, all.rfind('\n', all.size() - 2) + 1));
+  const Recording shorter(folder.path / "out");
+  REQUIRE(shorter.missing().size() == 1);
+  CHECK(shorter.missing()[0].find("has 5 places of") != std::string::npos);
 }
 
 TEST_CASE("a folder with nothing to show is refused", "[recording]") {
