@@ -155,7 +155,9 @@ configure() {
   local preset=$1
   shift
   local -a options=("$@")
-  if command -v ccache >/dev/null; then options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
+  if command -v ccache >/dev/null; then  # what it has to overlook to serve files with precompiled headers, as its manual says
+    options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=env;CCACHE_SLOPPINESS=pch_defines,time_macros;ccache" -DCMAKE_CXX_FLAGS=-fpch-preprocess)
+  fi
   say "configuring build/$preset"
   cmake --preset "$preset" ${options[@]+"${options[@]}"} || die "configuring failed, see above"
 }

@@ -1,5 +1,5 @@
-#include "app/command_line.h"
-#include "app/interrupt.h"
+#include "app/base/interrupt.h"
+#include "app/commands/command_line.h"
 
 int main(int argc, char** argv) {
   drape::ignore_broken_outputs();

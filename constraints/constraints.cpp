@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/parallel.h"
+#include "mesh/base/parallel.h"
 
 namespace drape {
 namespace {

@@ -69,7 +69,7 @@ class Constraints {
   void merge(const std::vector<int>& particle_of);
 
   // The triangles of the cloth, so that corners and rims of bodies do not come through between the vertices.
-  // They push by a force, which the system needs, too: solver/face_contact_force.h.
+  // They push by a force, which the system needs, too: solver/forces/face_contact_force.h.
   void add_faces(const std::vector<ClothFace>& faces) { faces_.add(faces); }
   const FaceContacts& faces() const { return faces_; }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 
 namespace drape {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "mesh/closest_on_triangle.h"
-#include "mesh/parallel.h"
+#include "mesh/base/parallel.h"
+#include "mesh/distance/closest_on_triangle.h"
 
 namespace drape {
 namespace {

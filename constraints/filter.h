@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "mesh/triangle_mesh.h"
+#include "mesh/base/vectors.h"
 
 namespace drape {
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 
 namespace drape {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 
 namespace drape {
 namespace {

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "mesh/triangle_mesh.h"
+#include "mesh/triangles/triangle_mesh.h"
 
 namespace drape {
 

@@ -4,7 +4,7 @@
 // A pose that stands for nothing being moved is the default, R = 1 and t = 0.
 #pragma once
 
-#include "mesh/triangle_mesh.h"
+#include "mesh/base/vectors.h"
 
 namespace drape {
 

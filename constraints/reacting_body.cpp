@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 
 namespace drape {
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "constraints/constraints.h"
-#include "mesh/parallel.h"
+#include "mesh/base/parallel.h"
 
 namespace drape {
 namespace {

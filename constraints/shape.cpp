@@ -12,7 +12,7 @@
 // Against a surface that deforms, s [m] counts the most by which the two can come nearer to each other,
 //   length = |x1 - x0 - m| + max_i |u_i - m|,  u_i displacements of the vertices, m their mean,
 // so that f still falls no faster than 1; f' = n . (x1 - x0 - u) / length, u that of the closest point. What
-// a margin below r / 2 could let through is found as a root of the triangles' cubics (mesh/crossing.h).
+// a margin below r / 2 could let through is found as a root of the triangles' cubics (mesh/distance/crossing.h).
 #include "constraints/shape.h"
 
 #include <Eigen/Geometry>
@@ -20,7 +20,7 @@
 #include <cmath>
 #include <string>
 
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 
 namespace drape {
 namespace {

@@ -4,8 +4,8 @@
 //   bowl     phi = distance to the arc of the middle radius - thickness / 2
 //   box      exact distance to a box, turned by `rotation`
 //   capsule  phi = distance to the segment a b - r
-//   mesh     a triangle surface (mesh/surface_distance.h), which stands in its own frame or deforms
-//   level-set  a grid of distances to a closed one (mesh/level_set.h)
+//   mesh     a triangle surface (mesh/distance/surface_distance.h), which stands in its own frame or deforms
+//   level-set  a grid of distances to a closed one (mesh/level_set/level_set.h)
 // The bowl is a hemispherical shell with a rounded rim, opening along +axis; `radius` is the inner one, the
 // shell reaches out from it by `thickness`.
 //
@@ -17,8 +17,8 @@
 #include <string_view>
 #include <variant>
 
-#include "mesh/level_set.h"
-#include "mesh/surface_distance.h"
+#include "mesh/distance/surface_distance.h"
+#include "mesh/level_set/level_set.h"
 
 namespace drape {
 

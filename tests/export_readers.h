@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/triangle_mesh.h"
+#include "mesh/base/vectors.h"
 
 namespace drape::test {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "app/words.h"
+#include "app/base/words.h"
 #include "tests/folder.h"
 
 namespace drape::test {

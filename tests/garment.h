@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <string>
 
-#include "app/simulation.h"
-#include "app/toml_file.h"
+#include "app/base/toml_file.h"
+#include "app/simulation/simulation.h"
 #include "tests/folder.h"
 
 namespace drape::test {

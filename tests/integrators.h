@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "solver/buckling_spring.h"
+#include "solver/forces/buckling_spring.h"
 #include "tests/tables.h"
 
 namespace drape::test {

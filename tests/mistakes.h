@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 
 namespace drape::test {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/obj.h"
-#include "mesh/topology.h"
+#include "mesh/obj/obj.h"
+#include "mesh/triangles/topology.h"
 
 namespace drape::test {
 

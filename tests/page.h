@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/json.h"
+#include "app/base/json.h"
 
 namespace drape::test {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "app/pattern_read.h"
-#include "mesh/obj.h"
-#include "mesh/pattern.h"
-#include "mesh/topology.h"
+#include "app/pattern/pattern_read.h"
+#include "mesh/obj/obj.h"
+#include "mesh/pattern/pattern.h"
+#include "mesh/triangles/topology.h"
 
 namespace drape::test {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "constraints/shape.h"
-#include "mesh/surface_distance.h"
+#include "mesh/distance/surface_distance.h"
 
 namespace drape::test {
 

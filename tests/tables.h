@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "mesh/threads.h"
+#include "mesh/base/threads.h"
 #include "solver/drape.h"
-#include "solver/tension_spring.h"
+#include "solver/forces/tension_spring.h"
 #include "tests/places.h"
 
 namespace drape::test {

@@ -6,10 +6,10 @@
 #include <random>
 #include <set>
 
-#include "mesh/obj.h"
-#include "solver/buckling_spring.h"
-#include "solver/choi_ko.h"
-#include "solver/system.h"
+#include "mesh/obj/obj.h"
+#include "solver/forces/buckling_spring.h"
+#include "solver/forces/choi_ko.h"
+#include "solver/system/system.h"
 
 using namespace drape;
 using Catch::Contains;

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <numeric>
 
-#include "solver/integrator.h"
+#include "solver/integrators/integrator.h"
 #include "tests/workshop.h"
 
 using namespace drape;

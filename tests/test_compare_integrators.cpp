@@ -4,7 +4,7 @@
 #include "app/compare/integrators.h"
 #include "app/compare/options.h"
 #include "app/compare/tables.h"
-#include "app/simulation.h"
+#include "app/simulation/simulation.h"
 #include "tests/desk.h"
 
 using namespace drape;

@@ -1,9 +1,9 @@
 // The solvers of drape compare: systems taken out of a run, verdicts, what a row holds, peak memory.
 #include <Eigen/Dense>
 
+#include "app/base/peak_memory.h"
 #include "app/compare/hung_sheet.h"
 #include "app/compare/solvers.h"
-#include "app/peak_memory.h"
 #include "tests/desk.h"
 
 using namespace drape;

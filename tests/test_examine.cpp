@@ -7,9 +7,9 @@
 #include <limits>
 #include <string>
 
-#include "mesh/examine.h"
-#include "mesh/generate.h"
-#include "mesh/obj.h"
+#include "mesh/obj/examine.h"
+#include "mesh/obj/obj.h"
+#include "mesh/triangles/generate.h"
 #include "tests/places.h"
 
 using namespace drape;

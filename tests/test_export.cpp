@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "app/base/markup.h"
 #include "app/export/export.h"
 #include "app/export/faces.h"
 #include "app/export/files.h"
@@ -14,12 +15,11 @@
 #include "app/export/source.h"
 #include "app/export/usda.h"
 #include "app/export/vtk.h"
-#include "app/markup.h"
-#include "app/recording.h"
-#include "app/run_files.h"
+#include "app/recording/recording.h"
+#include "app/recording/run_files.h"
 #include "export_readers.h"
 #include "exported.h"
-#include "mesh/obj.h"
+#include "mesh/obj/obj.h"
 
 using namespace drape;
 using namespace drape::test;

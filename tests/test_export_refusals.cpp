@@ -3,9 +3,9 @@
 #include <set>
 
 #include "app/export/files.h"
-#include "app/run_files.h"
+#include "app/recording/run_files.h"
 #include "exported.h"
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 
 using namespace drape;
 using namespace drape::test;

@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "mesh/topology.h"
-#include "solver/buckling_spring.h"
-#include "solver/integrator.h"
+#include "mesh/triangles/topology.h"
+#include "solver/forces/buckling_spring.h"
+#include "solver/integrators/integrator.h"
 #include "tests/tables.h"
 
 using namespace drape;

@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "mesh/generate.h"
-#include "solver/face_contact_force.h"
+#include "mesh/triangles/generate.h"
+#include "solver/forces/face_contact_force.h"
 #include "tests/same_bits.h"
 
 using namespace drape;

@@ -5,12 +5,12 @@
 #include <numeric>
 #include <utility>
 
-#include "mesh/flat_pattern.h"
-#include "mesh/generate.h"
-#include "mesh/obj.h"
-#include "mesh/topology.h"
-#include "solver/noh_jung.h"
-#include "solver/system.h"
+#include "mesh/obj/obj.h"
+#include "mesh/pattern/flat_pattern.h"
+#include "mesh/triangles/generate.h"
+#include "mesh/triangles/topology.h"
+#include "solver/forces/noh_jung.h"
+#include "solver/system/system.h"
 #include "tests/garment.h"
 
 using namespace drape;

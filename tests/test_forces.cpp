@@ -4,9 +4,9 @@
 #include <catch2/catch.hpp>
 #include <tuple>
 
-#include "solver/buckling_spring.h"
-#include "solver/damping.h"
-#include "solver/linear_spring.h"
+#include "solver/forces/buckling_spring.h"
+#include "solver/forces/damping.h"
+#include "solver/forces/linear_spring.h"
 #include "tests/tables.h"
 
 using namespace drape;

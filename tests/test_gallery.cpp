@@ -10,8 +10,8 @@
 #include <limits>
 #include <set>
 
-#include "app/simulation.h"
-#include "mesh/topology.h"
+#include "app/simulation/simulation.h"
+#include "mesh/triangles/topology.h"
 #include "tests/folder.h"
 
 #include "tests/places.h"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 #include "tests/garment.h"
 #include "tests/mistakes.h"
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "mesh/examine.h"
-#include "mesh/generate.h"
-#include "mesh/obj.h"
-#include "mesh/topology.h"
+#include "mesh/base/errors.h"
+#include "mesh/obj/examine.h"
+#include "mesh/triangles/generate.h"
+#include "mesh/triangles/topology.h"
 
 using namespace drape;
 

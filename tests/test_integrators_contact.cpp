@@ -1,6 +1,6 @@
 // Constraints hold on cloth in every integrator of the build: pins and contact, to first order in the time
 // step; and the same bits everywhere. test_integrators_particle.cpp has what they do to single particles.
-#include "app/simulation.h"
+#include "app/simulation/simulation.h"
 #include "tests/integrators.h"
 #include "tests/same_bits.h"
 

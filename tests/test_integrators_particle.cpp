@@ -1,6 +1,6 @@
 // Constraints hold single particles in every integrator of the build: landing, friction, coming out of a
 // body.
-#include "solver/held_motion.h"
+#include "solver/integrators/held_motion.h"
 #include "tests/integrators.h"
 
 using namespace drape;

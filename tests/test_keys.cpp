@@ -5,9 +5,9 @@
 #include <regex>
 #include <set>
 
-#include "app/keys.h"
-#include "app/scene.h"
-#include "mesh/obj.h"
+#include "app/commands/keys.h"
+#include "app/scene/scene.h"
+#include "mesh/base/errors.h"
 #include "tests/folder.h"
 
 using namespace drape;

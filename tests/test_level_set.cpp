@@ -5,10 +5,10 @@
 #include <cmath>
 #include <vector>
 
-#include "mesh/generate.h"
-#include "mesh/level_set.h"
-#include "mesh/obj.h"
-#include "mesh/threads.h"
+#include "mesh/base/threads.h"
+#include "mesh/level_set/level_set.h"
+#include "mesh/obj/obj.h"
+#include "mesh/triangles/generate.h"
 #include "solver/drape.h"
 #include "tests/shapes.h"
 

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <string>
 
-#include "mesh/generate.h"
-#include "mesh/level_set.h"
-#include "mesh/obj.h"
+#include "mesh/level_set/level_set.h"
+#include "mesh/obj/obj.h"
+#include "mesh/triangles/generate.h"
 #include "tests/folder.h"
 #include "tests/shapes.h"
 

@@ -4,12 +4,12 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 
-#include "app/atomic_file.h"
-#include "app/units.h"
-#include "mesh/obj.h"
-#include "mesh/topology.h"
-#include "solver/buckling_spring.h"
-#include "solver/damping.h"
+#include "app/base/atomic_file.h"
+#include "app/base/units.h"
+#include "mesh/obj/obj.h"
+#include "mesh/triangles/topology.h"
+#include "solver/forces/buckling_spring.h"
+#include "solver/forces/damping.h"
 #include "tests/folder.h"
 #include "tests/tables.h"
 

@@ -7,7 +7,7 @@
 
 #include "allocations.h"
 #include "constraints/motion.h"
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 
 using namespace drape;
 using Catch::Contains;

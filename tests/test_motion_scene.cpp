@@ -4,8 +4,8 @@
 #include <numbers>
 #include <string>
 
-#include "app/scene.h"
-#include "app/toml_file.h"
+#include "app/base/toml_file.h"
+#include "app/scene/scene.h"
 #include "tests/folder.h"
 #include "tests/mistakes.h"
 

@@ -3,10 +3,10 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "mesh/generate.h"
-#include "solver/damping.h"
-#include "solver/pair_force.h"
-#include "solver/tension_spring.h"
+#include "mesh/triangles/generate.h"
+#include "solver/forces/damping.h"
+#include "solver/forces/pair_force.h"
+#include "solver/forces/tension_spring.h"
 #include "tests/integrators.h"
 #include "tests/tables.h"
 

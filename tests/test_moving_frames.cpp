@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "app/output.h"
-#include "app/pc2.h"
-#include "app/simulation.h"
-#include "mesh/generate.h"
-#include "mesh/obj.h"
+#include "app/base/pc2.h"
+#include "app/recording/output.h"
+#include "app/simulation/simulation.h"
+#include "mesh/obj/obj.h"
+#include "mesh/triangles/generate.h"
 #include "tests/folder.h"
 #include "tests/shapes.h"
 

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <complex>
 
-#include "mesh/generate.h"
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
+#include "mesh/triangles/generate.h"
 #include "tests/shapes.h"
 
 using namespace drape;

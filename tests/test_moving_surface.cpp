@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "mesh/generate.h"
-#include "mesh/obj.h"
-#include "mesh/threads.h"
+#include "mesh/base/errors.h"
+#include "mesh/base/threads.h"
+#include "mesh/triangles/generate.h"
 #include "tests/allocations.h"
 #include "tests/shapes.h"
 

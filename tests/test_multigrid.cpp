@@ -2,7 +2,7 @@
 // behind.
 #include <catch2/catch.hpp>
 
-#include "mesh/threads.h"
+#include "mesh/base/threads.h"
 #include "solver/linear/preconditioner.h"
 #include "solver/linear/smoother.h"
 #include "tests/allocations.h"

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "mesh/generate.h"
+#include "mesh/triangles/generate.h"
 #include "tests/folder.h"
 #include "tests/obj.h"
 

@@ -7,13 +7,13 @@
 #include <limits>
 #include <string>
 
-#include "app/atomic_file.h"
-#include "app/measure.h"
-#include "app/pc2.h"
-#include "app/run_json.h"
-#include "app/steps_csv.h"
-#include "mesh/generate.h"
-#include "mesh/obj.h"
+#include "app/base/atomic_file.h"
+#include "app/base/pc2.h"
+#include "app/recording/run_json.h"
+#include "app/recording/steps_csv.h"
+#include "app/simulation/measure.h"
+#include "mesh/base/errors.h"
+#include "mesh/triangles/generate.h"
 #include "tests/folder.h"
 
 using namespace drape;

@@ -6,11 +6,11 @@
 #include <numbers>
 #include <string>
 
-#include "app/body_files.h"
-#include "app/body_mesh.h"
-#include "mesh/examine.h"
-#include "mesh/generate.h"
-#include "mesh/obj.h"
+#include "app/recording/body_files.h"
+#include "app/simulation/body_mesh.h"
+#include "mesh/obj/examine.h"
+#include "mesh/obj/obj.h"
+#include "mesh/triangles/generate.h"
 #include "tests/desk.h"
 
 using namespace drape;

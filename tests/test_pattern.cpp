@@ -4,9 +4,9 @@
 #include <map>
 #include <set>
 
-#include "app/triangulate_command.h"
-#include "mesh/delaunay.h"
-#include "mesh/predicates.h"
+#include "app/commands/triangulate_command.h"
+#include "mesh/pattern/delaunay.h"
+#include "mesh/pattern/predicates.h"
 #include "tests/obj.h"
 #include "tests/patterns.h"
 

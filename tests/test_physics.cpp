@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "solver/buckling_spring.h"
-#include "solver/damping.h"
+#include "solver/forces/buckling_spring.h"
+#include "solver/forces/damping.h"
 #include "tests/tables.h"
 
 using namespace drape;

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "app/picture/colours.h"
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 #include "tests/png_read.h"
 #include "tests/workshop.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/pose_csv.h"
+#include "app/scene/pose_csv.h"
 #include "tests/mistakes.h"
 
 using namespace drape;

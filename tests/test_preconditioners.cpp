@@ -1,7 +1,7 @@
 // Laws of the preconditioners, and of solvers that keep something from one system to the next.
 #include <catch2/catch.hpp>
 
-#include "mesh/threads.h"
+#include "mesh/base/threads.h"
 #include "solver/linear/pcg.h"
 #include "tests/falling_sheet.h"
 

@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "mesh/generate.h"
-#include "mesh/solid.h"
-#include "solver/face_contact_force.h"
+#include "mesh/lattice/solid.h"
+#include "mesh/triangles/generate.h"
+#include "solver/forces/face_contact_force.h"
 #include "tests/integrators.h"
 #include "tests/tables.h"
 

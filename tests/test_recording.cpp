@@ -1,13 +1,13 @@
 // An output folder read back: what was written is what is read, and what is damaged is told.
 #include <catch2/catch.hpp>
 
-#include "app/body_files.h"
-#include "app/npy.h"
-#include "app/pc2.h"
-#include "app/recording.h"
-#include "app/run.h"
+#include "app/base/npy.h"
+#include "app/base/pc2.h"
+#include "app/recording/body_files.h"
+#include "app/recording/recording.h"
+#include "app/run/run.h"
 #include "folder.h"
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 
 using namespace drape;
 using namespace drape::test;

@@ -1,9 +1,9 @@
 // The two forms of contact without a solve: the formulas against numbers worked out by hand, cloth, the
 // switch. test_response_particle.cpp has what they do to single particles.
-#include "app/scene.h"
-#include "app/simulation.h"
+#include "app/scene/scene.h"
+#include "app/simulation/simulation.h"
 #include "constraints/response.h"
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 #include "tests/allocations.h"
 #include "tests/integrators.h"
 #include "tests/same_bits.h"

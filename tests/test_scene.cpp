@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "app/fabrics.h"
-#include "app/scene.h"
-#include "app/toml_file.h"
+#include "app/base/toml_file.h"
+#include "app/scene/fabrics.h"
+#include "app/scene/scene.h"
 #include "tests/mistakes.h"
 
 using namespace drape;

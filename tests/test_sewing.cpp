@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "mesh/topology.h"
+#include "mesh/triangles/topology.h"
 #include "tests/garment.h"
 #include "tests/same_bits.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 #include "tests/shapes.h"
 
 using namespace drape;

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "mesh/obj.h"
-#include "mesh/solid.h"
-#include "solver/linear_spring.h"
+#include "mesh/base/errors.h"
+#include "mesh/lattice/solid.h"
+#include "solver/forces/linear_spring.h"
 #include "tests/tables.h"
 
 using namespace drape;

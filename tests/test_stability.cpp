@@ -2,8 +2,8 @@
 // runs bear, against closed forms (validation.md 4.12).
 #include <catch2/catch.hpp>
 
-#include "solver/linear_spring.h"
-#include "solver/stability.h"
+#include "solver/forces/linear_spring.h"
+#include "solver/stability/stability.h"
 #include "tests/desk.h"
 #include "tests/tables.h"
 

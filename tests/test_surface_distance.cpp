@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "mesh/obj.h"
+#include "mesh/obj/obj.h"
 #include "tests/folder.h"
 #include "tests/places.h"
 #include "tests/shapes.h"

@@ -1,4 +1,4 @@
-// Laws of mesh/topology.h: counts against Euler's formula, lists that do not depend on the order of the
+// Laws of mesh/triangles/topology.h: counts against Euler's formula, lists that do not depend on the order of the
 // triangles, walks that end on any mesh.
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -8,9 +8,9 @@
 #include <set>
 #include <tuple>
 
-#include "mesh/generate.h"
-#include "mesh/obj.h"
-#include "mesh/topology.h"
+#include "mesh/base/errors.h"
+#include "mesh/triangles/generate.h"
+#include "mesh/triangles/topology.h"
 
 using namespace drape;
 

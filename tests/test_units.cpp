@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "app/units.h"
-#include "mesh/obj.h"
+#include "app/base/units.h"
+#include "mesh/base/errors.h"
 
 using namespace drape;
 using Catch::Contains;

@@ -3,14 +3,14 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "app/pc2.h"
-#include "app/recording.h"
-#include "app/run.h"
+#include "app/base/pc2.h"
+#include "app/recording/recording.h"
+#include "app/run/run.h"
 #include "app/view/page_data.h"
 #include "app/view/page_template.h"
 #include "app/view/view.h"
 #include "folder.h"
-#include "mesh/obj.h"
+#include "mesh/obj/obj.h"
 #include "page.h"
 
 using namespace drape;

@@ -7,8 +7,8 @@
 #include <set>
 #include <string>
 
-#include "mesh/generate.h"
-#include "mesh/obj.h"
+#include "mesh/obj/obj.h"
+#include "mesh/triangles/generate.h"
 #include "tests/folder.h"
 
 namespace drape::test {

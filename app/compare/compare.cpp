@@ -4,14 +4,14 @@
 #include <cmath>
 #include <cstdio>
 
+#include "app/base/interrupt.h"
 #include "app/compare/files.h"
 #include "app/compare/hung_sheet.h"
 #include "app/compare/integrators.h"
 #include "app/compare/solvers.h"
 #include "app/compare/tables.h"
-#include "app/interrupt.h"
-#include "mesh/obj.h"
-#include "mesh/threads.h"
+#include "mesh/base/errors.h"
+#include "mesh/base/threads.h"
 
 namespace drape {
 namespace {

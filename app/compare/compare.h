@@ -1,8 +1,8 @@
 // `drape compare`: solvers on the systems of one run, integrators on one scene, sizes of one sheet.
 #pragma once
 
-#include "app/commands.h"
 #include "app/compare/options.h"
+#include "app/run/common_options.h"
 
 namespace drape {
 

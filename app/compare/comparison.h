@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "app/words.h"
-#include "solver/linear_solver.h"
+#include "app/base/words.h"
+#include "solver/linear/linear_solver.h"
 
 namespace drape {
 

@@ -1,11 +1,11 @@
 #include "app/compare/files.h"
 
-#include "app/atomic_file.h"
+#include "app/base/atomic_file.h"
+#include "app/base/csv_text.h"
+#include "app/base/json.h"
 #include "app/compare/html.h"
 #include "app/compare/tables.h"
-#include "app/csv_text.h"
-#include "app/json.h"
-#include "app/output.h"
+#include "app/recording/output.h"
 
 namespace drape {
 namespace {

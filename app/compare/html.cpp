@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/base/markup.h"
 #include "app/compare/tables.h"
-#include "app/markup.h"
 
 namespace drape {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/compare/comparison.h"
-#include "app/plot.h"
+#include "app/compare/plot.h"
 
 namespace drape {
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "mesh/generate.h"
-#include "solver/noh_jung.h"
+#include "mesh/triangles/generate.h"
+#include "solver/forces/noh_jung.h"
 
 namespace drape {
 

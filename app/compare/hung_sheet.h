@@ -1,7 +1,7 @@
 // The sheet of `drape compare --sizes`: 1 m x 1 m, two corners pinned, a grid of any number of vertices.
 #pragma once
 
-#include "app/simulation.h"
+#include "app/simulation/simulation.h"
 
 namespace drape {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "app/interrupt.h"
-#include "app/simulation.h"
-#include "solver/stopwatch.h"
+#include "app/base/interrupt.h"
+#include "app/simulation/simulation.h"
+#include "mesh/base/stopwatch.h"
 
 namespace drape {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "app/compare/comparison.h"
-#include "app/scene.h"
+#include "app/scene/scene.h"
 
 namespace drape {
 

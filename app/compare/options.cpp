@@ -4,9 +4,9 @@
 #include <charconv>
 #include <cmath>
 
-#include "app/units.h"
-#include "mesh/obj.h"
-#include "solver/integrator.h"
+#include "app/base/units.h"
+#include "mesh/base/errors.h"
+#include "solver/integrators/integrator.h"
 
 namespace drape {
 namespace {

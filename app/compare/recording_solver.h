@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "solver/linear_solver.h"
+#include "solver/linear/linear_solver.h"
 
 namespace drape {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "app/interrupt.h"
-#include "app/measure.h"
-#include "app/peak_memory.h"
-#include "solver/stopwatch.h"
+#include "app/base/interrupt.h"
+#include "app/base/peak_memory.h"
+#include "app/simulation/measure.h"
+#include "mesh/base/stopwatch.h"
 
 namespace drape {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "app/compare/comparison.h"
 #include "app/compare/recording_solver.h"
-#include "app/simulation.h"
+#include "app/simulation/simulation.h"
 
 namespace drape {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "mesh/triangle_mesh.h"
+#include "mesh/base/vectors.h"
 
 namespace drape {
 

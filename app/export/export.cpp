@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "app/base/interrupt.h"
 #include "app/export/csv.h"
 #include "app/export/files.h"
 #include "app/export/gltf.h"
@@ -13,10 +14,9 @@
 #include "app/export/source.h"
 #include "app/export/usda.h"
 #include "app/export/vtk.h"
-#include "app/interrupt.h"
-#include "app/recording.h"
-#include "app/run_files.h"
-#include "mesh/obj.h"
+#include "app/recording/recording.h"
+#include "app/recording/run_files.h"
+#include "mesh/base/errors.h"
 
 namespace drape {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "app/words.h"
+#include "app/base/words.h"
 
 namespace drape {
 

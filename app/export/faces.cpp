@@ -8,8 +8,8 @@
 #include <string>
 #include <tuple>
 
-#include "mesh/obj.h"
-#include "mesh/topology.h"
+#include "mesh/obj/obj.h"
+#include "mesh/triangles/topology.h"
 
 namespace drape {
 namespace {

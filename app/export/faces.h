@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "mesh/triangle_mesh.h"
+#include "mesh/triangles/triangle_mesh.h"
 
 namespace drape {
 

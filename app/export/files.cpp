@@ -2,8 +2,8 @@
 
 #include <unistd.h>
 
-#include "app/run_files.h"
-#include "mesh/obj.h"
+#include "app/recording/run_files.h"
+#include "mesh/base/errors.h"
 
 namespace drape {
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/atomic_file.h"
-#include "app/words.h"
+#include "app/base/atomic_file.h"
+#include "app/base/words.h"
 
 namespace drape {
 

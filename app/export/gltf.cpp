@@ -2,11 +2,11 @@
 
 #include <optional>
 
+#include "app/base/json.h"
 #include "app/export/bytes.h"
 #include "app/export/faces.h"
 #include "app/export/gltf_buffer.h"
 #include "app/export/rigid.h"
-#include "app/json.h"
 
 namespace drape {
 namespace {

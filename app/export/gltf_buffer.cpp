@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "app/export/bytes.h"
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 
 namespace drape {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "app/json.h"
-#include "mesh/triangle_mesh.h"
+#include "app/base/json.h"
+#include "mesh/base/vectors.h"
 
 namespace drape {
 

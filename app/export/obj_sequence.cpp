@@ -1,7 +1,7 @@
 #include "app/export/obj_sequence.h"
 
 #include "app/export/sequence.h"
-#include "mesh/obj.h"
+#include "mesh/obj/obj.h"
 
 namespace drape {
 

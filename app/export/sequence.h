@@ -3,7 +3,7 @@
 
 #include "app/export/files.h"
 #include "app/export/source.h"
-#include "app/run_files.h"
+#include "app/recording/run_files.h"
 
 namespace drape {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "app/interrupt.h"
-#include "mesh/obj.h"
+#include "app/base/interrupt.h"
+#include "mesh/base/errors.h"
 
 namespace drape {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/recording.h"
+#include "app/recording/recording.h"
 
 namespace drape {
 

@@ -1,8 +1,8 @@
 #include "app/export/vtk.h"
 
+#include "app/base/markup.h"
 #include "app/export/bytes.h"
 #include "app/export/sequence.h"
-#include "app/markup.h"
 
 namespace drape {
 namespace {

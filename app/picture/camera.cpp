@@ -8,7 +8,7 @@
 #include <map>
 #include <numbers>
 
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 
 namespace drape::drawing {
 namespace {

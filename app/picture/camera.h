@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "app/words.h"
-#include "mesh/triangle_mesh.h"
+#include "app/base/words.h"
+#include "mesh/base/vectors.h"
 
 namespace drape::drawing {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "app/recording.h"
+#include "app/recording/recording.h"
 
 namespace drape::drawing {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "app/base/words.h"
 #include "app/picture/text.h"
-#include "app/words.h"
 
 namespace drape::drawing {
 namespace {

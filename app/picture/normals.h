@@ -7,7 +7,7 @@
 #include <array>
 #include <vector>
 
-#include "mesh/triangle_mesh.h"
+#include "mesh/triangles/triangle_mesh.h"
 
 namespace drape::drawing {
 

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <string_view>
 
-#include "app/words.h"
-#include "mesh/obj.h"
+#include "app/base/words.h"
+#include "mesh/base/errors.h"
 
 namespace drape::drawing {
 namespace {

@@ -4,12 +4,12 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "app/atomic_file.h"
-#include "app/interrupt.h"
+#include "app/base/atomic_file.h"
+#include "app/base/interrupt.h"
 #include "app/picture/options.h"
 #include "app/picture/sheet.h"
-#include "app/run_files.h"
-#include "mesh/obj.h"
+#include "app/recording/run_files.h"
+#include "mesh/base/errors.h"
 
 namespace drape {
 namespace {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "app/picture/surface.h"
-#include "mesh/parallel.h"
+#include "mesh/base/parallel.h"
 
 namespace drape::drawing {
 namespace {

@@ -7,7 +7,7 @@
 #include "app/picture/legend.h"
 #include "app/picture/render.h"
 #include "app/picture/text.h"
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 
 namespace drape::drawing {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "app/interrupt.h"
-#include "mesh/obj.h"
+#include "app/base/interrupt.h"
+#include "mesh/obj/obj.h"
 
 namespace drape::drawing {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "app/picture/colours.h"
-#include "app/recording.h"
-#include "mesh/triangle_mesh.h"
+#include "app/recording/recording.h"
+#include "mesh/triangles/triangle_mesh.h"
 
 namespace drape::drawing {
 

@@ -5,7 +5,7 @@
 
 #include "app/picture/normals.h"
 #include "app/picture/render.h"
-#include "mesh/triangle_tree.h"
+#include "mesh/distance/triangle_tree.h"
 
 namespace drape::drawing {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "app/python/bindings.h"
-#include "mesh/triangle_mesh.h"
+#include "mesh/base/vectors.h"
 
 namespace drape::python {
 

@@ -3,10 +3,10 @@
 
 #include <pybind11/stl.h>
 
+#include "app/base/words.h"
 #include "app/python/arrays.h"
 #include "app/python/in_use.h"
-#include "app/words.h"
-#include "solver/state.h"
+#include "solver/system/state.h"
 
 namespace drape::python {
 namespace {

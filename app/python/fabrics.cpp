@@ -2,13 +2,13 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "app/fabrics.h"
+#include "app/base/words.h"
 #include "app/python/arrays.h"
 #include "app/python/forces.h"
-#include "app/words.h"
-#include "solver/choi_ko.h"
-#include "solver/noh_jung.h"
-#include "solver/soft.h"
+#include "app/scene/fabrics.h"
+#include "solver/forces/choi_ko.h"
+#include "solver/forces/noh_jung.h"
+#include "solver/forces/soft.h"
 
 namespace drape::python {
 namespace {

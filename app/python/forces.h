@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "solver/force.h"
+#include "solver/forces/force.h"
 
 namespace drape::python {
 

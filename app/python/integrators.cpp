@@ -1,13 +1,13 @@
 // Integrators: a system, its constraints and a linear solver, and the step.
 #include <pybind11/stl.h>
 
+#include "app/base/words.h"
 #include "app/python/arrays.h"
 #include "app/python/in_use.h"
 #include "app/python/linear.h"
 #include "app/python/reports.h"
-#include "app/words.h"
-#include "mesh/threads.h"
-#include "solver/integrator.h"
+#include "mesh/base/threads.h"
+#include "solver/integrators/integrator.h"
 
 namespace drape::python {
 namespace {

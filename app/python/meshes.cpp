@@ -5,12 +5,12 @@
 #include <cmath>
 #include <set>
 
+#include "app/base/words.h"
 #include "app/python/arrays.h"
-#include "app/words.h"
-#include "mesh/examine.h"
-#include "mesh/generate.h"
-#include "mesh/obj.h"
-#include "mesh/topology.h"
+#include "mesh/obj/examine.h"
+#include "mesh/obj/obj.h"
+#include "mesh/triangles/generate.h"
+#include "mesh/triangles/topology.h"
 
 namespace drape::python {
 namespace {

@@ -1,6 +1,6 @@
 // The extension module drape._drape: what app/python/drape/__init__.py offers as `drape`.
 #include "app/python/bindings.h"
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 
 PYBIND11_MODULE(_drape, m) {
   namespace py = pybind11;

@@ -3,8 +3,8 @@
 
 #include <pybind11/stl.h>
 
+#include "app/base/words.h"
 #include "app/python/shapes.h"
-#include "app/words.h"
 
 namespace drape::python {
 namespace {

@@ -1,7 +1,7 @@
 // StepReport, the steps of a run, StepError.
 #include "app/python/reports.h"
 
-#include "app/words.h"
+#include "app/base/words.h"
 
 namespace drape::python {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/python/bindings.h"
-#include "app/steps_csv.h"
+#include "app/recording/steps_csv.h"
 
 namespace drape::python {
 

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "app/words.h"
-#include "mesh/obj.h"
+#include "app/base/words.h"
+#include "mesh/base/errors.h"
 
 namespace drape::python {
 namespace {

@@ -1,8 +1,8 @@
 // A scene given as a dict, as the plain data that the reader of scenes takes from TOML.
 #pragma once
 
+#include "app/base/toml_file.h"
 #include "app/python/bindings.h"
-#include "app/toml_file.h"
 
 namespace drape::python {
 

@@ -4,7 +4,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "app/words.h"
+#include "app/base/words.h"
 
 namespace drape::python {
 namespace {

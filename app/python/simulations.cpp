@@ -4,16 +4,16 @@
 
 #include <algorithm>
 
-#include "app/measure.h"
 #include "app/python/arrays.h"
 #include "app/python/in_use.h"
 #include "app/python/linear.h"
 #include "app/python/reports.h"
 #include "app/python/scenes.h"
-#include "app/run.h"
+#include "app/run/run.h"
+#include "app/simulation/measure.h"
 #include "app/view/view.h"
-#include "mesh/obj.h"
-#include "mesh/threads.h"
+#include "mesh/base/errors.h"
+#include "mesh/base/threads.h"
 
 namespace drape::python {
 namespace {

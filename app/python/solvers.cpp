@@ -1,11 +1,11 @@
 // Linear solvers, and the linear systems of a step to try them on.
 #include <pybind11/stl.h>
 
+#include "app/base/words.h"
 #include "app/compare/solvers.h"
 #include "app/python/arrays.h"
 #include "app/python/in_use.h"
 #include "app/python/linear.h"
-#include "app/words.h"
 
 namespace drape::python {
 namespace {

@@ -1,10 +1,10 @@
 // State: time, positions and velocities, shared with NumPy.
-#include "app/measure.h"
+#include "app/base/words.h"
 #include "app/python/arrays.h"
 #include "app/python/in_use.h"
-#include "app/words.h"
-#include "mesh/obj.h"
-#include "solver/state.h"
+#include "app/simulation/measure.h"
+#include "mesh/base/errors.h"
+#include "solver/system/state.h"
 
 namespace drape::python {
 namespace {

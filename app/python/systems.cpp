@@ -1,12 +1,12 @@
 // System: masses and forces.
-#include "solver/system.h"
+#include "solver/system/system.h"
 
 #include <pybind11/stl.h>
 
+#include "app/base/words.h"
 #include "app/python/arrays.h"
 #include "app/python/forces.h"
 #include "app/python/in_use.h"
-#include "app/words.h"
 
 namespace drape::python {
 namespace {

@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "app/csv_text.h"
-#include "app/json.h"
+#include "app/base/csv_text.h"
+#include "app/base/json.h"
 #include "app/stability/stability.h"
 
 namespace drape {

@@ -6,9 +6,9 @@
 #include <numeric>
 #include <random>
 
-#include "app/interrupt.h"
-#include "app/simulation.h"
-#include "mesh/obj.h"
+#include "app/base/interrupt.h"
+#include "app/simulation/simulation.h"
+#include "mesh/base/errors.h"
 
 namespace drape {
 namespace {

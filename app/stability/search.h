@@ -10,8 +10,8 @@
 
 #include <optional>
 
-#include "app/scene.h"
-#include "solver/stability.h"
+#include "app/scene/scene.h"
+#include "solver/stability/stability.h"
 
 namespace drape {
 

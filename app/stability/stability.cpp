@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "app/atomic_file.h"
-#include "app/interrupt.h"
-#include "app/table.h"
-#include "mesh/obj.h"
-#include "mesh/threads.h"
+#include "app/base/atomic_file.h"
+#include "app/base/interrupt.h"
+#include "app/base/table.h"
+#include "mesh/base/errors.h"
+#include "mesh/base/threads.h"
 
 namespace drape {
 namespace {

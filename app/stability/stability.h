@@ -1,7 +1,7 @@
 // `drape stability`: the largest stable step of each integrator in a scene, beside what theory says of it.
 #pragma once
 
-#include "app/commands.h"
+#include "app/run/common_options.h"
 #include "app/stability/search.h"
 
 namespace drape {

@@ -4,9 +4,9 @@
 #include <bit>
 #include <functional>
 
-#include "app/interrupt.h"
+#include "app/base/interrupt.h"
 #include "app/view/track.h"
-#include "mesh/obj.h"
+#include "mesh/obj/obj.h"
 
 namespace drape {
 namespace {

@@ -7,8 +7,8 @@
 //   reads it.
 #pragma once
 
-#include "app/json.h"
-#include "app/recording.h"
+#include "app/base/json.h"
+#include "app/recording/recording.h"
 #include "app/view/page_blocks.h"
 
 namespace drape {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "app/json.h"
+#include "app/base/json.h"
 #include "app/view/page_blocks.h"
 
 namespace drape {

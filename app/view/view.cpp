@@ -3,13 +3,13 @@
 #include <cstdio>
 #include <fstream>
 
-#include "app/atomic_file.h"
-#include "app/interrupt.h"
-#include "app/markup.h"
-#include "app/run_files.h"
+#include "app/base/atomic_file.h"
+#include "app/base/interrupt.h"
+#include "app/base/markup.h"
+#include "app/recording/run_files.h"
 #include "app/view/page_data.h"
 #include "app/view/page_template.h"
-#include "mesh/obj.h"
+#include "mesh/base/errors.h"
 
 namespace drape {
 namespace {

@@ -1,6 +1,6 @@
 #include <atomic>
 
-#include "mesh/parallel.h"
+#include "mesh/base/parallel.h"
 #include "solver/linear/preconditioner.h"
 #include "solver/linear/projected_block.h"
 

@@ -9,9 +9,9 @@
 
 #include <stdexcept>
 
+#include "mesh/base/stopwatch.h"
 #include "solver/linear/projected.h"
 #include "solver/linear/residual.h"
-#include "solver/stopwatch.h"
 
 namespace drape {
 namespace {

@@ -4,9 +4,9 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
 
+#include "mesh/base/stopwatch.h"
 #include "solver/linear/projected.h"
 #include "solver/linear/residual.h"
-#include "solver/stopwatch.h"
 
 namespace drape {
 namespace {

@@ -12,8 +12,8 @@
 
 #include <cmath>
 
+#include "mesh/base/stopwatch.h"
 #include "solver/linear/residual.h"
-#include "solver/stopwatch.h"
 
 namespace drape {
 namespace {

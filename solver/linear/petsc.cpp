@@ -5,9 +5,9 @@
 //                                                             [Balay et al., PETSc Users Manual, 3.18]
 #include <petscksp.h>
 
+#include "mesh/base/stopwatch.h"
 #include "solver/linear/projected_block.h"
 #include "solver/linear/residual.h"
-#include "solver/stopwatch.h"
 
 namespace drape {
 namespace {

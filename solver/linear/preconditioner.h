@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "solver/linear_solver.h"
+#include "solver/linear/linear_solver.h"
 
 namespace drape {
 

@@ -7,7 +7,7 @@
 
 #include <Eigen/SparseCore>
 
-#include "solver/linear_solver.h"
+#include "solver/linear/linear_solver.h"
 
 namespace drape {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "constraints/filter.h"
-#include "solver/block_matrix.h"
 #include "solver/linear/mirror.h"
+#include "solver/matrix/block_matrix.h"
 
 namespace drape {
 

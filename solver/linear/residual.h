@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "mesh/parallel.h"
-#include "solver/linear_solver.h"
+#include "mesh/base/parallel.h"
+#include "solver/linear/linear_solver.h"
 
 namespace drape {
 

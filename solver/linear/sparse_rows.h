@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "mesh/parallel.h"
-#include "solver/four.h"
+#include "mesh/base/parallel.h"
+#include "solver/matrix/four.h"
 
 namespace drape {
 

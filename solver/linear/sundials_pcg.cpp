@@ -3,10 +3,10 @@
 //   documentation]
 #include <sunlinsol/sunlinsol_pcg.h>
 
+#include "mesh/base/stopwatch.h"
 #include "solver/linear/preconditioner.h"
 #include "solver/linear/residual.h"
-#include "solver/stopwatch.h"
-#include "solver/sundials.h"
+#include "solver/linear/sundials.h"
 
 namespace drape {
 namespace {

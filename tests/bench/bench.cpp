@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/parallel.h"
+#include "mesh/base/parallel.h"
 #include "tests/bench/bench.h"
 
 namespace {

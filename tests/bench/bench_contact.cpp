@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "mesh/level_set.h"
-#include "mesh/obj.h"
-#include "mesh/parallel.h"
-#include "solver/face_contact_force.h"
+#include "mesh/base/parallel.h"
+#include "mesh/level_set/level_set.h"
+#include "mesh/obj/obj.h"
+#include "solver/forces/face_contact_force.h"
 #include "tests/bench/bench.h"
 #include "tests/shapes.h"
 

@@ -2,7 +2,7 @@
 // polygons to the mesh with its document. One thread; the median of five.
 #include <cstdio>
 
-#include "mesh/pattern.h"
+#include "mesh/pattern/pattern.h"
 #include "tests/bench/bench.h"
 
 namespace {

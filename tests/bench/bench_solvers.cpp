@@ -13,7 +13,7 @@
 #include <string>
 
 #include "app/compare/recording_solver.h"
-#include "mesh/threads.h"
+#include "mesh/base/threads.h"
 #include "solver/linear/projected.h"
 #include "tests/bench/bench.h"
 

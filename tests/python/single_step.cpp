@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "app/measure.h"
+#include "app/simulation/measure.h"
 
 int main() {
   using namespace drape;

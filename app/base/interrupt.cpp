@@ -1,0 +1,41 @@
+#include "app/base/interrupt.h"
+
+#include <csignal>
+
+namespace drape {
+namespace {
+
+volatile std::sig_atomic_t asked_to_end = 0;
+
+// The step under way is finished first; who asks a third time does not want to wait. (Twice is not enough:
+// `timeout` and some shells send the same signal to the process and to its group.)
+void on_interrupt(int signal) {
+  asked_to_end = asked_to_end + 1;
+  if (asked_to_end >= 3) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+}
+
+}  // namespace
+
+void catch_interrupts() {
+  struct sigaction action = {};
+  action.sa_handler = on_interrupt;
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+bool interrupted() { return asked_to_end != 0; }
+
+void end_if_interrupted() {
+  if (interrupted()) throw Interrupted();
+}
+
+void ignore_broken_outputs() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+}  // namespace drape

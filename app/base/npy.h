@@ -1,0 +1,57 @@
+// Arrays in NumPy's file format: numpy.load reads them, also with mmap_mode.       [NEP 1, version 1.0]
+//   "\x93NUMPY", 1, 0, uint16 length, {'descr': '<f4', 'fortran_order': False, 'shape': (frames, n, 3), }
+//   blanks and a line end up to 128 bytes, then the numbers in C order, little endian.
+// float32 ('<f4') or bytes ('|u1'); the first axis counts frames, which are added or read one at a time.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "app/base/atomic_file.h"
+
+namespace drape {
+
+class NpyWriter {
+ public:
+  enum class Kind { float32, byte };
+  // frame_shape: {n} or {n, 3}, of one frame.
+  NpyWriter(std::filesystem::path path, Kind kind, std::vector<int> frame_shape);
+
+  void add(const std::vector<float>& frame);
+  void add(const std::vector<std::uint8_t>& frame);
+  void close();  // writes the number of frames into the header
+  void keep() { file_.keep(); }
+
+ private:
+  void write_header();
+
+  AtomicFile file_;
+  Kind kind_;
+  std::vector<int> frame_shape_;
+  int frames_ = 0;
+  std::vector<unsigned char> bytes_;
+};
+
+// Throws InputError when the file is none of these, or was cut short.
+class NpyReader {
+ public:
+  explicit NpyReader(const std::filesystem::path& path);
+
+  int frames() const { return frames_; }
+  const std::vector<int>& frame_shape() const { return frame_shape_; }
+  std::vector<float> frame(int k);  // bytes as numbers, too
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const;
+
+  std::filesystem::path path_;
+  std::ifstream file_;
+  bool bytes_ = false;
+  int frames_ = 0;
+  std::vector<int> frame_shape_;
+  std::size_t count_ = 1, start_ = 0;  // numbers in a frame; bytes before the first
+};
+
+}  // namespace drape

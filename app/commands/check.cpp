@@ -1,0 +1,178 @@
+#include "app/commands/check.h"
+
+#include <cstdio>
+
+#include "app/base/toml_file.h"
+#include "app/pattern/pattern_read.h"
+#include "app/scene/obstacle_read.h"
+#include "app/simulation/motion_extent.h"
+#include "app/simulation/simulation.h"
+#include "app/simulation/soft_body.h"
+#include "mesh/obj/obj.h"
+
+namespace drape {
+namespace {
+
+std::string sides(const MeshReport& report) {
+  const Vec3 size = report.upper - report.lower;
+  return rounded(size[0], 4) + " x " + rounded(size[1], 4) + " x " + rounded(size[2], 4) + " m";
+}
+
+}  // namespace
+
+void print_report(const std::string& name, const MeshReport& report) {
+  std::printf("%s: %s, %s, %s, %s, %s\n", name.c_str(), counted(report.vertices, "vertex").c_str(),
+              counted(report.faces, "face").c_str(), counted(report.triangles, "triangle").c_str(),
+              counted(report.edges, "edge").c_str(), counted(report.diagonals, "diagonal").c_str());
+  std::printf("  size %s, area %s m^2, edges %s to %s m (median %s m), smallest angle %s deg\n",
+              sides(report).c_str(), rounded(report.area, 4).c_str(),
+              rounded(report.shortest_edge, 3).c_str(), rounded(report.longest_edge, 3).c_str(),
+              rounded(report.median_edge, 3).c_str(),
+              rounded(report.smallest_angle * 57.29577951308232, 3).c_str());
+  std::printf("  %s, %s, %s\n", counted(report.pieces, "piece").c_str(),
+              counted(report.boundary_loops, "boundary loop").c_str(),
+              report.closed ? "closed" : "not closed");
+}
+
+namespace {
+
+// An OBJ file, or a drawing as it is cut with the default edge.
+void check_mesh(const std::filesystem::path& file) {
+  Names messages;
+  const bool drawing = is_pattern(file);
+  const TriangleMesh mesh = drawing ? triangulate(read_pattern(file, messages), {}).mesh : read_obj(file);
+  const MeshReport report = examine(mesh);
+  add_messages(report, file.string(), messages);
+  print_report(file.string(), report);
+  for (const VertexGroup& group : mesh.groups)
+    std::printf("  group %s: %s\n", group.name.c_str(),
+                counted(static_cast<long>(group.vertices.size()), "vertex").c_str());
+  for (const std::string& message : messages) std::printf("%s\n", one_line(message).c_str());
+}
+
+void print_cloth(const ClothEntry& entry, const Cloth& cloth) {
+  const Fabric& f = entry.fabric;
+  print_report("cloth " + cloth.name, cloth.report);
+  std::printf("  %s kg/m^2, stretch %s, bend %s\n", rounded(f.area_density, 4).c_str(),
+              f.stretch_spring ? (rounded(*f.stretch_spring, 4) + " N/m each edge").c_str()
+                               : (rounded(f.stretch, 4) + " N/m").c_str(),
+              f.bend_spring ? (rounded(*f.bend_spring, 4) + " N.m^2 each diagonal").c_str()
+                            : (rounded(f.bend, 4) + " N.m").c_str());
+}
+
+void print_seams(const Cloth& cloth, const VecX& x) {
+  for (const Cloth::Stitched& open : cloth.seams)
+    std::printf("  seam %s: %s, up to %s m apart, closes in %s s and is %s\n",
+                one_line(open.seam.name).c_str(),
+                counted(static_cast<long>(open.seam.pairs.size()), "pair").c_str(),
+                rounded(open.seam.gap(cloth.embedding, x), 3).c_str(), rounded(open.seam.close, 3).c_str(),
+                open.seam.merge ? "merged" : "kept");
+}
+
+void print_soft(const SoftEntry& entry, const Cloth& cloth, const System& system) {
+  print_report("soft body " + cloth.name, cloth.report);
+  double mass = 0;
+  for (int i = cloth.first_particle; i < cloth.end_particle; ++i)
+    mass += system.masses()[static_cast<std::size_t>(i)];
+  const SoftMaterial& m = entry.material;
+  std::printf("  %s, springs: %d structural, %d shear, %d bend; %s kg, %s\n",
+              counted(cloth.end_particle - cloth.first_particle, "particle").c_str(), cloth.soft->structural,
+              cloth.soft->shear, cloth.soft->bend, rounded(mass, 4).c_str(),
+              m.young ? (rounded(*m.young, 4) + " Pa").c_str()
+                      : (rounded(m.structural, 4) + " / " + rounded(m.shear, 4) + " / " + rounded(m.bend, 4) +
+                         " N/m each")
+                            .c_str());
+}
+
+// Of all vertices that are pinned: how many a body carries, and how many go along a path.
+void print_pins(const Scene& scene, const Simulation& simulation) {
+  const Constraints& constraints = *simulation.constraints;
+  std::vector<long> carried(scene.obstacles.size());
+  long along = 0;
+  for (const MovingPin& pin : constraints.moving_pins())
+    ++(pin.body < 0 ? along : carried[static_cast<std::size_t>(pin.body)]);
+  std::string text = counted(static_cast<long>(constraints.pinned().size()), "vertex") + " pinned";
+  for (std::size_t k = 0; k < carried.size(); ++k)
+    if (carried[k] > 0) text += ", " + std::to_string(carried[k]) + " to " + scene.obstacles[k].name;
+  if (along > 0) text += ", " + std::to_string(along) + " along a path";
+  std::printf("%s\n", one_line(text).c_str());
+}
+
+// The path of the vertices' middle.
+void print_paths(const std::vector<PinEntry>& pins, const Cloth& cloth, const State& start, double duration) {
+  for (const PinEntry& pin : pins) {
+    if (!pin.motion) continue;
+    const std::vector<int> particles = pinned_particles(pin.rule, cloth, start.x);
+    Vec3 x = Vec3::Zero();
+    for (const int i : particles) x += start.x.segment<3>(3 * i);
+    x /= static_cast<double>(particles.size());
+    const std::string text =
+        described(*pin.motion, pin.source, pin.motion->at(0).to_body(x), duration);  // there at time 0
+    std::printf("  %s of %s: %s\n", counted(static_cast<long>(particles.size()), "vertex").c_str(),
+                cloth.name.c_str(), one_line(text).c_str());
+  }
+}
+
+// m, where it was drawn. The box of a level set is that of its grid, which was scaled but not placed.
+Vec3 middle_of(const ObstacleEntry& entry, const Obstacle& obstacle, const Body& body) {
+  if (entry.mesh.empty()) return middle(entry);
+  const Vec3 centre = (body.report.lower + body.report.upper) / 2;
+  if (!std::holds_alternative<LevelSetBody>(obstacle.shape)) return centre;
+  return entry.placement.rotation * centre + entry.placement.translate;
+}
+
+void print_obstacle(const ObstacleEntry& entry, const Obstacle& o, const Body& body, double duration) {
+  std::printf("obstacle %s: %s, friction %s / %s, margin %s mm\n", entry.name.c_str(),
+              std::string(name(o.shape)).c_str(), rounded(o.friction.statics, 3).c_str(),
+              rounded(o.friction.kinetic, 3).c_str(), rounded(1000 * o.margin, 3).c_str());
+  if (body.report.triangles > 0) print_report("  mesh", body.report);
+  if (!body.level_set.empty()) std::printf("  level set: %s\n", body.level_set.c_str());
+  const auto* const deforming = std::get_if<DeformingBody>(&o.shape);
+  if (deforming)
+    std::printf("  %s, %s to %s s\n", counted(deforming->frames->frame_count(), "frame").c_str(),
+                rounded(deforming->frames->first_time(), 4).c_str(),
+                rounded(deforming->frames->last_time(), 4).c_str());
+  if (o.rigid)
+    std::printf("  mass %s kg, moves by what acts on it: at first %s m/s, %s deg/s\n",
+                rounded(o.rigid->mass, 4).c_str(), rounded(o.rigid->velocity.norm(), 4).c_str(),
+                rounded(o.rigid->spin.norm() * 57.29577951308232, 4).c_str());
+  else if (!deforming || o.motion.moves())
+    std::printf("  %s\n",
+                one_line(described(o.motion, entry.source, middle_of(entry, o, body), duration)).c_str());
+}
+
+void check_scene(const std::filesystem::path& file) {
+  const Scene scene = read_scene(file, {});
+  constexpr bool keep_level_sets = false;  // it changes nothing
+  const Simulation simulation = make_simulation(scene, keep_level_sets);
+  const SimulationOptions& s = scene.simulation;
+  std::printf("%s: %s s in steps of %s s, %s, %s, tolerance %s\n", file.c_str(),
+              rounded(s.duration, 4).c_str(), rounded(s.time_step, 4).c_str(), s.integrator.c_str(),
+              s.linear_solver.c_str(), rounded(s.step.tolerance, 3).c_str());
+  for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
+    print_cloth(scene.cloths[k], simulation.cloths[k]);
+    print_seams(simulation.cloths[k], simulation.state.x);
+  }
+  for (std::size_t k = 0; k < scene.softs.size(); ++k)
+    print_soft(scene.softs[k], simulation.cloths[scene.cloths.size() + k], *simulation.system);
+  print_pins(scene, simulation);
+  for (std::size_t k = 0; k < simulation.cloths.size(); ++k)
+    print_paths(scene.pins_of(k), simulation.cloths[k], simulation.state, s.duration);
+  for (std::size_t k = 0; k < scene.obstacles.size(); ++k)
+    print_obstacle(scene.obstacles[k], simulation.constraints->bodies()[k].obstacle(), simulation.bodies[k],
+                   s.duration);
+  for (const std::string& message : simulation.messages) std::printf("%s\n", one_line(message).c_str());
+}
+
+}  // namespace
+
+int check_file(const std::filesystem::path& file) {
+  if (file.extension() == ".toml" && !read_toml(file).members.contains("panel")) {
+    check_scene(file);
+  } else {
+    check_mesh(file);
+  }
+  return 0;
+}
+
+}  // namespace drape

@@ -1,0 +1,154 @@
+#include "app/commands/commands.h"
+
+#include <chrono>
+#include <cstdio>
+
+#include "app/base/atomic_file.h"
+#include "app/base/table.h"
+#include "app/commands/check.h"
+#include "app/run/run.h"
+#include "app/scene/fabrics.h"
+#include "app/scene/level_set_cache.h"
+#include "app/simulation/simulation.h"
+#include "mesh/obj/obj.h"
+
+namespace drape {
+namespace {
+
+RunOptions run_options(const CommonOptions& common, const std::filesystem::path& input) {
+  RunOptions options;
+  options.out = common.out.empty() ? std::filesystem::path("out") / input.stem() : common.out;
+  options.frames = common.frames;
+  options.quiet = common.quiet;
+  return options;
+}
+
+struct Part {
+  std::string name, text;
+};
+
+// A kind of parts: what follows its name in the heading stands in `of_each`.
+struct Kind {
+  std::string name, of_each;
+  std::vector<Part> parts;
+};
+
+template <class Infos>
+std::vector<Part> parts_of(const Infos& infos) {
+  std::vector<Part> parts;
+  for (const auto& info : infos) parts.push_back({std::string(info.name), std::string(info.summary)});
+  return parts;
+}
+
+std::vector<Part> fabric_parts() {
+  std::vector<Part> parts;
+  for (const std::string& name : fabric_names()) {
+    const NamedFabric named = load_fabric(name);
+    std::string text = rounded(1000 * named.fabric.area_density, 4) + " g/m^2, " +
+                       rounded(named.fabric.stretch, 4) + " N/m, " + rounded(1e6 * named.fabric.bend, 4) +
+                       " uN.m; " + named.description;
+    if (!named.assumed.empty()) text += " (assumed: " + listed(named.assumed) + ")";
+    parts.push_back({name, one_line(text)});
+  }
+  return parts;
+}
+
+std::vector<Part> shape_parts() {
+  return {{"plane", "point, normal"},
+          {"sphere", "centre, radius"},
+          {"bowl", "centre, inner radius, thickness, axis: a hemispherical shell open along the axis"},
+          {"box", "centre, size, rotate"},
+          {"capsule", "a, b, radius"},
+          {"mesh", "an OBJ file: a closed body, or a thick surface"},
+          {"level-set", has_openvdb()
+                            ? "a closed OBJ file or a .vdb file, as a grid of distances"
+                            : "a closed OBJ file, as a grid of distances (.vdb files: not in this build)"}};
+}
+
+std::vector<Part> force_parts() {
+  return {{"noh-jung", "edges that pull, diagonals that buckle, damping along both"},
+          {"choi-ko", "of a regular grid of quads: neighbours that pull, next but one that buckle, damping"},
+          {"soft", "springs of a lattice that resist both ways, damping along them"},
+          {"gravity", "mass times gravity"}};
+}
+
+std::vector<Kind> kinds() {
+  return {{"fabrics", " (area density, stretch, bending)", fabric_parts()},
+          {"shapes", "", shape_parts()},
+          {"forces", "", force_parts()},
+          {"integrators", "", parts_of(integrators())},
+          {"contact modes", "", parts_of(contact_modes())},
+          {"linear solvers", "", parts_of(linear_solvers())}};
+}
+
+void print(const Kind& kind, bool markdown) {
+  if (markdown) {
+    std::printf("| name | what%s |\n| --- | --- |\n", kind.of_each.c_str());
+    for (const Part& part : kind.parts) std::printf("| `%s` | %s |\n", part.name.c_str(), part.text.c_str());
+    return;
+  }
+  std::printf("%s%s:\n", kind.name.c_str(), kind.of_each.c_str());
+  for (const Part& part : kind.parts) std::printf("  %-26s %s\n", part.name.c_str(), part.text.c_str());
+}
+
+}  // namespace
+
+int simulate(const std::filesystem::path& scene, const CommonOptions& options) {
+  return run(read_scene(scene, options.settings), run_options(options, scene));
+}
+
+int drop(const DropOptions& what, const CommonOptions& options, const std::string& label) {
+  return run(drop_scene(what, options.settings, label), run_options(options, what.cloth));
+}
+
+int make_level_set(const LevelSetWords& words) {
+  const std::filesystem::path input(words.mesh), output(words.out);
+  if (!is_vdb(output)) throw InputError(words.out + ": expected a name that ends in .vdb");
+  if (!has_openvdb()) LevelSet::read(output);  // says what is missing
+  const auto read = [](const std::string& text, const char* option, const Dimension& dimension,
+                       double otherwise) {
+    if (text.empty()) return otherwise;
+    try {
+      return quantity(parse_toml_value(text, option), dimension, Range::positive);
+    } catch (const InputError& error) {
+      throw InputError(std::string(option) + " " + text + ": " + error.what());
+    }
+  };
+  const double voxel = read(words.voxel, "--voxel", dimension::length, 0);
+  const Placement scaled{.scale = read(words.scale, "--scale", dimension::number, 1)};
+  const TriangleMesh mesh = placed(read_obj(input), scaled, words.mesh);
+  const MeshReport report = examine(mesh);
+  if (report.triangles > 0)
+    check_size(report.lower, report.upper, words.mesh);  // before its areas are judged
+  Names messages;
+  add_messages(report, words.mesh, messages);
+  (void)AtomicFile(output);  // not kept: now, and not when all is computed
+  const auto start = std::chrono::steady_clock::now();
+  const LevelSet made = LevelSet::from_mesh(mesh, {.voxel = voxel}, words.mesh);
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  warn_of_error(made, words.mesh, messages);
+  AtomicFile file(output);
+  file.write(made.vdb());
+  file.keep();
+  print_report(words.mesh, report);
+  for (const std::string& message : messages) std::printf("%s\n", one_line(message).c_str());
+  std::printf("level set: %s\n", described(made).c_str());
+  std::printf("made in %s s, wrote %s (%s MB)\n", rounded(seconds.count(), 2).c_str(), words.out.c_str(),
+              rounded(static_cast<double>(std::filesystem::file_size(output)) / 1e6, 3).c_str());
+  return 0;
+}
+
+int list_parts(const std::string& which, bool markdown) {
+  Names known;
+  bool found = false;
+  for (const Kind& kind : kinds()) {
+    known.push_back(kind.name);
+    if (!which.empty() && which != kind.name) continue;
+    print(kind, markdown);
+    found = true;
+  }
+  if (!found) throw InputError("there are no '" + which + "' to list; " + suggestion(which, known));
+  return 0;
+}
+
+}  // namespace drape

@@ -1,0 +1,160 @@
+#include "app/commands/keys.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "app/pattern/pattern_read.h"
+#include "app/scene/fabrics.h"
+#include "app/scene/scene.h"
+#include "mesh/base/errors.h"
+
+namespace drape {
+namespace {
+
+constexpr std::string_view every_kind = R"(
+[simulation]
+
+[[cloth]]
+mesh   = "sheet.obj"
+rotate = { axis = [0, 1, 0], angle = 0 }
+panels = [{ group = "front" }]
+seams  = [{}]
+pins   = [{ group = "collar", motion = { keyframes = [{ time = 0 }] } }]
+
+[[soft]]
+particles = [2, 2, 2]
+spacing   = 0.1
+
+[[soft]]
+mesh    = "body.obj"
+spacing = 0.1
+
+[[obstacle]]
+shape    = "plane"
+friction = { static = 0.3, kinetic = 0.3 }
+motion   = { spin = { axis = [0, 1, 0], rate = 1 } }
+
+[[obstacle]]
+shape  = "sphere"
+radius = 1
+
+[[obstacle]]
+shape  = "bowl"
+radius = 1
+
+[[obstacle]]
+shape = "box"
+size  = [1, 1, 1]
+
+[[obstacle]]
+shape  = "capsule"
+a      = [0, 0, 0]
+b      = [1, 0, 0]
+radius = 1
+
+[[obstacle]]
+shape  = "mesh"
+mesh   = "body.obj"
+frames = "body_%d.obj"
+
+[[obstacle]]
+shape = "level-set"
+mesh  = "body.obj"
+
+[[obstacle]]
+shape  = "sphere"
+radius = 1
+mass   = 1
+)";
+
+constexpr std::string_view pattern_of_every_kind = R"(
+unit = "1 cm"
+
+[[panel]]
+name    = "front"
+outline = [[0, 0], [9, 0], { bezier = [[9, 5]] }, [9, 9]]
+holes   = [{ outline = [[4, 2], [5, 2], [5, 3]] }]
+line    = [{ points = [[6, 2], [6, 3]] }]
+
+[[seam]]
+curves = ["front.a", "front.b"]
+)";
+
+struct File {
+  const char* name;
+  KeyNotes keys;
+};
+
+std::array<File, 3> files() {
+  return {{{"scene", scene_keys()}, {"fabric", fabric_keys()}, {"pattern", pattern_keys()}}};
+}
+
+std::string title(const KeySection& section, const std::string& file) {
+  return section.table.empty() ? "the " + file + " file" : section.table;
+}
+
+void print_plain(const KeySection& section, const std::string& file) {
+  std::printf("%s%s\n", title(section, file).c_str(),
+              section.kind.empty() ? ":" : (", " + section.kind + ":").c_str());
+  for (const KeyNote& note : section.keys) {
+    std::string value = note.kind;
+    if (!note.unit.empty()) value += " [" + note.unit + "]";
+    value += note.otherwise.empty() ? "; required" : "; default: " + note.otherwise;
+    std::printf("  %-28s %s\n%31s%s\n", note.key.c_str(), value.c_str(), "", note.text.c_str());
+  }
+}
+
+void print_markdown(const KeySection& section) {
+  if (!section.kind.empty()) std::printf("\nFurther, %s:\n\n", section.kind.c_str());
+  std::printf("| key | value | unit | default | meaning |\n| --- | --- | --- | --- | --- |\n");
+  for (const KeyNote& note : section.keys)
+    std::printf("| `%s` | %s | %s | %s | %s |\n", note.key.c_str(), note.kind.c_str(), note.unit.c_str(),
+                note.otherwise.empty() ? "**required**" : note.otherwise.c_str(), note.text.c_str());
+}
+
+}  // namespace
+
+std::string_view scene_of_every_kind() { return every_kind; }
+
+KeyNotes scene_keys() {
+  KeyNotes notes;
+  read_scene(parse_toml(every_kind, "a scene of every kind"), {}, {}, "every kind", &notes);
+  return notes;
+}
+
+KeyNotes fabric_keys() {
+  KeyNotes notes;
+  const Names names = fabric_names();
+  if (!names.empty()) load_fabric(names.front(), &notes);
+  return notes;
+}
+
+KeyNotes pattern_keys() {
+  KeyNotes notes;
+  parse_toml_pattern(pattern_of_every_kind, "a pattern of every kind", &notes);
+  return notes;
+}
+
+int print_keys(const KeysWords& words) {
+  Names known;
+  bool found = false;
+  for (const File& file : files()) {
+    known.push_back(file.name);
+    for (const KeySection& section : file.keys.sections()) {
+      if (!section.table.empty()) known.push_back(section.table);
+      if (!words.table.empty() && words.table != file.name && words.table != section.table) continue;
+      found = true;
+      if (words.markdown)
+        print_markdown(section);
+      else
+        print_plain(section, file.name);
+    }
+  }
+  std::sort(known.begin(), known.end());
+  known.erase(std::unique(known.begin(), known.end()), known.end());
+  if (!found) throw InputError("there is no table '" + words.table + "'; " + suggestion(words.table, known));
+  return 0;
+}
+
+}  // namespace drape

@@ -1,0 +1,18 @@
+// What is said of the triangles that a sewing pattern was cut into.
+#pragma once
+
+#include <string>
+
+#include "app/base/words.h"
+#include "mesh/pattern/pattern.h"
+
+namespace drape {
+
+std::string in_cm(double metres);    // "12.5 cm"
+std::string in_deg(double radians);  // "20.3 deg"
+
+// Notes and warnings about the triangles of a mesh: corners and triangles below the bound [rad]. `where`: the
+// pattern.
+Names remarks(const PatternMesh& made, double min_angle, const std::string& where);
+
+}  // namespace drape

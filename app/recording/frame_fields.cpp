@@ -1,0 +1,77 @@
+#include "app/recording/frame_fields.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "app/recording/touch.h"
+
+namespace drape {
+namespace {
+
+constexpr float no_edge = -std::numeric_limits<float>::infinity();
+
+int main_particle(const Embedding& embedding, int vertex) {
+  const auto shares = embedding.shares(vertex);
+  return std::max_element(shares.begin(), shares.end(),
+                          [](const auto& a, const auto& b) { return a.weight < b.weight; })
+      ->particle;
+}
+
+}  // namespace
+
+std::filesystem::path field_path(const std::filesystem::path& folder, const std::string& name,
+                                 const std::string& field) {
+  return folder / "fields" / (name + "." + field + ".npy");
+}
+
+FrameFields::FrameFields(const std::filesystem::path& folder, const Cloth& cloth)
+    : velocity_(field_path(folder, cloth.name, "velocity"), NpyWriter::Kind::float32,
+                {cloth.mesh.vertex_count(), 3}),
+      strain_(field_path(folder, cloth.name, "strain"), NpyWriter::Kind::float32,
+              {cloth.mesh.vertex_count()}),
+      contact_(field_path(folder, cloth.name, "contact"), NpyWriter::Kind::byte,
+               {cloth.mesh.vertex_count()}) {}
+
+void FrameFields::add(const Cloth& cloth, const State& state, const Constraints& constraints) {
+  particle_strain_.assign(static_cast<std::size_t>(state.particles()), no_edge);
+  for (const RestEdge& e : cloth.edges) {
+    const auto strain =
+        static_cast<float>((state.x.segment<3>(3 * e.j) - state.x.segment<3>(3 * e.i)).norm() / e.L - 1);
+    for (const int i : {e.i, e.j})
+      particle_strain_[static_cast<std::size_t>(i)] =
+          std::max(particle_strain_[static_cast<std::size_t>(i)], strain);
+  }
+  particle_contact_.assign(static_cast<std::size_t>(state.particles()), 0);
+  for (const Contact& contact : constraints.contacts())
+    if (contact.active())
+      particle_contact_[static_cast<std::size_t>(contact.particle)] =
+          static_cast<std::uint8_t>(contact.grip == Grip::stick ? Touch::sticks : Touch::slides);
+
+  const int vertices = cloth.embedding.vertices();
+  std::vector<float> velocity, strain;
+  std::vector<std::uint8_t> contact;
+  for (const Vec3& v : cloth.embedding.positions(state.v))
+    for (const double component : v) velocity.push_back(static_cast<float>(component));
+  for (int vertex = 0; vertex < vertices; ++vertex) {
+    const auto particle = static_cast<std::size_t>(main_particle(cloth.embedding, vertex));
+    strain.push_back(particle_strain_[particle] == no_edge ? 0 : particle_strain_[particle]);
+    contact.push_back(particle_contact_[particle]);
+  }
+  velocity_.add(velocity);
+  strain_.add(strain);
+  contact_.add(contact);
+}
+
+void FrameFields::close() {
+  velocity_.close();
+  strain_.close();
+  contact_.close();
+}
+
+void FrameFields::keep() {
+  velocity_.keep();
+  strain_.keep();
+  contact_.keep();
+}
+
+}  // namespace drape

@@ -1,0 +1,32 @@
+// What the vertices of a cloth carry besides their places, frame by frame, as arrays of NumPy:
+//   fields/NAME.velocity.npy   float32 (frames, n, 3)   m/s
+//   fields/NAME.strain.npy     float32 (frames, n)      l / L - 1 of the most stretched edge at the vertex
+//   fields/NAME.contact.npy    uint8   (frames, n)      0 free, 1 slides, 2 sticks
+// A vertex between several particles has the strain and the contact of the one that carries most of it.
+#pragma once
+
+#include "app/base/npy.h"
+#include "app/simulation/simulation.h"
+
+namespace drape {
+
+class FrameFields {
+ public:
+  static constexpr int arrays = 3;
+
+  FrameFields(const std::filesystem::path& folder, const Cloth& cloth);
+
+  void add(const Cloth& cloth, const State& state, const Constraints& constraints);
+  void close();
+  void keep();
+
+ private:
+  NpyWriter velocity_, strain_, contact_;
+  std::vector<float> particle_strain_;
+  std::vector<std::uint8_t> particle_contact_;
+};
+
+std::filesystem::path field_path(const std::filesystem::path& folder, const std::string& name,
+                                 const std::string& field);
+
+}  // namespace drape

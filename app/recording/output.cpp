@@ -1,0 +1,185 @@
+#include "app/recording/output.h"
+
+#include <charconv>
+#include <system_error>
+#include <utility>
+
+#include "app/base/words.h"
+#include "app/scene/body_frames.h"
+#include "mesh/obj/obj.h"
+
+namespace drape {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> inputs_of(const Scene& scene) {
+  std::vector<fs::path> inputs;
+  const auto add = [&](const fs::path& path) {
+    if (!path.empty()) inputs.push_back(path);
+  };
+  for (const ClothEntry& cloth : scene.cloths) {
+    add(cloth.mesh);
+    for (const PinEntry& pin : cloth.pins) add(pin.source.poses);
+  }
+  for (const SoftEntry& soft : scene.softs) {
+    add(soft.mesh);
+    for (const PinEntry& pin : soft.pins) add(pin.source.poses);
+  }
+  for (const ObstacleEntry& obstacle : scene.obstacles) {
+    add(obstacle.mesh);
+    add(obstacle.source.poses);
+    for (const fs::path& frame : frame_files(obstacle.frames)) add(frame);
+  }
+  return inputs;
+}
+
+bool same(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  return fs::equivalent(a, b, error) && !error;
+}
+
+// frames/NAME_0001.obj and so on: how many there will be is not known yet.
+bool is_frame_of(const std::string& name, const fs::path& frames, const fs::path& input) {
+  const std::string file = input.filename().string();
+  const fs::path folder = input.has_parent_path() ? input.parent_path() : ".";
+  return file.starts_with(name + "_") && file.ends_with(".obj") && same(frames, folder);
+}
+
+}  // namespace
+
+void make_output_folder(const fs::path& folder, const std::vector<std::string>& files) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder))
+    throw InputError(folder.string() + ": cannot be made an output folder: " +
+                     (error ? error.message() : "it is a file") + "; choose another with --out");
+  try {
+    AtomicFile(folder / "try").write("try");  // not kept
+  } catch (const InputError&) {
+    throw InputError(folder.string() + ": the output folder cannot be written; choose another with --out");
+  }
+  for (const std::string& file : files) AtomicFile(folder / file);  // not kept
+}
+
+Output::Output(fs::path folder, const Scene& scene, const Simulation& simulation, Frames frames)
+    : folder_(std::move(folder)),
+      simulation_(simulation),
+      frames_(frames),
+      bodies_(folder_, simulation, frames) {
+  spare_inputs(scene);
+  std::vector<std::string> last = {"run.json"};  // written when the run is over
+  for (const Cloth& cloth : simulation.cloths) last.push_back(cloth.name + ".obj");
+  make_output_folder(folder_, last);
+  if (frames_ == Frames::obj) make_output_folder(folder_ / "frames");
+  if (bodies_.shapes() > 0) make_output_folder(folder_ / "bodies");
+  if (frames_ != Frames::none) make_output_folder(folder_ / "fields");
+  for (const Cloth& cloth : simulation.cloths) {
+    if (frames_ == Frames::pc2) caches_.emplace_back(cloth_path(cloth, ".pc2"), cloth.mesh.vertex_count());
+    if (frames_ != Frames::none) fields_.emplace_back(folder_, cloth);
+  }
+  bodies_.open();
+  steps_.emplace(folder_ / "steps.csv");
+}
+
+fs::path Output::cloth_path(const Cloth& cloth, const char* extension) const {
+  return folder_ / (cloth.name + extension);
+}
+
+// Results are named after cloths and bodies and must not replace what they are made from.
+void Output::spare_inputs(const Scene& scene) const {
+  std::vector<fs::path> results = bodies_.results();
+  results.push_back(folder_ / "steps.csv");
+  Names framed = bodies_.frame_names();
+  for (const Cloth& cloth : simulation_.cloths) {
+    results.push_back(cloth_path(cloth, ".obj"));
+    if (frames_ == Frames::pc2) results.push_back(cloth_path(cloth, ".pc2"));
+    framed.push_back(cloth.name);
+  }
+  for (const fs::path& input : inputs_of(scene)) {
+    bool replaced = false;
+    for (const fs::path& result : results) replaced = replaced || same(result, input);
+    if (frames_ == Frames::obj)
+      for (const std::string& name : framed)
+        replaced = replaced || is_frame_of(name, folder_ / "frames", input);
+    if (replaced)
+      throw InputError(input.string() +
+                       ": the scene is made from it and it would be overwritten; choose another --out");
+  }
+}
+
+void Output::frame(const State& state) {
+  if (frames_ == Frames::none) return;
+  frame_times_.push_back(state.time);
+  bodies_.frame(frame_count(), state.time);
+  for (std::size_t k = 0; k < simulation_.cloths.size(); ++k) {
+    const Cloth& cloth = simulation_.cloths[k];
+    fields_[k].add(cloth, state, *simulation_.constraints);
+    if (frames_ == Frames::pc2) {
+      caches_[k].add(cloth.embedding.positions(state.x));
+      continue;
+    }
+    AtomicFile file(frame_path(folder_, cloth.name, frame_count()));
+    file.write(format_obj(cloth.mesh, cloth.embedding.positions(state.x)));
+    file.keep();
+  }
+}
+
+void Output::finish(const State& state, RunRecord& record) {
+  record.frames = frames_ == Frames::pc2 ? "pc2" : frames_ == Frames::obj ? "obj" : "none";
+  record.frame_times = frame_times_;
+  for (Pc2Writer& cache : caches_) cache.close();
+  for (FrameFields& fields : fields_) fields.close();
+  steps_->close();
+  std::vector<AtomicFile> texts;
+  for (const Cloth& cloth : simulation_.cloths) {
+    texts.emplace_back(cloth_path(cloth, ".obj"))
+        .write(format_obj(cloth.mesh, cloth.embedding.positions(state.x)));
+    texts.back().close();
+  }
+  bodies_.finish(state.time, texts);
+  texts.emplace_back(folder_ / "run.json").write(run_json(record));
+  texts.back().close();
+
+  for (Pc2Writer& cache : caches_) cache.keep();
+  for (FrameFields& fields : fields_) fields.keep();
+  steps_->keep();
+  for (AtomicFile& text : texts) text.keep();
+  if (frames_ == Frames::obj && !record.interrupted && !record.failure) remove_later_frames();
+  list_written();
+}
+
+// Those of an earlier, longer run: they would go on where this one ends.
+void Output::remove_later_frames() const {
+  Names names = bodies_.frame_names();
+  for (const Cloth& cloth : simulation_.cloths) names.push_back(cloth.name);
+  std::vector<fs::path> later;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "frames"))
+    for (const std::string& name : names) {
+      const std::string file = entry.path().filename().string(), start = name + "_";
+      int number = 0;
+      if (!file.starts_with(start) ||
+          std::from_chars(file.data() + start.size(), file.data() + file.size(), number).ec != std::errc())
+        continue;
+      if (number > frame_count() && entry.path() == frame_path(folder_, name, number) &&
+          entry.is_regular_file())
+        later.push_back(entry.path());
+    }
+  for (const fs::path& path : later) fs::remove(path);
+}
+
+void Output::list_written() {
+  const std::string frames = counted(frame_count(), "frame");
+  for (const Cloth& cloth : simulation_.cloths) written_.push_back({cloth_path(cloth, ".obj"), ""});
+  for (const Pc2Writer& cache : caches_) written_.push_back({cache.path(), frames});
+  if (bodies_.shapes() > 0) written_.push_back({folder_ / "bodies", counted(bodies_.shapes(), "shape")});
+  if (!fields_.empty())
+    written_.push_back(
+        {folder_ / "fields", counted(FrameFields::arrays * static_cast<long>(fields_.size()), "array")});
+  if (bodies_.has_poses()) written_.push_back({folder_ / "bodies.csv", frames});
+  written_.push_back({folder_ / "steps.csv", ""});
+  written_.push_back({folder_ / "run.json", ""});
+  if (frames_ == Frames::obj) written_.push_back({folder_ / "frames", frames});
+}
+
+}  // namespace drape

@@ -1,0 +1,73 @@
+// run.json: what was run and how it went.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/base/words.h"
+#include "app/simulation/simulation.h"
+#include "mesh/base/vectors.h"
+
+namespace drape {
+
+struct ClothCounts {
+  std::string name;
+  int particles = 0, triangles = 0, edges = 0, diagonals = 0;
+};
+
+struct SoftCounts {
+  std::string name;
+  int particles = 0, vertices = 0, triangles = 0;  // the latter two of the mesh that it carries
+  LatticeCounts springs = {};
+};
+
+struct BodyRecord {
+  std::string name, file, shape;  // file: below the output folder, empty for a plane
+  bool moves = false;             // is moved, as a motion says
+  bool deforms = false;           // goes from frame to frame
+  Pose place;                     // at the end
+  std::optional<Plane> plane;     // as it was drawn
+
+  struct Reacting {
+    double mass;                        // kg
+    Vec3 position, velocity, momentum;  // m, m/s, N s, of the centre of mass at the end
+  };
+  std::optional<Reacting> reacting;
+};
+
+struct Failure {
+  long step = 0;
+  double time = 0;  // s, of the state that is left
+  std::string what, term, cloth;
+  int vertex = -1;  // of the cloth's file, from 0
+};
+
+struct RunRecord {
+  std::string scene, integrator, contact, linear_solver;
+  std::vector<ClothCounts> cloths;
+  std::vector<SoftCounts> softs;
+  std::vector<BodyRecord> bodies;
+  Names warnings;
+  int threads = 1;
+  double duration = 0, time_step = 0, simulated_seconds = 0, wall_seconds = 0;  // s
+  long steps = 0, steps_cut = 0, steps_not_converged = 0;
+  int substeps_max = 1;
+  long inner_rejected = 0;                                             // inner steps of the whole run
+  std::vector<double> step_ms, linear_iterations, inner_steps;         // of each step
+  double assemble_ms = 0, solve_ms = 0, collide_ms = 0, write_ms = 0;  // of the whole run
+  double max_speed = 0, max_edge_strain = 0;                           // at the end [m/s], [-]
+  double largest_speed = 0, largest_edge_strain = 0;                   // of the whole run
+  double max_penetration = 0;                                          // m, of the whole run
+  bool settled = false, interrupted = false;
+  std::string state_hash;
+  std::string frames;               // how they were written: pc2, obj, none
+  std::vector<double> frame_times;  // s, of the states that the frames are of
+  std::optional<Failure> failure;
+
+  std::string state() const { return failure ? "failed" : settled ? "settled" : "moving"; }
+};
+
+std::string run_json(const RunRecord& record);
+
+}  // namespace drape

@@ -1,0 +1,33 @@
+// One row a step, the columns of interface.md and then some. Numbers in SI units, times of the clock in ms.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "app/base/atomic_file.h"
+#include "solver/integrators/integrator.h"
+
+namespace drape {
+
+struct StepRow {
+  long step = 0;    // from 1
+  double time = 0;  // s, at its end
+  StepReport report;
+  double kinetic_energy = 0, elastic_energy = 0, gravity_energy = 0;  // J
+  double max_speed = 0;                                               // m/s
+  double max_edge_strain = 0;
+};
+
+class StepsWriter {
+ public:
+  explicit StepsWriter(std::filesystem::path path);
+
+  void add(const StepRow& row);
+  void close() { file_.close(); }
+  void keep() { file_.keep(); }
+
+ private:
+  AtomicFile file_;
+};
+
+}  // namespace drape

@@ -1,0 +1,19 @@
+// What every command that runs a scene takes.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "app/base/settings.h"
+#include "app/recording/output.h"
+
+namespace drape {
+
+struct CommonOptions {
+  std::filesystem::path out;  // empty: out/NAME
+  Frames frames = Frames::pc2;
+  bool quiet = false;
+  std::vector<Setting> settings;
+};
+
+}  // namespace drape

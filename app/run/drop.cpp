@@ -1,0 +1,234 @@
+#include "app/run/drop.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "app/base/table.h"
+#include "app/simulation/simulation.h"
+#include "mesh/obj/examine.h"
+#include "mesh/obj/obj.h"
+
+namespace drape {
+namespace {
+
+struct Extent {
+  Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
+  Vec3 centre() const { return 0.5 * (lower + upper); }
+};
+
+// Of the vertices that carry triangles: a stray one must not push the body away.
+Extent extent_of(const TriangleMesh& mesh) {
+  Extent extent;
+  for (const Triangle& t : mesh.triangles)
+    for (int v : t) {
+      extent.lower = extent.lower.cwiseMin(mesh.positions[static_cast<std::size_t>(v)]);
+      extent.upper = extent.upper.cwiseMax(mesh.positions[static_cast<std::size_t>(v)]);
+    }
+  return extent;
+}
+
+Node number(double value) { return Node::of_number(value, "--onto"); }
+Node point(const Vec3& p) { return Node::of_list({number(p[0]), number(p[1]), number(p[2])}, "--onto"); }
+
+// "box:1x0.5x1" -> box and its sizes [m].
+struct ShapeWord {
+  std::string shape;
+  std::vector<double> sizes;
+};
+
+ShapeWord parse_shape(const std::string& word) {
+  const std::size_t colon = word.find(':');
+  ShapeWord parsed{word.substr(0, colon), {}};
+  const Names known = {"sphere", "box", "capsule", "bowl", "plane"};
+  if (std::find(known.begin(), known.end(), parsed.shape) == known.end())
+    throw InputError("--onto " + word +
+                     ": there is no such file and no such shape; shapes are: " + listed(known) +
+                     ", as sphere:0.3, box:1x0.5x1, capsule:0.1x0.6 (radius x length), bowl:0.3x0.02 (radius "
+                     "x thickness)");
+  if (colon == word.npos) return parsed;
+  std::string rest = word.substr(colon + 1);
+  for (std::size_t begin = 0; begin <= rest.size();) {
+    const std::size_t end = std::min(rest.find('x', begin), rest.size());
+    try {
+      parsed.sizes.push_back(parse_quantity(rest.substr(begin, end - begin), dimension::length));
+    } catch (const InputError& error) {
+      throw InputError("--onto " + word + ": " + error.what());
+    }
+    if (!(parsed.sizes.back() > 0)) throw InputError("--onto " + word + ": a size is greater than zero");
+    begin = end + 1;
+  }
+  return parsed;
+}
+
+void want_sizes(const std::string& word, const ShapeWord& shape, std::size_t least, std::size_t most,
+                const char* example) {
+  if (shape.sizes.size() < least || shape.sizes.size() > most)
+    throw InputError("--onto " + word + ": expected " + shape.shape + " with its size in m, such as " +
+                     example);
+}
+
+// The built-in body with its top `gap` under `top`, the middle of the cloth's lowest height.  bottom: its
+// lowest height.
+Node built_in(const std::string& word, const Vec3& top, double gap, double& bottom) {
+  const ShapeWord shape = parse_shape(word);
+  Node node = Node::of_table("--onto");
+  auto& keys = node.members;
+  keys["shape"] = Node::of_text(shape.shape, "--onto");
+  const Vec3 peak = top - gap * Vec3::UnitY();
+  const auto down = [&](double depth) { return Vec3(peak - depth * Vec3::UnitY()); };
+  if (shape.shape == "plane") {
+    want_sizes(word, shape, 0, 0, "plane");
+    keys["point"] = point(peak);
+    bottom = peak[1];
+    return node;
+  }
+  want_sizes(word, shape,
+             shape.shape == "box"       ? 3
+             : shape.shape == "capsule" ? 2
+                                        : 1,
+             shape.shape == "box"      ? 3
+             : shape.shape == "sphere" ? 1
+                                       : 2,
+             shape.shape == "box"       ? "box:1x0.5x1"
+             : shape.shape == "capsule" ? "capsule:0.1x0.6"
+                                        : "sphere:0.3");
+  const double radius = shape.sizes[0];
+  if (shape.shape == "box") {
+    keys["centre"] = point(down(shape.sizes[1] / 2));
+    keys["size"] = point({shape.sizes[0], shape.sizes[1], shape.sizes[2]});
+    bottom = peak[1] - shape.sizes[1];
+    return node;
+  }
+  keys["radius"] = number(radius);
+  if (shape.shape == "capsule") {
+    const Vec3 half = 0.5 * shape.sizes[1] * Vec3::UnitX();
+    keys["a"] = point(down(radius) - half);
+    keys["b"] = point(down(radius) + half);
+    bottom = peak[1] - 2 * radius;
+  } else if (shape.shape == "bowl") {
+    const double thickness = shape.sizes.size() > 1 ? shape.sizes[1] : Bowl().thickness;
+    keys["thickness"] = number(thickness);
+    keys["centre"] = point(down(thickness / 2));  // its rim is rounded
+    bottom = peak[1] - 1.5 * thickness - radius;
+  } else {
+    keys["centre"] = point(down(radius));
+    bottom = peak[1] - 2 * radius;
+  }
+  return node;
+}
+
+class DropScene {
+ public:
+  DropScene(const DropOptions& options, const std::vector<Setting>& settings, std::string label)
+      : options_(options), settings_(settings), label_(std::move(label)) {}
+
+  Scene make() {
+    add_simulation();
+    add_cloth();
+    if (!options_.onto.empty() || options_.floor)
+      add_bodies();
+    else if (options_.friction || options_.margin)
+      throw InputError(std::string(options_.friction ? "--friction" : "--margin") +
+                       ": there is nothing to touch; give --onto or --floor, too");
+    return read_scene(root_, settings_, {}, label_);
+  }
+
+ private:
+  void add_simulation() {
+    Node simulation = Node::of_table("drape drop");
+    simulation.members["duration"] = Node::of_text("3 s", "drape drop");
+    // A drape wants no more: a ten-thousandth of the cloth's weight.
+    simulation.members["tolerance"] = number(1e-4);
+    simulation.members["stop_when_settled"] = parse_toml_value("true", "drape drop");
+    root_.members["simulation"] = std::move(simulation);
+  }
+
+  void add_cloth() {
+    Node cloth = Node::of_table("drape drop");
+    cloth.members["mesh"] = Node::of_text(options_.cloth.string(), "drape drop");
+    cloth.members["fabric"] = Node::of_text(options_.fabric, "--fabric");
+    if (options_.scale) cloth.members["scale"] = parse_toml_value(*options_.scale, "--scale");
+    Node pins = Node::of_list({}, "--pin");
+    for (const std::string& group : options_.pinned_groups) {
+      pins.items.push_back(Node::of_table("--pin"));
+      pins.items.back().members["group"] = Node::of_text(group, "--pin");
+    }
+    if (!pins.items.empty()) cloth.members["pins"] = std::move(pins);
+    root_.members["cloth"] = Node::of_list({std::move(cloth)}, "drape drop");
+  }
+
+  // What the cloth looks like after all settings: it decides where a body stands.
+  TriangleMesh cloth_mesh() const {
+    std::vector<Setting> of_cloth;
+    for (const Setting& setting : settings_)
+      if (!setting.path.starts_with("obstacle")) of_cloth.push_back(setting);
+    const Scene scene = read_scene(root_, of_cloth, {}, label_);
+    const ClothEntry& cloth = scene.cloths.front();
+    return placed(read_obj(cloth.mesh), cloth.placement, cloth.mesh.string());
+  }
+
+  void add_bodies() {
+    constexpr double fall = 0.5;  // m, to the floor, when there is no body
+    const TriangleMesh mesh = cloth_mesh();
+    const Extent cloth = extent_of(mesh);
+    // Contact holds vertices; the straight edges between them must clear a curved body, the longer the edges
+    // the farther.
+    double margin = std::max(Obstacle().margin, examine(mesh).median_edge / 5);
+    if (options_.margin) {
+      Node given = Node::of_table("--margin");
+      given.members["margin"] = parse_toml_value(*options_.margin, "--margin");
+      Table(given, "--margin")
+          .read("margin", margin, dimension::length, Range::any, "distance that the cloth keeps");
+    }
+    const Vec3 under(cloth.centre()[0], cloth.lower[1], cloth.centre()[2]);
+    double bottom = under[1] - fall;
+    Node list = Node::of_list({}, "drape drop");
+    if (!options_.onto.empty()) list.items.push_back(body(under, margin, bottom));
+    if (options_.floor) {
+      Node floor = Node::of_table("--floor");
+      floor.members["shape"] = Node::of_text("plane", "--floor");
+      floor.members["name"] = Node::of_text("floor", "--floor");
+      floor.members["point"] = point({0, bottom, 0});
+      list.items.push_back(std::move(floor));
+    }
+    for (Node& obstacle : list.items) {
+      if (options_.friction)
+        obstacle.members["friction"] = parse_toml_value(*options_.friction, "--friction");
+      obstacle.members["margin"] =
+          options_.margin ? parse_toml_value(*options_.margin, "--margin") : number(margin);
+    }
+    root_.members["obstacle"] = std::move(list);
+  }
+
+  Node body(const Vec3& under, double margin, double& bottom) const {
+    const bool looks_like_file = options_.onto.ends_with(".obj") || options_.onto.ends_with(".OBJ");
+    if (!looks_like_file && !std::filesystem::exists(options_.onto)) {
+      return built_in(options_.onto, under, 2 * margin, bottom);
+    }
+    Node mesh = Node::of_table("--onto");
+    mesh.members["shape"] = Node::of_text("mesh", "--onto");
+    mesh.members["mesh"] = Node::of_text(options_.onto, "--onto");
+    if (options_.scale) mesh.members["scale"] = parse_toml_value(*options_.scale, "--scale");
+    if (options_.floor) {
+      Placement placement;
+      if (options_.scale)
+        placement.scale =
+            quantity(parse_toml_value(*options_.scale, "--scale"), dimension::number, Range::positive);
+      bottom = extent_of(placed(read_obj(options_.onto), placement, options_.onto)).lower[1];
+    }
+    return mesh;
+  }
+
+  const DropOptions& options_;
+  const std::vector<Setting>& settings_;
+  std::string label_;
+  Node root_ = Node::of_table("drape drop");
+};
+
+}  // namespace
+
+Scene drop_scene(const DropOptions& options, const std::vector<Setting>& settings, const std::string& label) {
+  return DropScene(options, settings, label).make();
+}
+
+}  // namespace drape

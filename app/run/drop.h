@@ -1,0 +1,26 @@
+// `drape drop`: a scene made from a cloth and a body, without a scene file.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/scene/scene.h"
+
+namespace drape {
+
+struct DropOptions {
+  std::filesystem::path cloth;  // OBJ
+  std::string onto;             // an OBJ file or a built-in shape; empty: none
+  bool floor = false;           // a plane under everything
+  std::string fabric = "cotton-poplin";
+  std::optional<std::string> scale;  // of both meshes
+  std::optional<std::string> friction, margin;
+  std::vector<std::string> pinned_groups;
+};
+
+// Throws InputError.
+Scene drop_scene(const DropOptions& options, const std::vector<Setting>& settings, const std::string& label);
+
+}  // namespace drape

@@ -1,0 +1,32 @@
+// How far a run is, on stderr: a bar with the time left when it is a terminal, a line every tenth when it is
+// not.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "app/recording/steps_csv.h"
+
+namespace drape {
+
+class Progress {
+ public:
+  Progress(double duration, bool quiet);  // s
+  ~Progress();
+
+  void show(const StepRow& row);
+  void say(const std::string& line);  // a message between
+  void clear();                       // takes the bar off the screen
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string status(const StepRow& row) const;
+  void draw_bar(const StepRow& row);
+
+  double duration_;
+  bool quiet_, terminal_, bar_drawn_ = false;
+  int tenths_shown_ = 0;
+  Clock::time_point start_ = Clock::now(), drawn_ = {};
+};
+
+}  // namespace drape

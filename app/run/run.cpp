@@ -1,0 +1,312 @@
+#include "app/run/run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "app/base/interrupt.h"
+#include "app/run/summary.h"
+#include "app/simulation/measure.h"
+#include "mesh/base/errors.h"
+#include "mesh/base/threads.h"
+
+namespace drape {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+int first_not_finite(const State& state) {
+  for (int i = 0; i < state.particles(); ++i)
+    if (!state.x.segment<3>(3 * i).allFinite() || !state.v.segment<3>(3 * i).allFinite()) return i;
+  return -1;
+}
+
+// The force that pulls hardest at a particle: the term to look at when the solve itself names none.
+std::string strongest_term(const System& system, const State& state, int particle) {
+  std::string strongest = "gravity";
+  double largest = system.masses()[static_cast<std::size_t>(particle)] * system.gravity_acceleration().norm();
+  for (const auto& force : system.forces()) {
+    VecX f = VecX::Zero(state.x.size());
+    force->add_force(state.x, state.v, f);
+    const double here = f.segment<3>(3 * particle).norm();
+    if (here <= largest) continue;  // not a number counts as strongest
+    largest = here;
+    strongest = force->name();
+  }
+  return strongest;
+}
+
+// s, until when bodies or pins are moved, or seams close: cloth that rests before may still be set going.
+double last_motion(const Scene& scene, const Simulation& simulation) {
+  const Constraints& constraints = *simulation.constraints;
+  double last = 0;
+  for (const Cloth& cloth : simulation.cloths)
+    for (const Cloth::Stitched& open : cloth.seams) last = std::max(last, open.seam.close);
+  for (std::size_t k = 0; k < scene.cloths.size() + scene.softs.size(); ++k)
+    for (const PinEntry& pin : scene.pins_of(k))
+      if (pin.motion) last = std::max(last, pin.motion->last_time());
+  for (const MovingBody& body : constraints.bodies()) {
+    last = std::max(last, body.obstacle().motion.last_time());
+    const auto* const deforming = std::get_if<DeformingBody>(&body.obstacle().shape);
+    if (deforming && deforming->frames->frame_count() > 1)
+      last = std::max(last, deforming->frames->last_time());
+  }
+  return last;
+}
+
+double step_of(const SimulationOptions& wanted, const std::optional<double>& time_step) {
+  const double h = time_step.value_or(wanted.time_step);
+  if (!(h > 0) || !std::isfinite(h))
+    throw InputError("time step = " + rounded(h, 6) + " s: a time step is greater than zero");
+  return h;
+}
+
+double end_of(const SimulationOptions& wanted, double start, const std::optional<double>& duration) {
+  if (!duration) return std::max(start, wanted.duration);
+  if (!(*duration >= 0) || !std::isfinite(*duration))
+    throw InputError("duration = " + rounded(*duration, 6) + " s: a duration is not negative");
+  return start + *duration;
+}
+
+}  // namespace
+
+Run::Run(Simulation& simulation, const RunOptions& options)
+    : wanted_(simulation.scene->simulation),
+      simulation_(simulation),
+      h_(step_of(wanted_, options.time_step)),
+      start_time_(simulation.state.time),
+      end_time_(end_of(wanted_, start_time_, options.duration)),
+      progress_(end_time_, options.quiet),
+      last_motion_(last_motion(*simulation.scene, simulation)) {
+  if (!options.out.empty()) output_.emplace(options.out, *simulation.scene, simulation, options.frames);
+  plan(!options.duration);
+  describe();
+  write_due_frames();
+}
+
+// How many steps, and which of its frames is the first.
+void Run::plan(bool until_duration) {
+  const double exact = (end_time_ - start_time_) / h_;
+  last_step_ = h_;
+  if (exact > 1e-6) step_count_ = std::max(1L, std::lround(exact));
+  const bool whole = !(std::abs(exact - static_cast<double>(step_count_)) > 1e-6 * std::max(1.0, exact));
+  if (!whole) {  // the last step is shorter
+    step_count_ = static_cast<long>(std::ceil(exact));
+    last_step_ = end_time_ - start_time_ - h_ * static_cast<double>(step_count_ - 1);
+  }
+  const long before = std::lround(start_time_ / h_);
+  if (static_cast<double>(before) * h_ == start_time_) steps_before_ = before;
+  if (whole && steps_before_ > 0 && !until_duration)
+    end_time_ = static_cast<double>(steps_before_ + step_count_) * h_;
+  next_frame_ = std::max(0L, static_cast<long>(std::ceil((start_time_ - 1e-6 * h_) * wanted_.frame_rate)));
+}
+
+void Run::describe() {
+  record_.scene = simulation_.scene->label;
+  record_.integrator = simulation_.integrator->name();
+  record_.contact = name(contact_mode(record_.integrator, wanted_.step.contact));
+  record_.linear_solver = wanted_.linear_solver;
+  record_.threads = threads();
+  record_.duration = end_time_;
+  record_.time_step = h_;
+  record_.warnings = simulation_.messages;
+  for (const Cloth& c : simulation_.cloths)
+    if (c.soft)
+      record_.softs.push_back({c.name, c.end_particle - c.first_particle, c.mesh.vertex_count(),
+                               c.mesh.triangle_count(), *c.soft});
+    else
+      record_.cloths.push_back(
+          {c.name, c.mesh.vertex_count(), c.mesh.triangle_count(), c.report.edges, c.report.diagonals});
+}
+
+// Whole steps from the start, not a sum that drifts by round-off.
+double Run::time_after(long step) const {
+  if (step == step_count_) return end_time_;
+  if (steps_before_ > 0) return static_cast<double>(steps_before_ + step) * h_;
+  return start_time_ + static_cast<double>(step) * h_;
+}
+
+const StepRow& Run::step() {
+  State& state = simulation_.state;
+  before_ = state;
+  row_.step = steps_before_ + next_step_;
+  row_.report = simulation_.advance(at_last_step() ? last_step_ : h_);
+  if (const int bad = first_not_finite(state); bad >= 0) {  // out of the range of numbers
+    if (row_.report.done) row_.report.failure = {"a position or velocity is not a finite number", bad, {}};
+    row_.report.done = false;
+    state = before_;
+  }
+  if (row_.report.done) state.time = time_after(next_step_);
+  row_.time = state.time;
+  row_.kinetic_energy = simulation_.system->kinetic_energy(state.v);
+  row_.elastic_energy = simulation_.system->elastic_energy(state.x);
+  row_.gravity_energy = simulation_.system->gravity_energy(state.x);
+  row_.max_speed = max_speed(state.v);
+  row_.max_edge_strain = largest_strain(simulation_.cloths, state.x);
+  if (!row_.report.done) {
+    note_failure(row_.report.failure);
+    return row_;
+  }
+  record_step(row_);
+  ++next_step_;
+  write_due_frames();
+  progress_.show(row_);
+  watch_settling();
+  return row_;
+}
+
+void Run::watch_settling() {
+  if (!at_rest(row_))
+    settled_since_ = -1;
+  else if (settled_since_ < 0)
+    settled_since_ = row_.time;
+  settled_ = wanted_.stop_when_settled && settled_since_ >= 0 && row_.time - settled_since_ >= settle_time;
+}
+
+// Nothing moves, nor is it going to.
+bool Run::at_rest(const StepRow& row) const { return slow(row.max_speed) && !(row.time < last_motion_); }
+
+// Neither cloth nor body with a mass moves. [m/s]
+bool Run::slow(double cloth_speed) const {
+  if (!(cloth_speed < wanted_.settle_speed)) return false;
+  for (const MovingBody& body : simulation_.constraints->bodies())
+    if (body.reacting() && !(body.reacting()->velocity().norm() < wanted_.settle_speed)) return false;
+  return true;
+}
+
+void Run::tell_once(bool& told, const std::string& line) {
+  if (std::exchange(told, true)) return;
+  progress_.say(line);
+  record_.warnings.push_back(line);
+}
+
+void Run::record_step(const StepRow& row) {
+  const StepReport& report = row.report;
+  const auto write_start = Clock::now();
+  if (output_) output_->step(row);
+  record_.write_ms += 1000 * seconds_since(write_start);
+  record_.steps = next_step_;
+  record_.step_ms.push_back(report.step_ms);
+  record_.linear_iterations.push_back(report.linear_iterations);
+  record_.inner_steps.push_back(report.inner_steps);
+  record_.inner_rejected += report.inner_rejected;
+  record_.assemble_ms += report.assemble_ms;
+  record_.solve_ms += report.solve_ms;
+  record_.collide_ms += report.collide_ms;
+  record_.max_speed = row.max_speed;
+  record_.max_edge_strain = row.max_edge_strain;
+  record_.largest_speed = std::max(record_.largest_speed, row.max_speed);
+  record_.largest_edge_strain = std::max(record_.largest_edge_strain, row.max_edge_strain);
+  record_.max_penetration = std::max(record_.max_penetration, report.penetration);
+  record_.substeps_max = std::max(record_.substeps_max, report.substeps);
+  const std::string at = "warning: step " + std::to_string(row.step) + " (" + rounded(row.time, 4) + " s) ";
+  if (report.substeps > 1) {
+    ++record_.steps_cut;
+    tell_once(told_cut_, at + "failed whole and was taken in " + std::to_string(report.substeps) +
+                             " pieces; further ones are counted in run.json (steps_cut)");
+  }
+  if (!report.converged) {
+    ++record_.steps_not_converged;
+    tell_once(told_not_converged_,
+              at + "had a solve that ended before it reached its tolerance; further ones are "
+                   "counted in run.json (steps_not_converged)");
+  }
+}
+
+void Run::write_frame() {
+  framed_ = true;
+  if (!output_) return;
+  const auto start = Clock::now();
+  output_->frame(simulation_.state);
+  record_.write_ms += 1000 * seconds_since(start);
+}
+
+// Frame k belongs to the time k / rate: the first state at or after it.
+void Run::write_due_frames() {
+  if (!(wanted_.frame_rate > 0)) return;
+  const double soon = simulation_.state.time + 1e-6 * h_;
+  while (static_cast<double>(next_frame_) <= soon * wanted_.frame_rate) {
+    write_frame();
+    ++next_frame_;
+  }
+}
+
+void Run::note_failure(const StepFailure& failure) {
+  Failure noted;
+  noted.step = row_.step;
+  noted.time = simulation_.state.time;
+  noted.what = failure.what;
+  noted.term = failure.force;
+  std::string line = "step " + std::to_string(noted.step) + " (from " + rounded(noted.time, 4) +
+                     " s) failed: " + failure.what;
+  if (failure.particle >= 0 && failure.particle < simulation_.state.particles()) {
+    const Cloth& cloth = simulation_.cloth_of(failure.particle);
+    const Vec3 x = simulation_.state.x.segment<3>(3 * failure.particle);
+    noted.cloth = cloth.name;
+    if (noted.term.empty())
+      noted.term = strongest_term(*simulation_.system, simulation_.state, failure.particle);
+    noted.vertex = cloth.embedding.vertex(failure.particle);
+    const std::string place =
+        noted.vertex < 0 ? "a particle inside " : "vertex " + std::to_string(noted.vertex) + " of ";
+    line += ", worst at " + place + cloth.name + " (at " + rounded(x[0], 4) + ", " + rounded(x[1], 4) + ", " +
+            rounded(x[2], 4) + " m)";
+  }
+  if (!noted.term.empty()) line += "; the term is '" + noted.term + "'";
+  line += "; try a smaller --time-step, a lower stiffness, or look at the mesh there with 'drape check'";
+  progress_.clear();
+  failure_ = one_line(line);
+  record_.failure = noted;
+}
+
+// Those that should have closed by now.
+void Run::tell_of_open_seams() {
+  for (const Cloth& cloth : simulation_.cloths)
+    for (const Cloth::Stitched& open : cloth.seams) {
+      bool told = !open.seam.merge || record_.failure || simulation_.state.time < open.seam.close;
+      tell_once(told, "warning: seam " + one_line(open.seam.name) + " of " + cloth.name +
+                          " has not closed: it is " +
+                          rounded(1000 * open.seam.gap(cloth.embedding, simulation_.state.x), 3) +
+                          " mm open; is a body or a pin between its panels, is it the wrong pair, or the "
+                          "stiffness too low?");
+    }
+}
+
+const RunRecord& Run::finish() {
+  record_.interrupted = !over();
+  if (!(wanted_.frame_rate > 0) || !framed_) write_frame();
+  record_.simulated_seconds = simulation_.state.time;
+  record_.settled = record_.steps > 0 && slow(record_.max_speed);
+  for (double depth : simulation_.constraints->penetration(simulation_.state.x))
+    record_.max_penetration = std::max(record_.max_penetration, depth);
+  tell_of_open_seams();
+  record_.bodies = body_records(simulation_);
+  record_.state_hash = state_hash(simulation_.state);
+  record_.wall_seconds = seconds_since(start_);
+  if (output_) output_->finish(simulation_.state, record_);
+  progress_.clear();
+  return record_;
+}
+
+std::string Run::summary() const { return output_ ? drape::summary(record_, *output_) : std::string(); }
+
+int run(const Scene& scene, const RunOptions& options) {
+  if (scene.simulation.threads > 0) set_threads(scene.simulation.threads);
+  Simulation simulation = make_simulation(scene);
+  if (!options.quiet)
+    for (const std::string& message : simulation.messages)
+      std::fprintf(stderr, "%s\n", one_line(message).c_str());
+  catch_interrupts();
+  Run run(simulation, options);
+  while (!run.over() && !interrupted()) run.step();
+  if (!run.failure().empty()) std::fprintf(stderr, "error: %s\n", run.failure().c_str());
+  const RunRecord& record = run.finish();
+  if (!options.quiet) std::fputs(run.summary().c_str(), stdout);
+  return record.failure ? 1 : record.interrupted ? 130 : 0;
+}
+
+}  // namespace drape

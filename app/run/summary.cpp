@@ -1,0 +1,51 @@
+#include "app/run/summary.h"
+
+#include "app/simulation/measure.h"
+
+namespace drape {
+namespace {
+
+std::string hints(const RunRecord& record) {
+  std::string text;
+  if (record.max_edge_strain > 0.1 && record.softs.empty())
+    text += "hint: an edge is stretched by " + rounded(100 * record.max_edge_strain, 2) +
+            " %, more than woven cloth does: raise stretch, or check the units of the mesh\n";
+  if (record.max_penetration > 1e-4)
+    text +=
+        "hint: a vertex was inside a body by up to " + rounded(1000 * record.max_penetration, 2) + " mm\n";
+  if (record.steps_cut > 0)
+    text += "hint: " + counted(record.steps_cut, "step") + " had to be taken in up to " +
+            std::to_string(record.substeps_max) + " pieces: a smaller time step is steadier\n";
+  if (record.steps_not_converged > 0)
+    text += "hint: " + counted(record.steps_not_converged, "step") +
+            " ended before the solve reached its tolerance\n";
+  if (record.state() == "moving" && !record.interrupted)
+    text += "hint: it still moves: give it a longer duration\n";
+  return text;
+}
+
+}  // namespace
+
+std::string summary(const RunRecord& record, const Output& output) {
+  const Distribution ms = distribution(record.step_ms), iterations = distribution(record.linear_iterations);
+  std::string text = (record.interrupted ? "interrupted after " : "simulated ") +
+                     rounded(record.simulated_seconds, 4) + " s in " + counted(record.steps, "step") + ", " +
+                     rounded(record.wall_seconds, 3) + " s of wall time\n";
+  for (const ClothCounts& c : record.cloths)
+    text += c.name + ": " + counted(c.particles, "particle") + ", " + counted(c.triangles, "triangle") + "\n";
+  for (const SoftCounts& s : record.softs)
+    text += s.name + ": " + counted(s.particles, "particle") + ", " +
+            counted(s.springs.structural + s.springs.shear + s.springs.bend, "spring") + ", " +
+            counted(s.triangles, "triangle") + "\n";
+  text += record.integrator + ", " + record.linear_solver + ", " + counted(record.threads, "thread") + ": " +
+          rounded(ms.median, 3) + " ms a step (95 % below " + rounded(ms.p95, 3) + "), " +
+          rounded(iterations.mean, 3) + " linear iterations a step\n";
+  text += "state: " + record.state() + ", largest speed " + rounded(record.max_speed, 2) +
+          " m/s, largest edge strain " + rounded(100 * record.max_edge_strain, 2) + " %\n";
+  text += hints(record);
+  for (const auto& [path, amount] : output.written())
+    text += "wrote " + path.string() + (amount.empty() ? "" : " (" + amount + ")") + "\n";
+  return text;
+}
+
+}  // namespace drape

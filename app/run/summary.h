@@ -1,0 +1,12 @@
+// What a run tells at its end: how it went, what was written, and what to look at.
+#pragma once
+
+#include <string>
+
+#include "app/recording/output.h"
+
+namespace drape {
+
+std::string summary(const RunRecord& record, const Output& output);
+
+}  // namespace drape

@@ -1,0 +1,20 @@
+// The poses of a body as a CSV file: a header line, then a line for every time.
+//   time, x, y, z       [s], [m]; a name may be followed by its unit: "time [ms]", "x [mm]", "rx [deg]"
+//   qw, qx, qy, qz      optional: the rotation as a unit quaternion, from one line to the next the short way
+//   rx, ry, rz          or as a rotation vector, axis times angle [rad], which counts whole turns
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/base/csv_file.h"
+#include "constraints/motion.h"
+
+namespace drape {
+
+// Throws InputError "poses.csv:12: ...".
+std::vector<Keyframe> read_poses(const std::filesystem::path& path);
+std::vector<Keyframe> poses_of(const std::vector<CsvRow>& rows, const std::string& name);
+
+}  // namespace drape

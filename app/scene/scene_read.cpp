@@ -1,0 +1,274 @@
+#include <algorithm>
+#include <cmath>
+
+#include "app/base/table.h"
+#include "app/scene/fabrics.h"
+#include "app/scene/motion_read.h"
+#include "app/scene/obstacle_read.h"
+#include "app/scene/scene.h"
+#include "app/scene/sewing_read.h"
+#include "app/scene/soft_read.h"
+#include "mesh/base/errors.h"
+#include "mesh/base/threads.h"
+
+namespace drape {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class Infos>
+Names names_of(const Infos& infos) {
+  Names names;
+  for (const auto& info : infos) names.emplace_back(info.name);
+  return names;
+}
+
+void read_step(Table& table, StepOptions& step) {
+  table.read("newton_iterations", step.newton_iterations, 1, "linear solves a step");
+  table.read("newton_tolerance", step.newton_tolerance, dimension::number, Range::positive,
+             "of the nonlinear residual, relative to the weight; without gravity the iterations end at "
+             "round-off");
+  table.read("tolerance", step.tolerance, dimension::number, Range::positive,
+             "relative residual of the linear solve; less than 1");
+  if (!(step.tolerance < 1))
+    table.fail("tolerance", "expected a part of the residual, less than 1, such as 1e-6");
+  table.read(
+      "max_linear_iterations", step.max_linear_iterations, 0,
+      "0: chosen by size, and reaching it is a failure; given: the solve stops there and the step counts "
+      "as not converged");
+  table.read("max_contact_solves", step.max_contact_solves, 1,
+             "how often a step is solved again because a contact changed");
+  table.read("max_halvings", step.max_halvings, 0, "how often a step that fails is halved");
+  table.read(
+      "relative_tolerance", step.relative_tolerance, dimension::number, Range::positive,
+      "of `cvode-` and `arkode-`: the error of an inner step, relative to coordinates and velocities: a "
+      "cloth far from the origin is followed less closely");
+  table.read("absolute_tolerance_position", step.absolute_tolerance_position, dimension::length,
+             Range::positive, "added to it for coordinates");
+  table.read("absolute_tolerance_velocity", step.absolute_tolerance_velocity, dimension::speed,
+             Range::positive, "added to it for velocities");
+  table.read("max_inner_steps", step.max_inner_steps, 1, "of these, in one step; more is a failure");
+}
+
+void read_contact(Table& table, SimulationOptions& options) {
+  std::string word;
+  table.read("contact", word, names_of(contact_modes()),
+             {"constraint: held in the solve; velocity: velocities projected onto the surface, what explicit "
+              "integrators do when nothing is said; restitution: impacts spring back, for these only",
+              "by the integrator"});
+  if (!table.has("contact")) return;
+  for (const ContactModeInfo& info : contact_modes())
+    if (word == info.name) options.step.contact = info.mode;
+  try {
+    contact_mode(options.integrator, options.step.contact);
+  } catch (const InputError& error) {
+    throw InputError(table.find("contact")->where + ": " + error.what());
+  }
+}
+
+SimulationOptions read_simulation(const Table* given) {
+  SimulationOptions options;
+  if (!given) return options;
+  Table table = *given;
+  table.read("duration", options.duration, dimension::time, Range::positive,
+             "what is simulated; the last step is shortened where it is not a multiple of the step");
+  table.read("time_step", options.time_step, dimension::time, Range::positive, "length of a step");
+  table.read(
+      "frame_rate", options.frame_rate, dimension::rate, Range::not_negative,
+      "of the frames that are written: frame k is the first state at or after k / rate; 0: only the last "
+      "state");
+  table.read("gravity", options.gravity, dimension::acceleration, "acts on all that has a mass");
+  table.read_part("integrator", options.integrator, names_of(integrators()), "how time goes on");
+  table.read_part("linear_solver", options.linear_solver, names_of(linear_solvers()),
+                  "what solves the system of a step, NAME or NAME+PRECONDITIONER");
+  read_contact(table, options);
+  read_step(table, options.step);
+  table.read("recovery_speed", options.contact.recovery_speed, dimension::speed, Range::positive,
+             "at which what starts inside a body is brought out");
+  table.read("threads", options.threads, 1,
+             {"how many; the result does not depend on it", "as many as processors"});
+  if (options.threads > most_threads)
+    table.fail("threads", "expected at most " + std::to_string(most_threads));
+  table.read("stop_when_settled", options.stop_when_settled,
+             "end when no cloth and no body with a mass has been faster than settle_speed for 0.2 s, and no "
+             "motion or frame is still to come");
+  table.read("settle_speed", options.settle_speed, dimension::speed, Range::positive,
+             "also decides between \"settled\" and \"moving\" in run.json");
+  table.finish();
+  if (options.frame_rate * options.time_step > 10)
+    table.fail("frame_rate",
+               "is more than ten frames a step of " + rounded(options.time_step, 4) + " s; check the units");
+  if (options.duration / options.time_step > 1e9)
+    table.fail(
+        table.has("time_step") ? "time_step" : "duration",
+        "the run would take " + rounded(options.duration / options.time_step, 3) + " steps; check the units");
+  return options;
+}
+
+// A name becomes a file name.
+std::string read_name(Table& table, const fs::path& mesh) {
+  std::string name = mesh.stem().string();
+  table.read("name", name, {"of the output files; unique", "the mesh's, or \"soft\" of a box of particles"});
+  const bool good =
+      !name.empty() && name.front() != '.' &&
+      std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == '/' || c == '\\'; });
+  if (!good)
+    table.fail("name", "a name is used for files: it may not be empty, begin with a dot or hold a slash");
+  return name;
+}
+
+PinBox read_pin_box(const Table& pin, const Node& box) {
+  if (box.kind != Node::Kind::array || box.items.size() != 2)
+    pin.fail("box", "expected two corners, [[x, y, z], [x, y, z]]");
+  PinBox by_box;
+  try {
+    by_box.lower = vector(box.items[0], dimension::length);
+    by_box.upper = vector(box.items[1], dimension::length);
+  } catch (const InputError& error) {
+    pin.fail("box", error.what());
+  }
+  if ((by_box.lower.array() > by_box.upper.array()).any())
+    pin.fail("box", "the first corner must be the lower one");
+  return by_box;
+}
+
+PinRule read_pin_rule(Table& pin) {
+  PinVertices by_number;
+  PinGroup by_group;
+  pin.read("vertices", by_number.vertices, "numbers of vertices, from 0, in the file's order");
+  const Node* const box =
+      pin.take("box", "[[x, y, z], [x, y, z]], lengths in m",
+               "lower and upper corner: all vertices that are in it after the cloth is placed");
+  pin.read("group", by_group.name, "a group of the mesh: all its vertices");
+  if (pin.has("vertices") + pin.has("box") + pin.has("group") != 1)
+    pin.fail("", "expected one of vertices = [...], box = [[...], [...]], group = \"...\"");
+  if (pin.has("vertices")) return by_number;
+  if (pin.has("group")) return by_group;
+  return read_pin_box(pin, *box);
+}
+
+PinEntry read_pin(Table& pin, const fs::path& folder) {
+  PinEntry entry;
+  entry.where = pin.where();
+  pin.read("follow", entry.follow, "name of an obstacle that the vertices move with");
+  entry.motion = read_motion(pin, folder, Vec3::Zero(), entry.source);
+  entry.rule = read_pin_rule(pin);
+  pin.finish();
+  if (pin.has("follow") && entry.follow.empty()) pin.fail("follow", "expected the name of an obstacle");
+  if (pin.has("follow") && pin.has("motion"))
+    pin.fail("follow", "a pin follows a body or has a motion of its own, not both");
+  return entry;
+}
+
+constexpr const char* pins_about = "vertices that are held, or led";
+
+ClothEntry read_cloth(Table& table, const fs::path& folder) {
+  ClothEntry cloth;
+  cloth.where = table.where();
+  cloth.mesh = read_path(
+      table, folder, "OBJ file, or a sewing pattern (.svg, .toml), which is cut as `drape triangulate` does");
+  cloth.name = read_name(table, cloth.mesh);
+  cloth.placement = read_placement(table);
+  for (const char* key : {"edge", "min_angle"})
+    if (table.has(key) && !is_pattern(cloth.mesh))
+      table.fail(key, "is of a pattern (.svg or .toml) as mesh; an OBJ file has its edges");
+  table.read("edge", cloth.pattern.edge, dimension::length, Range::positive,
+             {"of a pattern: no edge of its mesh is longer", "chosen"});
+  table.read("min_angle", cloth.pattern.min_angle, dimension::angle, Range::not_negative,
+             {"of a pattern: no angle of its mesh is smaller", "28 deg"});
+  std::string rest = is_pattern(cloth.mesh) ? "uv" : "mesh";
+  table.read("rest", rest, Names{"mesh", "uv"},
+             {"the shape it rests in: the mesh as the file has it (scaled), or its texture coordinates",
+              "\"mesh\"; of a pattern \"uv\""});
+  cloth.rest_is_flat = rest == "uv";
+  table.read("uv_scale", cloth.uv_scale, dimension::length, Range::positive,
+             "length of one unit of the texture coordinates, with rest = \"uv\"");
+  if (table.has("uv_scale") && !cloth.rest_is_flat) table.fail("uv_scale", "goes with rest = \"uv\"");
+  cloth.panels = read_panels(table);
+  cloth.seams = read_seams(table);
+  table.read("model", cloth.model, model_names(),
+             "noh-jung: of any mesh; choi-ko: of a regular grid of quads (holes and tubes are welcome)");
+  if (!cloth.seams.empty() && cloth.model != "noh-jung")
+    table.fail("model", "a cloth with seams is no regular grid; expected \"noh-jung\"");
+  table.read_part("fabric", cloth.fabric_name, fabric_names(),
+                  "its values hold where the keys below say nothing");
+  if (!cloth.fabric_name.empty()) cloth.fabric = load_fabric(cloth.fabric_name).fabric;
+  read_fabric(table, cloth.fabric);
+  for (Table& pin : table.tables("pins", pins_about)) cloth.pins.push_back(read_pin(pin, folder));
+  table.finish();
+  return cloth;
+}
+
+SoftEntry read_whole_soft(Table& table, const fs::path& folder) {
+  SoftEntry soft = read_soft(table, folder);
+  soft.name = read_name(table, soft.mesh.empty() ? fs::path("soft") : soft.mesh);
+  for (Table& pin : table.tables("pins", pins_about)) soft.pins.push_back(read_pin(pin, folder));
+  table.finish();
+  return soft;
+}
+
+// Cloths and soft bodies are written side by side.
+void check_names(const Scene& scene) {
+  std::vector<std::pair<std::string, std::string>> named;  // and where
+  const auto add = [&](const std::string& name, const std::string& where, const char* kind) {
+    for (const auto& before : named)
+      if (before.first == name)
+        throw InputError(where + ": two " + kind + " are called '" + name + "'; give one another name");
+    named.emplace_back(name, where);
+  };
+  for (const ClothEntry& cloth : scene.cloths) add(cloth.name, cloth.where, "cloths");
+  for (const SoftEntry& soft : scene.softs)
+    add(soft.name, soft.where, scene.cloths.empty() ? "soft bodies" : "cloths or soft bodies");
+}
+
+// A pin follows an obstacle of the scene, of which there is one.
+void check_follow(const PinEntry& pin, const std::vector<ObstacleEntry>& obstacles) {
+  if (pin.follow.empty()) return;
+  Names names;
+  for (const ObstacleEntry& obstacle : obstacles) names.push_back(obstacle.name);
+  const auto count = std::count(names.begin(), names.end(), pin.follow);
+  if (count == 1) return;
+  const std::string start = pin.where + ": follow = \"" + one_line(pin.follow) + "\": ";
+  if (count == 0)
+    throw InputError(start + "there is no obstacle of that name; " + suggestion(pin.follow, names));
+  throw InputError(start + "there are " + std::to_string(count) +
+                   " obstacles of that name; give each a name of its own");
+}
+
+}  // namespace
+
+bool is_pattern(const fs::path& path) { return path.extension() == ".svg" || path.extension() == ".toml"; }
+
+Names model_names() { return {"noh-jung", "choi-ko"}; }
+
+Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path& folder, std::string label,
+                 KeyNotes* notes) {
+  for (const Setting& setting : settings) apply(setting, root);
+  Table table(root, "the scene", notes);
+  Scene scene;
+  scene.label = std::move(label);
+  const std::vector<Table> simulation = table.tables("simulation", "how long, how exactly, by which methods");
+  std::vector<Table> cloths = table.tables("cloth", "each a cloth"),
+                     softs = table.tables("soft", "each a soft body, a lattice of springs"),
+                     obstacles = table.tables("obstacle", "each a body that the cloth meets");
+  table.finish();  // before anything is missed: it may be there with its name mistyped
+  if (simulation.size() > 1) table.fail("simulation", "there may be only one");
+  scene.simulation = read_simulation(simulation.empty() ? nullptr : simulation.data());
+  if (!table.has("soft")) table.require("cloth");
+  for (Table& cloth : cloths) scene.cloths.push_back(read_cloth(cloth, folder));
+  for (Table& soft : softs) scene.softs.push_back(read_whole_soft(soft, folder));
+  for (Table& obstacle : obstacles) scene.obstacles.push_back(read_obstacle(obstacle, folder));
+  if (scene.cloths.empty() && scene.softs.empty()) table.fail("cloth", "there is no cloth");
+  check_names(scene);
+  for (const ClothEntry& cloth : scene.cloths)
+    for (const PinEntry& pin : cloth.pins) check_follow(pin, scene.obstacles);
+  for (const SoftEntry& soft : scene.softs)
+    for (const PinEntry& pin : soft.pins) check_follow(pin, scene.obstacles);
+  return scene;
+}
+
+Scene read_scene(const fs::path& path, const std::vector<Setting>& settings) {
+  return read_scene(read_toml(path), settings, path.parent_path(), path.string());
+}
+
+}  // namespace drape

@@ -1,0 +1,113 @@
+#include "app/simulation/warnings.h"
+
+#include <cmath>
+
+namespace drape {
+namespace {
+
+std::string body_name(const Obstacle& obstacle, const std::string& name_given) {
+  const std::string kind(name(obstacle.shape));
+  return name_given == kind ? "the " + kind : kind + " " + name_given;
+}
+
+// Which of a cloth's vertices start inside which body, and how deep.
+void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
+  constexpr double negligible = 1e-9;  // m
+  const std::vector<double> depth = simulation.constraints->penetration(simulation.state.x);
+  const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
+  for (const Cloth& cloth : simulation.cloths) {
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      int inside = 0, deepest = -1;
+      double deepest_depth = negligible;
+      for (int i = cloth.first_particle; i < cloth.end_particle; ++i) {
+        const auto particle = static_cast<std::size_t>(i);
+        if (!(depth[particle] > negligible) || simulation.system->masses()[particle] == 0) continue;
+        const double d = -bodies[k].distance(simulation.state.x.segment<3>(3 * i));
+        if (!(d > negligible)) continue;
+        ++inside;
+        if (d > deepest_depth) deepest = i, deepest_depth = d;
+      }
+      if (inside == 0) continue;
+      const std::string all = inside == 1 ? "it" : "they";
+      simulation.messages.push_back(
+          "warning: " + counted(inside, "vertex") + " of " + cloth.name +
+          (inside == 1 ? " starts" : " start") + " inside " +
+          body_name(bodies[k].obstacle(), scene.obstacles[k].name) + ", the deepest (vertex " +
+          std::to_string(cloth.embedding.vertex(deepest)) + ") by " + rounded(1000 * deepest_depth, 3) +
+          " mm; " + all + " will be brought out at " + rounded(scene.simulation.contact.recovery_speed, 3) +
+          " m/s");
+    }
+  }
+}
+
+// Woven and knitted cloth weighs 10 to 1000 g/m^2.
+void warn_if_heavy(const ClothEntry& entry, Names& messages) {
+  constexpr double heaviest = 10;  // kg/m^2
+  if (entry.fabric.area_density <= heaviest) return;
+  messages.push_back("warning: cloth " + entry.name + ": an area density of " +
+                     rounded(entry.fabric.area_density, 3) +
+                     " kg/m^2 is heavier than any cloth: was it meant in g/m^2?");
+}
+
+// Half the least extent of a body: how round it is at best. 0 where it does not matter.
+double roundness(const Obstacle& obstacle, const Body& body) {
+  if (const auto* sphere = std::get_if<Sphere>(&obstacle.shape)) return sphere->radius;
+  if (const auto* capsule = std::get_if<Capsule>(&obstacle.shape)) return capsule->radius;
+  if (std::holds_alternative<MeshBody>(obstacle.shape) ||
+      std::holds_alternative<DeformingBody>(obstacle.shape) ||
+      std::holds_alternative<LevelSetBody>(obstacle.shape))
+    return 0.5 * (body.report.upper - body.report.lower).minCoeff();
+  return 0;
+}
+
+// Contact holds vertices: an edge as long as a body is wide lets it through.
+void warn_if_coarse(const Scene& scene, Simulation& simulation) {
+  const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
+  for (const Cloth& cloth : simulation.cloths) {
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      const double radius = roundness(bodies[k].obstacle(), simulation.bodies[k]);
+      if (radius == 0 || cloth.report.median_edge <= radius) continue;
+      simulation.messages.push_back(
+          "warning: cloth " + cloth.name + " is too coarse for " +
+          body_name(bodies[k].obstacle(), scene.obstacles[k].name) + ": its edges (median " +
+          rounded(cloth.report.median_edge, 2) + " m) are longer than the body's radius (" +
+          rounded(radius, 2) +
+          " m), and contact is found at vertices only: the body may come through; subdivide the mesh");
+    }
+  }
+}
+
+void warn_of_restitution(const Scene& scene, Names& messages) {
+  const SimulationOptions& options = scene.simulation;
+  const ContactMode mode = contact_mode(options.integrator, options.step.contact);
+  if (mode == ContactMode::restitution) return;
+  for (const ObstacleEntry& entry : scene.obstacles)
+    if (entry.obstacle.restitution > 0)
+      messages.push_back("warning: " + body_name(entry.obstacle, entry.name) +
+                         ": restitution has no effect with contact = \"" + std::string(name(mode)) +
+                         "\"; it needs contact = \"restitution\" and an explicit integrator");
+}
+
+void warn_of_time(const SimulationOptions& options, Names& messages) {
+  constexpr double longest = 0.1;  // s: a fall of 5 cm within one step
+  if (options.time_step > longest)
+    messages.push_back("warning: a time step of " + rounded(options.time_step, 3) +
+                       " s is long: motion is lost in it; 10 ms is usual");
+}
+
+}  // namespace
+
+void add_warnings(const Scene& scene, Simulation& simulation) {
+  for (const ClothEntry& cloth : scene.cloths) warn_if_heavy(cloth, simulation.messages);
+  warn_of_vertices_inside(scene, simulation);
+  warn_if_coarse(scene, simulation);
+  warn_of_restitution(scene, simulation.messages);
+  warn_of_time(scene.simulation, simulation.messages);
+  if (simulation.constraints->bodies().empty() && simulation.constraints->pinned().empty() &&
+      !scene.simulation.gravity.isZero(0))
+    simulation.messages.push_back(
+        "warning: nothing holds the cloth up, neither pins nor a body: it will fall for ever; add an "
+        "obstacle (drop: --floor or --onto) or pins");
+}
+
+}  // namespace drape

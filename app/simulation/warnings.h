@@ -1,0 +1,11 @@
+// What looks like a mistake in a scene that can be run all the same.
+#pragma once
+
+#include "app/simulation/simulation.h"
+
+namespace drape {
+
+// Adds "warning: ..." lines to simulation.messages.
+void add_warnings(const Scene& scene, Simulation& simulation);
+
+}  // namespace drape

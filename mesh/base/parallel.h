@@ -1,0 +1,87 @@
+// Loops over fixed chunks. The chunks depend on the size of the problem only, never on the number of threads,
+// and every sum is taken chunk by chunk in order: so 1, 2 or 7 threads give the same bits. Internal to the
+// library (not installed).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "mesh/base/threads.h"
+
+namespace drape {
+
+// Below this many particles a second thread costs more than it brings.
+inline constexpr int serial_below = 3000;
+
+// f(k) for k = 0 .. count-1, in any order; f(k) must not write what another f(l) touches.
+template <class F>
+void parallel_for(int count, bool serial, const F& f) {
+  if (serial || count < 2 || threads() == 1) {
+    for (int k = 0; k < count; ++k) f(k);
+    return;
+  }
+  run_in_parallel(
+      count, [](const void* context, int k) { (*static_cast<const F*>(context))(k); }, &f);
+}
+
+// f(k) for k = 0 .. count-1, the even ones in any order, then the odd ones: f(k) may write what belongs to k
+// and to k + 1, and adds up in the same order on any number of threads.
+template <class F>
+void even_then_odd(int count, bool serial, const F& f) {
+  for (int parity = 0; parity < 2; ++parity)
+    parallel_for((count + 1 - parity) / 2, serial, [&](int k) { f(2 * k + parity); });
+}
+
+inline constexpr int chunk_size = 512;
+inline int chunk_count(int n) { return (n + chunk_size - 1) / chunk_size; }
+
+// f(begin, end) over [0, n) in chunks.
+template <class F>
+void for_chunks(int n, const F& f) {
+  parallel_for(chunk_count(n), n < serial_below,
+               [&](int k) { f(k * chunk_size, std::min(n, (k + 1) * chunk_size)); });
+}
+
+// Sum of f(begin, end), a number or several that know +=, over the chunks of [0, n): groups of up to
+// `max_partials` chunks are summed in parallel, then in order.
+template <class F>
+auto sum_chunks(int n, const F& f) {
+  using Sum = decltype(f(0, 0));
+  constexpr int max_partials = 1024;
+  std::array<Sum, max_partials> partial;
+  Sum total{};
+  const int chunks = chunk_count(n);
+  for (int base = 0; base < chunks; base += max_partials) {
+    const int here = std::min(max_partials, chunks - base);
+    parallel_for(here, n < serial_below, [&](int k) {
+      const int begin = (base + k) * chunk_size;
+      partial[static_cast<std::size_t>(k)] = f(begin, std::min(n, begin + chunk_size));
+    });
+    for (int k = 0; k < here; ++k) total += partial[static_cast<std::size_t>(k)];
+  }
+  return total;
+}
+
+// a . b of n numbers in a fixed order: eight running sums, then those in order. (Eigen's own reductions
+// depend on where in memory a vector happens to begin.)
+inline double dot_in_order(const double* a, const double* b, std::ptrdiff_t n) {
+  std::array<double, 8> sum = {};
+  std::ptrdiff_t i = 0;
+  for (; i + 8 <= n; i += 8)
+    for (std::ptrdiff_t k = 0; k < 8; ++k) sum[static_cast<std::size_t>(k)] += a[i + k] * b[i + k];
+  for (; i < n; ++i) sum[0] += a[i] * b[i];
+  return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+}
+
+// a . b of vectors with three numbers a particle.
+template <class Vector>
+double dot(const Vector& a, const Vector& b) {
+  return sum_chunks(static_cast<int>(a.size() / 3), [&](int begin, int end) {
+    return dot_in_order(a.data() + 3 * static_cast<std::ptrdiff_t>(begin),
+                        b.data() + 3 * static_cast<std::ptrdiff_t>(begin),
+                        3 * static_cast<std::ptrdiff_t>(end - begin));
+  });
+}
+
+}  // namespace drape

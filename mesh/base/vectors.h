@@ -1,0 +1,12 @@
+// The vectors of the whole project, in double precision.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace drape {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+using VecX = Eigen::VectorXd;
+
+}  // namespace drape

@@ -1,0 +1,93 @@
+#include "mesh/distance/moving_boxes.h"
+
+#include <utility>
+
+namespace drape {
+MovingBoxes::MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places) {
+  std::vector<std::pair<Vec3, int>> middles;
+  middles.reserve(faces.size());
+  for (const Face& f : faces)
+    middles.emplace_back((places[f.v[0]] + places[f.v[1]] + places[f.v[2]]) / 3,
+                         static_cast<int>(middles.size()));
+  grow(middles, 0, static_cast<int>(middles.size()));
+  for (const auto& [middle, face] : middles) order_.push_back(face);
+}
+
+// A node over middles[begin, end), cut in halves across the longest side and each half again. Halves of equal
+// size keep the tree less than log_4 of the number of faces + 1 deep.
+int MovingBoxes::grow(std::vector<std::pair<Vec3, int>>& middles, int begin, int end) {
+  const auto halve = [&](int from, int to) {
+    if (to - from < 2) return to;
+    Vec3 lo = middles[from].first, hi = lo;
+    for (int i = from; i < to; ++i) lo = lo.cwiseMin(middles[i].first), hi = hi.cwiseMax(middles[i].first);
+    int axis;
+    (hi - lo).maxCoeff(&axis);
+    const int half = from + (to - from) / 2;
+    std::nth_element(middles.begin() + from, middles.begin() + half, middles.begin() + to,
+                     [axis](const auto& p, const auto& q) {
+                       return std::pair(p.first[axis], p.second) < std::pair(q.first[axis], q.second);
+                     });
+    return half;
+  };
+  const int node = static_cast<int>(nodes_.size());
+  nodes_.emplace_back();
+  const int half = halve(begin, end);
+  const int cuts[] = {begin, halve(begin, half), half, halve(half, end), end};
+  for (int k = 0; k < 4; ++k) {
+    const int count = cuts[k + 1] - cuts[k];
+    const bool leaf = count <= most_faces;
+    const int first = leaf ? cuts[k] : grow(middles, cuts[k], cuts[k + 1]);
+    nodes_[node].first[k] = first;
+    nodes_[node].count[k] = leaf ? count : -1;
+  }
+  return node;
+}
+
+void MovingBoxes::fit_leaf(Node& node, int child, const std::vector<Face>& faces,
+                           const std::vector<Vec3>& start, const std::vector<Vec3>& end) const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (int s = 0; s < 2; ++s) {
+    const std::vector<Vec3>& places = s == 0 ? start : end;
+    Vec3 lo = Vec3::Constant(infinity), hi = -lo;
+    for (int i = node.first[child]; i < node.first[child] + node.count[child]; ++i)
+      for (int v : faces[order_[i]].v) lo = lo.cwiseMin(places[v]), hi = hi.cwiseMax(places[v]);
+    for (int k = 0; k < 3; ++k) {
+      node.lower[s][k][child] = static_cast<float>(lo[k] - origin_[k]);
+      node.upper[s][k][child] = static_cast<float>(hi[k] - origin_[k]);
+    }
+  }
+}
+
+void MovingBoxes::fit_node(Node& node, int child) const {
+  const Node& below = nodes_[node.first[child]];
+  for (int s = 0; s < 2; ++s)
+    for (int k = 0; k < 3; ++k) {
+      bool first = true;
+      for (int i = 0; i < 4; ++i) {
+        if (below.count[i] == 0) continue;
+        float &lo = node.lower[s][k][child], &hi = node.upper[s][k][child];
+        lo = first ? below.lower[s][k][i] : std::min(lo, below.lower[s][k][i]);
+        hi = first ? below.upper[s][k][i] : std::max(hi, below.upper[s][k][i]);
+        first = false;
+      }
+    }
+}
+
+void MovingBoxes::refit(const std::vector<Face>& faces, const std::vector<Vec3>& start,
+                        const std::vector<Vec3>& end) {
+  Vec3 lo = start[faces[0].v[0]], hi = lo;
+  for (const Face& f : faces)
+    for (int v : f.v) {
+      lo = lo.cwiseMin(start[v]).cwiseMin(end[v]);
+      hi = hi.cwiseMax(start[v]).cwiseMax(end[v]);
+    }
+  origin_ = 0.5 * (lo + hi);
+  slack_ = static_cast<float>(1e-6 * (hi - lo).norm()) + std::numeric_limits<float>::min();
+  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node)
+    for (int child = 0; child < 4; ++child) {
+      if (node->count[child] > 0) fit_leaf(*node, child, faces, start, end);
+      if (node->count[child] < 0) fit_node(*node, child);
+    }
+}
+
+}  // namespace drape

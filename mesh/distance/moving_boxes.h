@@ -1,0 +1,128 @@
+// A tree of boxes about triangles whose corners go straight from one place to another while s goes from 0
+// to 1.
+//   lower(s) = (1 - s) lower(0) + s lower(1),  and so the upper one: no corner leaves its box on the way
+// Four boxes a node; halved at the median where it is made, refitted to the places of every step afterwards.
+// Boxes are floats about the middle of the surface. What rounding can do is less than `slack`, by which a
+// search looks farther: no triangle that counts is left out, and which others are shown decides nothing.
+// Internal to the library (not installed).
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "mesh/distance/surface_faces.h"
+
+namespace drape {
+
+class MovingBoxes {
+ public:
+  // Groups the faces by where they are at these places.
+  MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places);
+
+  // Fits the boxes to a step. Allocates nothing.
+  void refit(const std::vector<Face>& faces, const std::vector<Vec3>& start, const std::vector<Vec3>& end);
+
+  // ask(face) -> the squared distance [m^2] that is still of interest, for every face whose box at s comes as
+  // near to x as the last answer; the nearer boxes first. Asks nothing when x is not finite.
+  template <class Ask>
+  void near(const Vec3& x, double s, const Ask& ask) const;
+
+  // ask(face) -> the s that is still of interest, for every face whose box the straight way from x0 (at s =
+  // 0) to x1 (at s = 1) is in, or beside by `beside` [m], at some s in [from, the last answer].
+  template <class Ask>
+  void along(const Vec3& x0, const Vec3& x1, double from, const Ask& ask, double beside = 0) const;
+
+ private:
+  using Four = Eigen::Array<float, 4, 1>;
+  struct Node {
+    std::array<std::array<Four, 3>, 2> lower{}, upper{};  // at s = 0 and at s = 1; x, y and z
+    std::array<int, 4> first{}, count{};                  // of the faces in order_; count -1: a node
+  };
+  struct Waiting {
+    int first, count;
+    float squared;
+  };
+  static constexpr int most_faces = 4;  // of a leaf
+  static constexpr int deepest = 64;    // entries of a search's stack: three a level
+
+  int grow(std::vector<std::pair<Vec3, int>>& middles, int begin, int end);
+  void fit_leaf(Node& node, int child, const std::vector<Face>& faces, const std::vector<Vec3>& start,
+                const std::vector<Vec3>& end) const;
+  void fit_node(Node& node, int child) const;
+
+  std::vector<Node> nodes_;  // those above before those below
+  std::vector<int> order_;   // of the faces
+  Vec3 origin_ = Vec3::Zero();
+  float slack_ = 0;  // m
+};
+
+template <class Ask>
+void MovingBoxes::near(const Vec3& x, double s, const Ask& ask) const {
+  const Eigen::Array3f place = (x - origin_).cast<float>().array();
+  const auto time = static_cast<float>(s);
+  float limit = std::numeric_limits<float>::infinity();  // farther than this is of no interest
+  std::array<Waiting, deepest> stack;
+  int waiting = 0;
+  stack[waiting++] = {0, -1, 0};
+  while (waiting > 0) {
+    const Waiting at = stack[--waiting];
+    if (at.squared > limit) continue;
+    for (int k = 0; k < at.count; ++k) {
+      const auto reach = static_cast<float>(std::sqrt(ask(order_[at.first + k])) * (1 + 1e-5)) + slack_;
+      limit = std::min(limit, reach * reach);
+    }
+    if (at.count >= 0) continue;
+    const Node& node = nodes_[at.first];
+    Four squared = Four::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const Four lower = node.lower[0][k] + time * (node.lower[1][k] - node.lower[0][k]);
+      const Four upper = node.upper[0][k] + time * (node.upper[1][k] - node.upper[0][k]);
+      const Four below = lower - place[k], above = place[k] - upper;
+      const Four beside = below.max(above).max(0.0f);
+      squared += beside * beside;
+    }
+    const int from = waiting;
+    for (int k = 0; k < 4; ++k) {
+      if (node.count[k] == 0 || !(squared[k] <= limit)) continue;
+      int i = waiting++;
+      for (; i > from && stack[i - 1].squared < squared[k]; --i) stack[i] = stack[i - 1];
+      stack[i] = {node.first[k], node.count[k], squared[k]};
+    }
+  }
+}
+
+template <class Ask>
+void MovingBoxes::along(const Vec3& x0, const Vec3& x1, double from, const Ask& ask, double beside) const {
+  const Vec3 place = x0 - origin_, target = x1 - origin_;
+  const double slack = slack_ + beside;
+  double until = 1;
+  std::array<Waiting, deepest> stack;
+  int waiting = 0;
+  stack[waiting++] = {0, -1, 0};
+  while (waiting > 0) {
+    const Waiting at = stack[--waiting];
+    for (int k = 0; k < at.count; ++k) until = std::min(until, ask(order_[at.first + k]));
+    if (at.count >= 0) continue;
+    const Node& node = nodes_[at.first];
+    for (int child = 0; child < 4; ++child) {
+      double enter = from, leave = node.count[child] == 0 ? -1 : until;
+      // Keeps the s where what goes from the one to the other >= 0.
+      const auto keep = [&](double at_0, double at_1) {
+        if (at_0 < 0 && at_1 < 0) leave = -1;
+        if (at_0 < 0 && at_1 >= 0) enter = std::max(enter, at_0 / (at_0 - at_1));
+        if (at_0 >= 0 && at_1 < 0) leave = std::min(leave, at_0 / (at_0 - at_1));
+      };
+      for (int k = 0; k < 3; ++k) {
+        keep(place[k] - node.lower[0][k][child] + slack, target[k] - node.lower[1][k][child] + slack);
+        keep(node.upper[0][k][child] - place[k] + slack, node.upper[1][k][child] - target[k] + slack);
+      }
+      if (enter <= leave) stack[waiting++] = {node.first[child], node.count[child], 0};
+    }
+  }
+}
+
+}  // namespace drape

@@ -1,0 +1,341 @@
+// Signed distance to a triangle surface. A tree finds the triangles worth asking; the closest point of
+// each is ours, in double precision; the feature (vertex, edge or face) that holds it tells the side.
+//   phi(x) = s |x - c|,  s = sign((x - c) . n_c),  n_c the angle-weighted pseudo-normal of the feature at c
+//                        [Baerentzen & Aanaes 2005]
+// What stands is found by embree's tree and has its normals ready. What moves is found by our boxes, and its
+// normals are made at the s that is asked for: those of the ends, interpolated, could tell the wrong side.
+#include "mesh/distance/surface_distance.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mesh/base/errors.h"
+#include "mesh/distance/closest_on_triangle.h"
+#include "mesh/distance/crossing.h"
+#include "mesh/distance/moving_boxes.h"
+#include "mesh/distance/surface_faces.h"
+#include "mesh/distance/surface_pose.h"
+#include "mesh/distance/triangle_tree.h"
+
+namespace drape {
+namespace {
+
+constexpr double touching = 1e-12;  // m: nearer than this the point is on the surface
+constexpr double blurred = 1e-9;    // of the surface's size: nearer than this x - c is mostly rounding
+constexpr double grazing = 1e-9;    // the sine of an angle at which a way goes along the surface
+
+struct Candidate {
+  double squared = std::numeric_limits<double>::infinity();
+  int face = -1;
+  int feature = on_face;
+  Vec3 point = Vec3::Zero();
+
+  // Of several equally near the first face is taken.
+  bool offer(int f, const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const auto [nearest, where] = closest_on_triangle(x, a, b, c);
+    const double there = (x - nearest).squaredNorm();
+    if (!(there < squared || (there == squared && f < face))) return false;
+    *this = {there, f, where, nearest};
+    return true;
+  }
+  template <class Places>
+  Vec3 weights(const SurfacePose<Places>& pose) const {
+    return weights_on_triangle(point, feature, pose.corner(face, 0), pose.corner(face, 1),
+                               pose.corner(face, 2));
+  }
+};
+
+// Along a triangle's first side, across it within the triangle, and along its normal.
+Mat3 frame(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 side = b - a, normal = side.cross(c - a);
+  const Vec3 along = side.norm() > 0 ? Vec3(side.normalized()) : Vec3(Vec3::UnitX());
+  const Vec3 out = normal.norm() > 0 ? Vec3(normal.normalized()) : Vec3(along.unitOrthogonal());
+  Mat3 axes;
+  axes << along, out.cross(along), out;
+  return axes;
+}
+
+}  // namespace
+
+struct SurfaceDistance::Tree {
+  explicit Tree(const TriangleMesh& surface);
+
+  TriangleMesh mesh;
+  SurfaceFaces surface;
+  std::vector<Vec3> vertex_normals;  // where it stands
+  Vec3 centre = Vec3::Zero();
+  double size = 0;  // m, diagonal of the box
+  std::optional<TriangleTree> standing;
+
+  // The step. Made by the first move.
+  bool moving = false;
+  std::vector<Vec3> start, end;
+  SurfaceMotion motion;
+  std::optional<MovingBoxes> boxes;
+  std::vector<int> corner_start, corners;  // 3 face + k of the corners at each vertex, ascending
+  std::vector<int> carriers;               // vertices with a triangle, ascending
+
+  void measure();
+  void grow();
+  void make_ready();
+  void begin_step();
+  Candidate find(const Vec3& x, const SurfacePose<Standing>& pose) const;
+  Candidate find(const Vec3& x, const SurfacePose<Moving>& pose) const;
+  Vec3 vertex_normal(int v, const SurfacePose<Standing>&) const { return vertex_normals[v]; }
+  Vec3 vertex_normal(int v, const SurfacePose<Moving>& pose) const;
+  template <class Places>
+  Vec3 pseudo_normal(const Candidate& c, const SurfacePose<Places>& pose) const;
+  template <class Places>
+  SurfacePoint answer(const Vec3& x, const Candidate& c, const SurfacePose<Places>& pose) const;
+  Vec3 displacement(int face, const Vec3& weights) const;
+
+  // f(pose) in the configuration at s.
+  template <class F>
+  auto in_pose(double s, const F& f) const {
+    return moving ? f(SurfacePose<Moving>(surface, {start, end, s}))
+                  : f(SurfacePose<Standing>(surface, {mesh.positions}));
+  }
+};
+
+SurfaceDistance::Tree::Tree(const TriangleMesh& given) : mesh(given), surface(surface_faces(given)) {
+  measure();
+  grow();
+  vertex_normals.assign(mesh.positions.size(), Vec3::Zero());
+  const SurfacePose<Standing> pose(surface, {mesh.positions});
+  for (int f = 0; f < static_cast<int>(surface.faces.size()); ++f)
+    for (int k = 0; k < 3; ++k) vertex_normals[surface.faces[f].v[k]] += pose.angle_weighted(f, k);
+}
+
+void SurfaceDistance::Tree::measure() {
+  Vec3 lo = mesh.positions[surface.faces[0].v[0]], hi = lo;
+  for (int f = 0; f < surface.with_area; ++f)
+    for (int v : surface.faces[f].v) lo = lo.cwiseMin(mesh.positions[v]), hi = hi.cwiseMax(mesh.positions[v]);
+  centre = 0.5 * (lo + hi);
+  size = (hi - lo).norm();
+}
+
+void SurfaceDistance::Tree::grow() {
+  std::vector<Triangle> triangles;
+  triangles.reserve(static_cast<std::size_t>(surface.with_area));
+  for (int f = 0; f < surface.with_area; ++f) triangles.push_back(surface.faces[f].v);
+  standing.emplace(mesh.positions, triangles, centre);
+}
+
+// What moving takes: the boxes, and the corners at each vertex.
+void SurfaceDistance::Tree::make_ready() {
+  boxes.emplace(surface.faces, mesh.positions);
+  corner_start.assign(mesh.positions.size() + 1, 0);
+  for (const Face& f : surface.faces)
+    for (int v : f.v) ++corner_start[v + 1];
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    if (corner_start[v + 1] > 0) carriers.push_back(v);
+    corner_start[v + 1] += corner_start[v];
+  }
+  corners.resize(3 * surface.faces.size());
+  std::vector<int> at = corner_start;
+  for (int f = 0; f < static_cast<int>(surface.faces.size()); ++f)
+    for (int k = 0; k < 3; ++k) corners[at[surface.faces[f].v[k]]++] = 3 * f + k;
+}
+
+void SurfaceDistance::Tree::begin_step() {
+  moving = start != mesh.positions || end != mesh.positions;
+  motion = {};
+  if (!boxes) make_ready();
+  boxes->refit(surface.faces, start, end);
+  if (!moving) return;
+  for (int v : carriers) motion.mean += end[v] - start[v];
+  motion.mean /= static_cast<double>(carriers.size());
+  for (int v : carriers) {
+    motion.largest = std::max(motion.largest, (end[v] - start[v]).norm());
+    motion.about_mean = std::max(motion.about_mean, (end[v] - start[v] - motion.mean).norm());
+  }
+}
+
+// The radius stays a little longer than the best distance: by more than embree's rounding to float, so that
+// no nearer triangle and no tie is passed over.
+Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Standing>&) const {
+  Candidate best;
+  const std::vector<Vec3>& p = mesh.positions;
+  auto offer = [&](int f, float radius) {
+    const Triangle& t = surface.faces[f].v;
+    if (!best.offer(f, x, p[t[0]], p[t[1]], p[t[2]])) return radius;
+    return static_cast<float>(std::sqrt(best.squared) * (1 + 1e-5) + 1e-6 * size);
+  };
+  standing->near(x, offer);
+  return best;
+}
+
+// Faces that have no area at s are left to their neighbours, unless nothing else is there.
+Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Moving>& pose) const {
+  Candidate best;
+  for (bool flat_ones : {false, true}) {
+    boxes->near(x, pose.places().s, [&](int f) {
+      Candidate better = best;
+      if (better.offer(f, x, pose.corner(f, 0), pose.corner(f, 1), pose.corner(f, 2)) &&
+          (flat_ones || !pose.flat(f)))
+        best = better;
+      return best.squared;
+    });
+    if (best.face >= 0) break;
+  }
+  return best;
+}
+
+// Of the faces around a vertex, each with its angle there.
+Vec3 SurfaceDistance::Tree::vertex_normal(int v, const SurfacePose<Moving>& pose) const {
+  Vec3 sum = Vec3::Zero();
+  for (int i = corner_start[v]; i < corner_start[v + 1]; ++i)
+    sum += pose.angle_weighted(corners[i] / 3, corners[i] % 3);
+  return sum;
+}
+
+template <class Places>
+Vec3 SurfaceDistance::Tree::pseudo_normal(const Candidate& c, const SurfacePose<Places>& pose) const {
+  const Vec3 face_normal = pose.plain_normal(c.face);
+  Vec3 n = face_normal;
+  if (c.feature < on_edge) n = vertex_normal(surface.faces[c.face].v[c.feature], pose);
+  if (c.feature >= on_edge && c.feature < on_face) n += pose.normal_beyond(c.face, c.feature - on_edge);
+  const double length = n.norm();
+  return length > 1e-9 ? Vec3(n / length) : face_normal;  // a sheet folded flat on itself has no other
+}
+
+template <class Places>
+SurfacePoint SurfaceDistance::Tree::answer(const Vec3& x, const Candidate& c,
+                                           const SurfacePose<Places>& pose) const {
+  if (c.face < 0) return {std::numeric_limits<double>::quiet_NaN(), Vec3::UnitY()};  // x is not finite
+  const Vec3 offset = x - c.point;
+  const double d = offset.norm();
+  const Vec3 n = pseudo_normal(c, pose);
+  const double side = offset.dot(n) < 0 ? -1 : 1;
+  const bool clear = d >= touching && d >= blurred * size;
+  const bool by_offset =
+      clear && c.feature != on_face;  // a face's own normal has more digits than offset / d
+  const Vec3 away = by_offset ? Vec3(offset / d) : Vec3(side * n);
+  if (surface.closed) return {side * d, side * away};
+  return {d, d < touching ? n : away};
+}
+
+Vec3 SurfaceDistance::Tree::displacement(int face, const Vec3& weights) const {
+  Vec3 sum = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const int v = surface.faces[face].v[k];
+    if (weights[k] != 0) sum += weights[k] * (end[v] - start[v]);
+  }
+  return sum;
+}
+
+SurfaceDistance::SurfaceDistance(const TriangleMesh& mesh) : tree_(std::make_unique<Tree>(mesh)) {}
+SurfaceDistance::~SurfaceDistance() = default;
+
+void SurfaceDistance::move(const std::vector<Vec3>& start, const std::vector<Vec3>& end) {
+  for (const std::vector<Vec3>* places : {&start, &end})
+    if (places->size() != tree_->mesh.positions.size())
+      throw InputError("a body of " + std::to_string(tree_->mesh.vertex_count()) +
+                       " vertices cannot be moved to " + std::to_string(places->size()) + " places");
+  tree_->start = start;
+  tree_->end = end;
+  tree_->begin_step();
+}
+
+void SurfaceDistance::move(const MeshFrames& frames, double t0, double t1) {
+  if (frames.vertex_count() != tree_->mesh.vertex_count())
+    throw InputError("a body of " + std::to_string(tree_->mesh.vertex_count()) +
+                     " vertices cannot be moved by frames of " + std::to_string(frames.vertex_count()));
+  frames.positions_at(t0, tree_->start);
+  frames.positions_at(t1, tree_->end);
+  tree_->begin_step();
+}
+
+const SurfaceMotion& SurfaceDistance::motion() const { return tree_->motion; }
+
+SurfacePoint SurfaceDistance::closest(const Vec3& x, double s) const {
+  return tree_->in_pose(s, [&](const auto& pose) { return tree_->answer(x, tree_->find(x, pose), pose); });
+}
+
+SurfacePoint SurfaceDistance::closest(const Vec3& x, double s, Vec3& displacement) const {
+  return tree_->in_pose(s, [&](const auto& pose) {
+    const Candidate c = tree_->find(x, pose);
+    const bool moves = tree_->moving && c.face >= 0;
+    displacement = moves ? tree_->displacement(c.face, c.weights(pose)) : Vec3(Vec3::Zero());
+    return tree_->answer(x, c, pose);
+  });
+}
+
+std::optional<double> SurfaceDistance::first_crossing(const Vec3& x0, const Vec3& x1, double from) const {
+  const Tree& tree = *tree_;
+  const StraightWay x{x0, x1};
+  const double tolerance = blurred * tree.size;
+  double first = std::numeric_limits<double>::infinity();
+  const auto ask = [&](int f) {
+    const Triangle& t = tree.surface.faces[f].v;
+    std::array<StraightWay, 3> ways;
+    for (int k = 0; k < 3; ++k)
+      ways[k] = tree.moving ? StraightWay{tree.start[t[k]], tree.end[t[k]]}
+                            : StraightWay{tree.mesh.positions[t[k]], tree.mesh.positions[t[k]]};
+    std::array<double, 3> found;
+    const int count = crossings(x, ways, tolerance, found);
+    for (int i = 0; i < count; ++i) {
+      if (found[i] < from || found[i] >= first) continue;
+      const double steep = steepness(x, ways, found[i]);
+      if (tree.surface.closed ? steep < -grazing : std::abs(steep) > grazing) first = found[i];
+    }
+    return first;
+  };
+  if (tree.boxes)
+    tree.boxes->along(x0, x1, from, ask);
+  else  // it has never moved
+    for (int f = 0; f < static_cast<int>(tree.surface.faces.size()); ++f) ask(f);
+  return first <= 1 ? std::optional(first) : std::nullopt;
+}
+
+bool SurfaceDistance::stays_clear(const Vec3& x0, const Vec3& x1, double margin) const {
+  const Tree& tree = *tree_;
+  if (!tree.moving || !x0.allFinite() || !x1.allFinite()) return false;
+  bool clear = true;
+  tree.boxes->along(
+      x0, x1, 0,
+      [&](int f) {
+        const Triangle& t = tree.surface.faces[f].v;
+        double most = 0;
+        for (int v : t) most = std::max(most, (x1 - x0 - (tree.end[v] - tree.start[v])).squaredNorm());
+        const Vec3 nearest =
+            closest_on_triangle(x0, tree.start[t[0]], tree.start[t[1]], tree.start[t[2]]).first;
+        if ((x0 - nearest).norm() - std::sqrt(most) <= margin) clear = false;
+        return clear ? 1.0 : -1.0;
+      },
+      margin);
+  return clear;
+}
+
+SurfaceDistance::Anchor SurfaceDistance::anchor(const Vec3& x, double s) const {
+  return tree_->in_pose(s, [&](const auto& pose) {
+    const Candidate c = tree_->find(x, pose);
+    if (c.face < 0) throw InputError("an anchor must be at a finite place");
+    const Mat3 axes = frame(pose.corner(c.face, 0), pose.corner(c.face, 1), pose.corner(c.face, 2));
+    return Anchor{tree_->surface.faces[c.face].v, c.weights(pose), axes.transpose() * (x - c.point)};
+  });
+}
+
+Vec3 SurfaceDistance::place(const Anchor& anchor, double s) const {
+  const auto at = [&](int v) {
+    return tree_->moving ? StraightWay{tree_->start[v], tree_->end[v]}.at(s) : tree_->mesh.positions[v];
+  };
+  const Vec3 a = at(anchor.triangle[0]), b = at(anchor.triangle[1]), c = at(anchor.triangle[2]);
+  return anchor.weights[0] * a + anchor.weights[1] * b + anchor.weights[2] * c +
+         frame(a, b, c) * anchor.offset;
+}
+
+std::vector<Vec3> SurfaceDistance::vertices(double s) const {
+  std::vector<Vec3> places = tree_->mesh.positions;
+  if (tree_->moving)
+    for (std::size_t i = 0; i < places.size(); ++i) places[i] = (1 - s) * tree_->start[i] + s * tree_->end[i];
+  return places;
+}
+
+bool SurfaceDistance::closed() const { return tree_->surface.closed; }
+bool SurfaceDistance::inside_out() const { return tree_->surface.inside_out; }
+const TriangleMesh& SurfaceDistance::mesh() const { return tree_->mesh; }
+
+}  // namespace drape

@@ -1,0 +1,33 @@
+// The triangles of a surface made ready for signed distances: each once, joined to their neighbours and wound
+// one way.
+// Input that is not clean: triangles with a repeated vertex and second copies of a triangle are dropped;
+// triangles of zero area stay in the topology (they close cracks), after the others. A surface that is open
+// as numbered is tried again with vertices of exactly equal position made one, as uv seams need.
+// Internal to the library (not installed).
+#pragma once
+
+#include <vector>
+
+#include "mesh/triangles/triangle_mesh.h"
+
+namespace drape {
+
+struct Face {
+  Triangle v;
+  Triangle across;  // the face beyond edge v[k] v[k+1]; -1: none, or several
+};
+
+struct SurfaceFaces {
+  std::vector<Face> faces;  // in the mesh's order; from with_area on: those without an area
+  int with_area = 0;
+  bool closed = false;      // every edge has two faces, and the surface two sides
+  bool inside_out = false;  // closed, but a piece was wound with most of its normals inwards
+};
+
+// Throws InputError when no triangle has an area.
+SurfaceFaces surface_faces(const TriangleMesh& mesh);
+
+// Whether a triangle of these corners has an area beyond rounding.
+bool has_area(const Vec3& a, const Vec3& b, const Vec3& c);
+
+}  // namespace drape

@@ -1,0 +1,39 @@
+// Looking a mesh over before it is simulated: counts, size, defects with their places.
+//   refusal   nothing could be simulated: no triangle with an area, a position that is not finite
+//   warning   it will be simulated; the message says how
+//   note      nothing to worry about
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mesh/triangles/triangle_mesh.h"
+
+namespace drape {
+
+enum class Severity { note, warning, refusal };
+
+struct Defect {
+  Severity severity;
+  std::string what;           // one line: what it is, how many, what will be done or what to do
+  std::vector<int> vertices;  // where, from 0 (all of them, ascending); the printed line names the first few
+};
+
+struct MeshReport {
+  int vertices = 0, triangles = 0, faces = 0, edges = 0, diagonals = 0, boundary_loops = 0;
+  int pieces = 0;                                               // that have triangles
+  Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();              // m, of the vertices that carry triangles
+  double area = 0;                                              // m^2
+  double shortest_edge = 0, median_edge = 0, longest_edge = 0;  // m
+  double smallest_angle = 0;                                    // rad
+  bool closed = false;  // every edge has exactly two triangles, wound consistently
+  std::vector<Defect> defects;
+
+  bool refused() const;
+};
+
+MeshReport examine(const TriangleMesh& mesh);
+
+std::string format(const Defect& defect);  // "warning: 3 vertices ... (vertices 4, 9 and 11)"
+
+}  // namespace drape

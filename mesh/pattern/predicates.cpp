@@ -1,0 +1,78 @@
+// The only door to Boost.Multiprecision. See predicates.h.
+#include "mesh/pattern/predicates.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cmath>
+#include <cstdint>
+
+namespace drape {
+namespace {
+
+namespace mp = boost::multiprecision;
+// As long as needed; up to 1024 bits, which is all that a pattern takes, without memory from the heap.
+using Whole = mp::number<mp::cpp_int_backend<1024, 0, mp::signed_magnitude, mp::unchecked>, mp::et_off>;
+
+constexpr double kHalfUlp = 0x1p-53;
+constexpr double kOrientBound = (3 + 16 * kHalfUlp) * kHalfUlp;
+constexpr double kCircleBound = (10 + 96 * kHalfUlp) * kHalfUlp;
+
+int sign(double x) { return (x > 0) - (x < 0); }
+
+// The coordinates as whole multiples of one power of two, the greatest that divides them all.
+template <std::size_t N>
+std::array<Whole, 2 * N> whole(const std::array<const Vec2*, N>& points) {
+  std::array<std::int64_t, 2 * N> digits;
+  std::array<int, 2 * N> exponents;
+  int least = 1 << 20;
+  for (std::size_t i = 0; i < 2 * N; ++i) {
+    const double x = (*points[i / 2])[static_cast<int>(i % 2)];
+    digits[i] = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponents[i]), 53));
+    if (digits[i] != 0) least = std::min(least, exponents[i]);
+  }
+  std::array<Whole, 2 * N> scaled;
+  for (std::size_t i = 0; i < 2 * N; ++i) {
+    scaled[i] = digits[i];
+    if (digits[i] != 0) scaled[i] <<= exponents[i] - least;
+  }
+  return scaled;
+}
+
+int exact_orient2d(const Vec2& a, const Vec2& b, const Vec2& c) {
+  const std::array<Whole, 6> x = whole<3>({&a, &b, &c});
+  const Whole d = (x[2] - x[0]) * (x[5] - x[1]) - (x[3] - x[1]) * (x[4] - x[0]);
+  return d.sign();
+}
+
+int exact_incircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  const std::array<Whole, 8> x = whole<4>({&a, &b, &c, &d});
+  const Whole ax = x[0] - x[6], ay = x[1] - x[7], bx = x[2] - x[6], by = x[3] - x[7], cx = x[4] - x[6],
+              cy = x[5] - x[7];
+  const Whole det = (ax * ax + ay * ay) * (bx * cy - cx * by) + (bx * bx + by * by) * (cx * ay - ax * cy) +
+                    (cx * cx + cy * cy) * (ax * by - bx * ay);
+  return det.sign();
+}
+
+}  // namespace
+
+int orient2d(const Vec2& a, const Vec2& b, const Vec2& c) {
+  const double left = (b.x() - a.x()) * (c.y() - a.y()), right = (b.y() - a.y()) * (c.x() - a.x());
+  const double det = left - right;
+  if (std::abs(det) > kOrientBound * (std::abs(left) + std::abs(right))) return sign(det);
+  return exact_orient2d(a, b, c);
+}
+
+int incircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  const double ax = a.x() - d.x(), ay = a.y() - d.y(), bx = b.x() - d.x(), by = b.y() - d.y(),
+               cx = c.x() - d.x(), cy = c.y() - d.y();
+  const double bxcy = bx * cy, cxby = cx * by, cxay = cx * ay, axcy = ax * cy, axby = ax * by, bxay = bx * ay;
+  const double a2 = ax * ax + ay * ay, b2 = bx * bx + by * by, c2 = cx * cx + cy * cy;
+  const double det = a2 * (bxcy - cxby) + b2 * (cxay - axcy) + c2 * (axby - bxay);
+  const double size = (std::abs(bxcy) + std::abs(cxby)) * a2 + (std::abs(cxay) + std::abs(axcy)) * b2 +
+                      (std::abs(axby) + std::abs(bxay)) * c2;
+  if (std::abs(det) > kCircleBound * size) return sign(det);
+  return exact_incircle(a, b, c, d);
+}
+
+}  // namespace drape

@@ -1,0 +1,16 @@
+// On which side, exactly: signs that rounding cannot change. Internal to the library (not installed).
+//   orient2d(a, b, c)     sign of  | bx-ax by-ay ; cx-ax cy-ay |          > 0: a, b, c counter-clockwise
+//   incircle(a, b, c, d)  sign of  | ax-dx ay-dy (ax-dx)^2+(ay-dy)^2 ; ... |   > 0: d inside the circle of
+//                                                                              a, b, c (counter-clockwise)
+// The sign comes from doubles where a bound on their error allows it [Shewchuk 1997, section 4, the first
+// stage], and from whole numbers of any length where it does not. Coordinates must be finite.
+#pragma once
+
+#include "mesh/pattern/curve.h"
+
+namespace drape {
+
+int orient2d(const Vec2& a, const Vec2& b, const Vec2& c);
+int incircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
+
+}  // namespace drape

@@ -1,0 +1,30 @@
+// Sharp corners of a drawing: where two segments meet at less than 60 degrees inside the panel.
+//   Both sides of such a corner begin with a piece of the same length, its collar, and these are halved
+//   together [Ruppert 1995, section 5.2; Shewchuk 2002]. Internal to the library (not installed).
+#pragma once
+
+#include "mesh/pattern/delaunay.h"
+#include "mesh/pattern/sides.h"
+
+namespace drape {
+
+inline constexpr double kSameFraction = 1e-7;  // fractions of a run that count as one
+
+// Fraction of the run's class for one of the run, and back.
+inline double class_fraction(const Run& run, double f) { return run.turned ? 1 - f : f; }
+double leg_fraction(const Run& run, int leg, bool at_end);  // of a run, at an end of one of its legs
+
+// Fills in the clusters, the legs' sharp ends, and the corners below the bound.
+void find_sharp_corners(const Pattern& pattern, double min_angle, Sides& sides);
+
+// The length of the collar at each cluster [m]: the same at all its legs, and at the same fractions of curves
+// that are sewn.
+std::vector<double> collars(const Sides& sides, double edge);
+
+// The corner (a vertex of the panel) at an end of a leg.
+int corner_of(const Sides& sides, int leg, bool at_end);
+
+// Whether two vertices of a panel are on different legs of a sharp corner, equally far from it.
+bool span_sharp_corner(const Sides& sides, const Delaunay& mesh, int panel, int u, int w);
+
+}  // namespace drape

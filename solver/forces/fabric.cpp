@@ -1,0 +1,48 @@
+#include "solver/forces/fabric.h"
+
+#include <algorithm>
+
+#include "mesh/triangles/topology.h"
+#include "solver/forces/require.h"
+
+namespace drape {
+void check(const Fabric& f) {
+  require(f.area_density > 0, "area_density", f.area_density, "kg/m^2",
+          "an area density is greater than zero");
+  require(f.stretch >= 0, "stretch", f.stretch, "N/m", "a stiffness is not negative");
+  require(f.bend >= 0, "bend", f.bend, "N.m", "a bending rigidity is not negative");
+  if (f.stretch_spring)
+    require(*f.stretch_spring >= 0, "stretch_spring", *f.stretch_spring, "N/m",
+            "a stiffness is not negative");
+  if (f.bend_spring)
+    require(*f.bend_spring >= 0, "bend_spring", *f.bend_spring, "N.m^2", "a stiffness is not negative");
+  if (f.buckling_clamp)
+    require(*f.buckling_clamp >= 0, "buckling_clamp", *f.buckling_clamp, "N/m",
+            "a stiffness is not negative");
+  require(f.damping >= 0, "damping", f.damping, "N.s/m", "a damping coefficient is not negative");
+}
+
+std::vector<double> mass_of_areas(std::vector<double> areas, const TriangleMesh& mesh, double area_density) {
+  std::vector<char> used(areas.size(), 0);
+  for (const Triangle& t : mesh.triangles)
+    for (int i : t) used[static_cast<std::size_t>(i)] = 1;
+  double total = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    total += areas[i];
+    count += used[i];
+  }
+  for (std::size_t i = 0; i < areas.size(); ++i)
+    areas[i] = area_density * (used[i] ? std::max(areas[i], 1e-3 * total / count) : 0.0);
+  return areas;
+}
+
+std::vector<double> lumped_mass(const TriangleMesh& mesh, const TriangleMesh& rest, double area_density) {
+  return mass_of_areas(vertex_areas(mesh, rest), mesh, area_density);
+}
+
+std::vector<double> lumped_mass(const TriangleMesh& mesh, double area_density) {
+  return lumped_mass(mesh, mesh, area_density);
+}
+
+}  // namespace drape

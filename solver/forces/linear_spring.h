@@ -1,0 +1,24 @@
+// Spring that resists both ways, as the lattices of soft bodies have it.                              [SB]
+//   E(l) = k/2 (l - L)^2,   t = k (l - L)
+// k [N/m], L [m]. Under compression the stiffness along the spring stays, that across it, t/l < 0, is dropped
+// (solver/forces/pair_force.h).
+#pragma once
+
+#include "solver/forces/pair_force.h"
+
+namespace drape {
+
+struct LinearSpring {
+  static constexpr const char* name = "spring";
+  struct Rest {
+    double L;  // m
+    double k;  // N/m
+  };
+
+  static double energy(const Rest& r, double l) { return 0.5 * r.k * (l - r.L) * (l - r.L); }
+  static Tension tension(const Rest& r, double l) { return {r.k * (l - r.L), r.k}; }
+  static double chord(const Rest&, double) { return 0; }
+  static double stiffest(const Rest& r, double) { return r.k; }
+};
+
+}  // namespace drape

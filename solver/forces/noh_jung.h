@@ -1,0 +1,34 @@
+// The connections of a triangle mesh.                        [Noh & Jung, section 2; Choi & Ko 2002, eq.
+// 9-13]
+//   every edge      stretch  k_s = Y (A_1 + A_2) / l^2                          [Van Gelder 1998, eq. 4]
+//   every diagonal  bend     k_b = B l L^3 / (6 h_1 h_2 (h_1 + h_2))            a beam of order 2
+//     Y [N/m]: membrane stiffness per width; B [N m]: bending rigidity per width; l [m]: the edge; A [m^2], h
+//     [m]: area and height over it of the triangles beside it; L [m]: rest length of the connection. So the
+//     same fabric on a finer mesh is the same fabric.
+//   or k_s and k_b given, the same for every connection, as in the papers.
+//   The clamp makes it limp below  kappa = sqrt(96 k_b / (c_b L h_1 h_2 (h_1 + h_2)^2)).
+//
+// Rest shape: a mesh of its own, whose triangle k is the cloth's triangle k, corner by corner. It may be cut
+// where the cloth is sewn: there each side of an edge has its own rest length, two springs side by side, and
+// the diagonal across it has the rest length of the two triangles unfolded into a plane.
+// The same where the rest shape is folded onto itself along the edge.
+// Two sides of the same rest length count as one spring. An edge without length and a triangle without area
+// give no bend connection.
+#pragma once
+
+#include "solver/forces/connections.h"
+
+namespace drape {
+
+// Throws InputError (solver/forces/fabric.h) when the fabric is none.
+Connections noh_jung_connections(const TriangleMesh& mesh, const TriangleMesh& rest, const Fabric& fabric);
+
+// Masses of the fabric: lumped, weighted by neighbours if it says so.                                    [kg]
+std::vector<double> masses(const TriangleMesh& mesh, const Fabric& fabric);
+
+// Stretch, bend and damping of a cloth that rests as the mesh is, vertex 0 being the particle
+// `first_particle` of the system.
+std::vector<std::unique_ptr<Force>> noh_jung(const TriangleMesh& mesh, const Fabric& fabric,
+                                             int first_particle = 0);
+
+}  // namespace drape

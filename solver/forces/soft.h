@@ -1,0 +1,41 @@
+// What a soft body is made of: a lattice of particles (mesh/lattice/lattice.h) with springs of three kinds.      [SB]
+//   LinearSpring  structural, shear and bend, each with its own k [N/m], the same for every spring
+//   damping       along every spring, in the same loop (or of all relative motion, PairDamping)
+// or young [Pa] of an isotropic solid with Poisson's number 1/4 (what central springs can be: Cauchy's
+// relation), on cubes of edge a, each spring as strong as the part of the cells round it that is there:
+//   k_structural = 22/35 E a,   k_shear = 6/35 E a,   k_bend = 0
+//   from C_ijkl = 1/V sum k l^2 t_i t_j t_k t_l:  C11 = (k_s + 10/3 k_h) / a,  C12 = C44 = 7/3 k_h / a, and
+//   C11 = 3 C12
+// so that a lattice of any shape has exactly this modulus under an affine strain.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "mesh/lattice/lattice.h"
+#include "solver/forces/force.h"
+
+namespace drape {
+
+struct SoftMaterial {
+  double density = 300;                        // kg/m^3: an eighth of each cell to each of its corners
+  std::optional<double> mass = {};             // kg, of the whole body; replaces density
+  bool equal_masses = false;                   // the mass in equal parts to all particles, as SB
+  std::optional<double> young = 20e3;          // Pa; replaces the three below
+  double structural = 0, shear = 0, bend = 0;  // N/m, of every spring
+  double damping = 0;                          // N s/m, of every spring
+  DampingKind damping_kind = DampingKind::axial;
+};
+
+// Throws InputError naming the field when a value is negative, not finite, or zero where it may not be.
+void check(const SoftMaterial& material);
+
+// volume [m^3]: that of the body, which has all its mass; by default that of the cells.
+std::vector<double> masses(const Lattice& lattice, const SoftMaterial& material,
+                           std::optional<double> volume = {});
+
+// Springs and damping of a body whose particle 0 is `first_particle` of the system.
+std::vector<std::unique_ptr<Force>> soft_body(const Lattice& lattice, const SoftMaterial& material,
+                                              int first_particle = 0);
+
+}  // namespace drape

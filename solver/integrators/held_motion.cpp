@@ -1,0 +1,188 @@
+#include "solver/integrators/held_motion.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "mesh/base/parallel.h"
+#include "mesh/base/stopwatch.h"
+
+namespace drape {
+
+void HeldMotion::begin(const State& state, double h, StepReport& report) {
+  const Stopwatch watch(report.collide_ms);
+  if (contact_ == ContactMode::constraint)
+    constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h, false);
+  else
+    constraints_.begin_response(state.x, state.v, system_.masses(), state.time, h);
+  constraints_.filter(state.v, held_);
+  pull_.setZero(state.x.size());
+  pulled_.setZero(state.x.size());
+  v_start_ = state.v;
+  for (const FilterEntry& e : held_.entries()) v_start_.segment<3>(3 * e.particle) += e.z;
+}
+
+void HeldMotion::acceleration(const VecX& x, const VecX& v, VecX& a) {
+  a.setZero(x.size());
+  for (const auto& force : system_.forces()) force->add_force(x, v, a);
+  const std::vector<double>& mass = system_.masses();
+  for_chunks(system_.particles(), [&](int begin, int end) {
+    for (int i = begin; i < end; ++i)  // what has no mass is held anyway
+      a.segment<3>(3 * i) = a.segment<3>(3 * i) / std::max(mass[static_cast<std::size_t>(i)], 1e-300) +
+                            system_.gravity_acceleration();
+  });
+  power_ = 0;
+  for (const FilterEntry& e : held_.entries()) {
+    const Vec3 whole = a.segment<3>(3 * e.particle);
+    const Vec3 kept = e.S.isZero(0) ? Vec3(Vec3::Zero()) : Vec3(e.S * whole);
+    pull_.segment<3>(3 * e.particle) = mass[static_cast<std::size_t>(e.particle)] * (kept - whole);
+    power_ += v.segment<3>(3 * e.particle).dot(pull_.segment<3>(3 * e.particle));
+    a.segment<3>(3 * e.particle) = kept;
+  }
+  for (const FaceContact& c : constraints_.faces().touching())
+    power_ += c.body_velocity.dot(c.force_at(x, v));
+}
+
+bool HeldMotion::counts() const {
+  return !constraints_.touching().empty() || !constraints_.faces().touching().empty() ||
+         (!constraints_.bodies().empty() && !constraints_.moving_pins().empty());
+}
+
+void HeldMotion::count(double duration, const VecX& x, const VecX& v) {
+  constraints_.count_face_impulse(duration, x, v);
+  for (const FilterEntry& e : held_.entries())
+    pulled_.segment<3>(3 * e.particle) += duration * pull_.segment<3>(3 * e.particle);
+}
+
+bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOptions& options, State& state,
+                        StepReport& report) {
+  if (!x.allFinite() || !v.allFinite()) {
+    report.done = false;
+    report.failure = not_finite(system_, x, v, "the new positions are not finite numbers");
+    return false;
+  }
+  x_new_ = x;
+  v_new_ = v;
+  if (!constraints_.bodies().empty()) {
+    if (contact_ == ContactMode::constraint) {
+      set_free(v);
+      solve_contacts(state, x, v, h, options, report);
+    } else {
+      const Stopwatch watch(report.collide_ms);
+      constraints_.respond(contact_, x, v, pulled_, x_new_, v_new_, impulse_noise(h));
+    }
+    constraints_.react_faces(x_new_, v_new_);
+    if (!constraints_.bodies_converged(0.5)) {  // what is nearer is counted as not converged
+      report.done = false;
+      report.failure = {.what = "the motion of a body that reacts and that of the cloth do not agree",
+                        .force = {}};
+      return false;
+    }
+    end_step(constraints_, x_new_, v_new_, report);
+  }
+  state.x = x_new_;
+  state.v = v_new_;
+  state.time += h;
+  return true;
+}
+
+// The velocity without the constraints: what they took at the start and during the step is given back.
+void HeldMotion::set_free(const VecX& v) {
+  v_free_ = v;
+  for (const FilterEntry& e : held_.entries())
+    if (const double mass = system_.masses()[static_cast<std::size_t>(e.particle)]; mass > 0)
+      v_free_.segment<3>(3 * e.particle) -= pulled_.segment<3>(3 * e.particle) / mass + e.z;
+}
+
+// What was held and is let go, or comes loose, gets back the velocity that was taken from it at the start,
+// less friction; it moves from the next step on. Not h (I - S) M^-1 f, which is explicit: where the cloth is
+// stiff and h long it is far more than the particle would gain.
+void HeldMotion::let_go(const VecX& x, const VecX& v) {
+  for (const Contact& c : constraints_.touching()) {
+    if (c.active() && c.grip != Grip::breaking_loose) continue;
+    const auto held = std::find_if(held_.entries().begin(), held_.entries().end(),
+                                   [&](const FilterEntry& e) { return e.particle == c.particle; });
+    if (held == held_.entries().end() || (c.active() && !held->S.isZero(0))) continue;
+    Vec3 back = -held->z;
+    if (c.active()) {
+      const Mat3 Q = c.locked_directions();
+      back -= Q * (Q.transpose() * back);
+      const double most = c.friction_impulse.norm() / system_.masses()[static_cast<std::size_t>(c.particle)];
+      back *= back.norm() > most ? 1 - most / back.norm() : 0;
+    }
+    x_new_.segment<3>(3 * c.particle) = x.segment<3>(3 * c.particle);
+    v_new_.segment<3>(3 * c.particle) = v.segment<3>(3 * c.particle) + back;
+  }
+}
+
+// N s, below which an impulse is round-off.
+double HeldMotion::impulse_noise(double h) const {
+  double heaviest = 0;
+  for (double m : system_.masses()) heaviest = std::max(heaviest, m);
+  return 1e-9 * heaviest * h * system_.gravity_acceleration().norm();
+}
+
+void HeldMotion::solve_contacts(const State& state, const VecX& x, const VecX& v, double h,
+                                const StepOptions& options, StepReport& report) {
+  const Stopwatch watch(report.collide_ms);
+  const double noise = impulse_noise(h);
+  for (int round = 0;; ++round) {
+    move_within_constraints(state, x, h);
+    constraints_.receive(v_new_, r_);
+    let_go(x, v);
+    bool changed = false;
+    if (round < options.max_contact_solves) {
+      changed = constraints_.react(v_new_, r_, noise);
+      if (constraints_.check_paths(x_new_)) changed = true;
+    }
+    if (changed) continue;
+    if (!constraints_.move_bodies(noise)) return;
+    round = 0;
+  }
+}
+
+// S (A dv - b) = 0 within the filter, A = m + h D of what rubs: one particle at a time.
+void HeldMotion::move_within_constraints(const State& state, const VecX& x, double h) {
+  x_new_ = x;
+  v_new_ = v_free_;
+  r_.setZero(x.size());
+  const auto mass = [&](int i) { return system_.masses()[static_cast<std::size_t>(i)]; };
+  const auto& friction = constraints_.friction();
+  for (const ContactFriction& f : friction) {
+    const Mat3 A = mass(f.particle) * Mat3::Identity() + h * f.damping;
+    const Vec3 b = f.impulse - h * (f.damping * (v_free_.segment<3>(3 * f.particle) - f.body_velocity));
+    v_new_.segment<3>(3 * f.particle) += A.inverse() * b;
+    r_.segment<3>(3 * f.particle) -= b;
+  }
+  constraints_.filter(v_free_, filter_);
+  for (const FilterEntry& e : filter_.entries()) {
+    const Vec3 v = v_free_.segment<3>(3 * e.particle), dv = v_new_.segment<3>(3 * e.particle) - v;
+    v_new_.segment<3>(3 * e.particle) = v + (e.S * dv + e.z);
+  }
+  for (const ContactFriction& f : friction)
+    r_.segment<3>(3 * f.particle) +=
+        h * (f.damping * (v_new_.segment<3>(3 * f.particle) - v_free_.segment<3>(3 * f.particle)));
+  for (const MovingPin& pin : constraints_.moving_pins()) {
+    const int i = 3 * pin.particle;
+    x_new_.segment<3>(i) = state.x.segment<3>(i) + h * v_new_.segment<3>(i);
+    r_.segment<3>(i) =
+        pulled_.segment<3>(i) + mass(pin.particle) * (v_new_.segment<3>(i) - state.v.segment<3>(i));
+  }
+  for (const Contact& c : constraints_.touching()) {
+    const int i = 3 * c.particle;
+    r_.segment<3>(i) += mass(c.particle) * (v_new_.segment<3>(i) - v_free_.segment<3>(i));
+    // Along the planes as far as they say; across them as it came, and not h v: within a step it may vibrate.
+    const Mat3 Q = c.locked_directions();
+    const Vec3 wanted = h * v_new_.segment<3>(i) - (x.segment<3>(i) - state.x.segment<3>(i));
+    x_new_.segment<3>(i) += Q * (Q.transpose() * wanted) + constraints_.correction().segment<3>(i);
+  }
+}
+
+StepFailure not_finite(const System& system, const VecX& x, const VecX& v, const std::string& what) {
+  StepFailure failure{what, -1, {}};
+  for (int i = 0; i < system.particles() && failure.particle < 0; ++i)
+    if (!x.segment<3>(3 * i).allFinite() || !v.segment<3>(3 * i).allFinite()) failure.particle = i;
+  failure.force = system.not_finite_force(x, v);
+  return failure;
+}
+
+}  // namespace drape

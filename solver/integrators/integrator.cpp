@@ -1,0 +1,79 @@
+#include "solver/integrators/integrator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/base/errors.h"
+#include "mesh/base/stopwatch.h"
+#include "solver/integrators/bdf.h"
+#include "solver/integrators/explicit.h"
+#include "solver/integrators/sundials_integrators.h"
+
+namespace drape {
+
+void check_step(const System& system, const State& state, double h) {
+  if (!(h > 0) || !std::isfinite(h))
+    throw InputError("time step = " + std::to_string(h) + " s: a time step is greater than zero");
+  if (state.particles() != system.particles() || state.v.size() != state.x.size())
+    throw InputError("state: " + std::to_string(state.particles()) + " particles, but the system has " +
+                     std::to_string(system.particles()));
+}
+
+void end_step(Constraints& constraints, VecX& x, VecX& v, StepReport& report) {
+  const Stopwatch watch(report.collide_ms);
+  const ContactReport contact = constraints.end_step(x, v);
+  report.contacts = contact.contacts;
+  report.guarded += contact.guarded;
+  report.converged = report.converged && contact.converged;
+  report.penetration = std::max(report.penetration, contact.deepest);
+}
+
+std::vector<IntegratorInfo> integrators() {
+  std::vector<IntegratorInfo> all = {
+      {"implicit-euler", "Baraff & Witkin's implicit step, 1 to n Newton iterations (default)"},
+      {"bdf2", "backward differences of order 2, 1 to n Newton iterations"}};
+  for (const Tableau& tableau : tableaux()) all.push_back({tableau.name, tableau.summary});
+#ifdef DRAPE_HAVE_SUNDIALS
+  all.push_back({"newton-kinsol", "the equation of implicit Euler solved by SUNDIALS KINSOL"});
+  for (const IntegratorInfo& info : sundials_ode_methods()) all.push_back(info);
+#endif
+  return all;
+}
+
+ContactMode contact_mode(std::string_view integrator, std::optional<ContactMode> asked) {
+  std::string names;
+  for (const Tableau& tableau : tableaux()) {
+    if (integrator == tableau.name) return asked.value_or(ContactMode::velocity);
+    names += (names.empty() ? "" : ", ") + std::string(tableau.name);
+  }
+  if (asked.value_or(ContactMode::constraint) != ContactMode::constraint)
+    throw InputError("contact = \"" + std::string(name(*asked)) + "\": " + std::string(integrator) +
+                     " holds contacts as constraints while it solves for a step, and a velocity that is "
+                     "changed afterwards is not its solution; take contact = \"constraint\", or one of the "
+                     "explicit integrators: " +
+                     names);
+  return ContactMode::constraint;
+}
+
+std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,
+                                            std::unique_ptr<LinearSolver> solver,
+                                            const StepOptions& options) {
+  const ContactMode contact = contact_mode(name, options.contact);
+  if (name == "implicit-euler")
+    return std::make_unique<Bdf>(system, constraints, std::move(solver), options, 1);
+  if (name == "bdf2") return std::make_unique<Bdf>(system, constraints, std::move(solver), options, 2);
+  for (const Tableau& tableau : tableaux())
+    if (name == tableau.name)
+      return std::make_unique<Explicit>(tableau, system, constraints, options, contact);
+#ifdef DRAPE_HAVE_SUNDIALS
+  if (name == "newton-kinsol") return make_newton_kinsol(system, constraints, std::move(solver), options);
+  for (const IntegratorInfo& info : sundials_ode_methods())
+    if (name == info.name) return make_sundials_ode(name, system, constraints, std::move(solver), options);
+#endif
+  std::string names;
+  for (const IntegratorInfo& info : integrators())
+    names += (names.empty() ? "" : ", ") + std::string(info.name);
+  throw InputError("integrator '" + std::string(name) + "' is not in this build; it has: " + names);
+}
+
+}  // namespace drape

@@ -1,0 +1,89 @@
+// State(t) -> State(t + h), and a report that is data: what it took, how well it went, and where it failed.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "constraints/constraints.h"
+#include "solver/linear/linear_solver.h"
+#include "solver/system/system.h"
+
+namespace drape {
+
+struct StepOptions {
+  int newton_iterations = 1;  // linear solves per step; 1 is Baraff & Witkin's step
+  double newton_tolerance =
+      1e-6;                 // of the nonlinear residual, relative to h |m g|: fewer iterations when it is met
+  double tolerance = 1e-6;  // of the linear solve, see LinearOptions
+  int max_linear_iterations =
+      0;  // 0: chosen by size, and reaching it is a failure; given: the solve stops there and says so
+  std::optional<ContactMode> contact = {};  // none: what the integrator does best
+  int max_contact_solves = 8;  // how often a step may be solved again because a contact changed, for every
+                               // motion that is tried for a body that reacts
+  int max_rescues = 20;  // further Newton iterations when a full one would raise the incremental potential
+  int max_halvings = 6;  // how often a failed step may be halved before it is given up
+  // Of the integrators with inner steps (cvode-, arkode-): the error of one, relative to |x| and |v|, and
+  // below which it does not matter.
+  double relative_tolerance = 1e-4;
+  double absolute_tolerance_position = 1e-5;  // m
+  double absolute_tolerance_velocity = 1e-3;  // m/s
+  int max_inner_steps = 5000;                 // in a step; more is a failure
+};
+
+// Why and where a step failed.
+struct StepFailure {
+  std::string what;   // "the matrix is not positive definite", "not a finite number"
+  int particle = -1;  // where it is worst
+  std::string force;  // which term, when it is known
+};
+
+struct StepReport {
+  bool done = true;           // false: the state is as it was before, though not bodies that react
+  StepFailure failure;        // when not done
+  int substeps = 1;           // pieces the step was cut into, because it failed whole
+  int inner_steps = 0;        // of the integrators that choose them
+  int inner_rejected = 0;     // inner steps tried in vain: too large an error, or no convergence
+  int newton_iterations = 0;  // these summed over the substeps
+  int linear_solves = 0;
+  int linear_iterations = 0;
+  int rescues = 0;         // Newton iterations that had to be cut short, so that energy is not made
+  int guarded = 0;         // particles stopped at a surface outside the equations
+  double residual = 0;     // relative, the worst of the solves that the step ended with
+  bool converged = true;   // every solve reached its tolerance
+  int contacts = 0;        // particles in contact at the end
+  double penetration = 0;  // m, deepest particle inside a body at the start
+  double assemble_ms = 0, solve_ms = 0, collide_ms = 0, step_ms = 0;
+};
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  virtual std::string_view name() const = 0;
+  virtual StepReport advance(State& state, double h) = 0;  // h [s]
+  // Energy [J] that came from outside since the last step, other than by a changed state: a force was
+  // changed.
+  virtual void count_given(double /*energy*/) {}
+};
+
+// Throws InputError unless h is a time step and the state is one of the system.
+void check_step(const System& system, const State& state, double h);
+
+// Lets the constraints end a step at x, v, which they may change, and notes in the report what they found.
+void end_step(Constraints& constraints, VecX& x, VecX& v, StepReport& report);
+
+// "implicit-euler". Throws InputError for a name that integrators() does not list.
+std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,
+                                            std::unique_ptr<LinearSolver> solver,
+                                            const StepOptions& options = {});
+
+// How the integrator of that name treats contact: as asked for, else in its own way. Throws InputError where
+// it cannot do as asked.
+ContactMode contact_mode(std::string_view integrator, std::optional<ContactMode> asked);
+
+struct IntegratorInfo {
+  std::string_view name, summary;
+};
+std::vector<IntegratorInfo> integrators();
+
+}  // namespace drape

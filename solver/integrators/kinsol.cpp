@@ -1,0 +1,312 @@
+// "newton-kinsol": the equation of implicit Euler, solved to newton_tolerance by KINSOL of SUNDIALS.
+//   F(v) = S [ M (v - v_n) - h f(x_bar + h v, v) + friction ] = 0,   x_bar = x_n + correction,
+//   v = its target in the locked directions;   Newton's direction A dv = -F, A = M + h D + h^2 K of here;
+//   KINSOL looks along it for less |F|.                        [Dennis & Schnabel 1996, algorithm A6.3.1]
+// |F| has false minima where edges go slack. Where that search ends in one, KINSOL goes on from there with
+// directions that are cut short by halves until they lower the incremental potential Phi(v) (solver/integrators/bdf.h),
+// of which F is the gradient. (By Phi from the start it takes longer: kinks keep its steps short.) The last
+// resort is the majorant K; then the step is halved.
+// When the contacts do not agree with the solution, they change and KINSOL begins again from it. x [m], v
+// [m/s], M [kg], f [N], h [s], F [N s].
+#include <kinsol/kinsol.h>
+#include <kinsol/kinsol_ls.h>
+
+#include <array>
+#include <cmath>
+
+#include "mesh/base/parallel.h"
+#include "mesh/base/stopwatch.h"
+#include "solver/integrators/pieces.h"
+#include "solver/integrators/potential.h"
+#include "solver/integrators/sundials_integrators.h"
+#include "solver/integrators/sundials_newton.h"
+
+namespace drape {
+namespace {
+
+// How Newton's direction is found and how far it is followed.
+struct Search {
+  int strategy = KIN_LINESEARCH;  // of KINSOL, by |F|; KIN_NONE: by Phi
+  Stiffness stiffness = Stiffness::tangent;
+};
+
+class NewtonKinsol final : public Integrator {
+ public:
+  NewtonKinsol(System& system, Constraints& constraints, std::unique_ptr<LinearSolver> solver,
+               const StepOptions& options)
+      : system_(system), constraints_(constraints), options_(options), newton_(system, std::move(solver)) {
+    const Eigen::Index n = 3 * system.particles();
+    for (VecX* vector : {&x_, &x_bar_, &v_, &v_n_, &v_here_, &F_, &f_scale_, &one_, &dv_, &minus_F_, &r_})
+      vector->setZero(n);
+    one_.setOnes();
+    sundials::View u(v_, context_);
+    kinsol_ = KINCreate(context_);
+    KINSetErrHandlerFn(kinsol_, sundials::say_nothing, nullptr);
+    KINSetUserData(kinsol_, this);
+    KINInit(
+        kinsol_,
+        [](N_Vector v, N_Vector F, void* self) { return static_cast<NewtonKinsol*>(self)->residual(v, F); },
+        u);
+    linear_ = sundials::our_solver<NewtonKinsol, SUNLINEARSOLVER_DIRECT>(*this, context_);
+    matrix_ = SUNMatNewEmpty(context_);
+    matrix_->ops->getid = [](SUNMatrix) { return SUNMATRIX_CUSTOM; };
+    matrix_->ops->zero = [](SUNMatrix) { return 0; };
+    KINSetLinearSolver(kinsol_, linear_, matrix_);
+    KINSetJacFn(kinsol_, [](N_Vector v, N_Vector, SUNMatrix, void* self, N_Vector, N_Vector) {
+      return static_cast<NewtonKinsol*>(self)->set_up(v);
+    });
+    KINSetMaxSetupCalls(kinsol_, 1);  // a new matrix for every direction
+  }
+  ~NewtonKinsol() override {
+    KINFree(&kinsol_);
+    SUNLinSolFreeEmpty(linear_);
+    SUNMatFreeEmpty(matrix_);
+  }
+
+  std::string_view name() const override { return "newton-kinsol"; }
+  StepReport advance(State& state, double h) override;
+  int solve_linear(N_Vector dv, N_Vector minus_F);
+
+ private:
+  bool attempt(State& state, const Piece& piece);
+  bool solve();
+  int iterate(double wanted, double& norm);
+  double step_length(const VecX& v, const VecX& dv, double slope);
+  double potential(const VecX& v);
+  void assemble(const VecX& v);
+  void equation(const VecX& v);
+  int residual(N_Vector v, N_Vector F);
+  int set_up(N_Vector v);
+  bool fail(const std::string& what);
+
+  System& system_;
+  Constraints& constraints_;
+  StepOptions options_;
+  sundials::Context context_;
+  sundials::Newton newton_;
+  void* kinsol_ = nullptr;
+  SUNLinearSolver linear_ = nullptr;
+  SUNMatrix matrix_ = nullptr;
+  StepReport report_;
+  State before_;
+  Filter filter_, held_;  // of the velocity at the start of the solve; the same with z = 0
+  std::vector<ContactFriction> friction_;
+  Search search_;
+  double h_ = 0, scale_ = 0;  // s, N s
+  RoundOff noise_;            // where A was assembled last
+  bool solved_ = false;       // the last equation, to its tolerance
+  VecX x_, x_bar_, v_, v_n_, v_here_, F_, f_scale_, one_, dv_, minus_F_, r_;
+};
+
+StepReport NewtonKinsol::advance(State& state, double h) {
+  check_step(system_, state, h);
+  system_.bind();
+  report_ = {};
+  double step_ms = 0;
+  {
+    const Stopwatch watch(step_ms);
+    take_in_pieces(state, h, options_.max_halvings, before_, report_,
+                   [&](const Piece& piece) { return attempt(state, piece); });
+  }
+  report_.step_ms = step_ms;
+  return report_;
+}
+
+bool NewtonKinsol::attempt(State& state, const Piece& piece) {
+  const double h = piece.h;
+  h_ = h;
+  v_n_ = state.v;
+  scale_ = 0;
+  const VecX f = system_.force(state.x, state.v);
+  for (int i = 0; i < system_.particles(); ++i)  // an impulse that is known to act
+    scale_ +=
+        std::pow(system_.masses()[static_cast<std::size_t>(i)] * system_.gravity_acceleration().norm(), 2);
+  scale_ = h * std::max({std::sqrt(scale_), 1e-3 * std::sqrt(dot(f, f)), 1e-12});
+  f_scale_.setConstant(1 / scale_);
+  {
+    const Stopwatch watch(report_.collide_ms);
+    constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h);
+  }
+  v_ = state.v;
+  for (int i = 0; i < system_.particles(); ++i) v_.segment<3>(3 * i) += h * system_.gravity_acceleration();
+  for (int round = 0;; ++round) {
+    x_bar_ = state.x;
+    if (constraints_.correction().size() > 0) x_bar_ += constraints_.correction();
+    constraints_.filter(v_, filter_);
+    for (const FilterEntry& e : filter_.entries()) v_.segment<3>(3 * e.particle) += e.z;
+    friction_ = constraints_.friction();
+    if (!solve()) return false;
+    if (constraints_.bodies().empty()) break;
+    // What is left of the equation in the locked directions is the reaction.
+    const Stopwatch watch(report_.collide_ms);
+    equation(v_);
+    r_ = F_;
+    constraints_.receive(v_, r_);
+    const double noise = 2 * report_.residual * scale_;
+    bool changed = false;
+    if (round < options_.max_contact_solves) {
+      changed = constraints_.react(v_, r_, noise);
+      x_ = x_bar_ + h * v_;
+      if (constraints_.check_paths(x_)) changed = true;
+      if (constraints_.react_faces(x_, v_)) changed = true;
+    }
+    if (changed) continue;
+    if (!constraints_.move_bodies(noise)) break;
+    round = 0;
+  }
+  if (!constraints_.bodies_converged() && !piece.shortest)  // the report says so then
+    return fail("the motion of a body that reacts and that of the cloth do not agree");
+  x_ = x_bar_ + h * v_;
+  if (!x_.allFinite()) return fail("the new positions are not finite numbers");
+  report_.converged = report_.converged && solved_;
+  end_step(constraints_, x_, v_, report_);
+  state.x = x_;
+  state.v = v_;
+  state.time += h;
+  return true;
+}
+
+bool NewtonKinsol::solve() {
+  held_.clear();
+  for (const FilterEntry& e : filter_.entries()) held_.constrain(e.particle, e.S, Vec3::Zero());
+  const VecX start = v_;
+  constexpr std::array<Search, 3> searches = {{{KIN_LINESEARCH, Stiffness::tangent},
+                                               {KIN_NONE, Stiffness::tangent},
+                                               {KIN_NONE, Stiffness::majorant}}};
+  search_ = searches.front();
+  assemble(start);
+  const double wanted = std::max({options_.newton_tolerance, 1e-15, noise_.impulse / scale_});
+  int flag = KIN_SUCCESS;
+  double norm = 0;
+  for (const Search& search : searches) {
+    search_ = search;
+    flag = iterate(wanted, norm);
+    if (v_.allFinite() && norm <= wanted) break;
+    ++report_.rescues;
+    if (!v_.allFinite()) v_ = start;
+  }
+  report_.residual = norm;
+  solved_ = norm <= wanted;
+  if (v_.allFinite() && (flag >= 0 || solved_)) return true;  // or its steps have shrunk to nothing
+  return fail("KINSOL: " + sundials::taken(KINGetReturnFlagName(flag)) + "; a shorter time step may help");
+}
+
+// KINSOL stops by the largest component of F; what counts here is |F|, so it may have to go on.
+int NewtonKinsol::iterate(double wanted, double& norm) {
+  const sundials::View u(v_, context_), one(one_, context_), scale(f_scale_, context_);
+  KINSetScaledStepTol(kinsol_, 1e-14);
+  KINSetNumMaxIters(kinsol_, std::max(options_.newton_iterations, 50));
+  KINSetMaxNewtonStep(kinsol_, 1e6 * std::sqrt(static_cast<double>(v_.size())));
+  int flag = KIN_SUCCESS;
+  double largest = wanted;
+  for (int k = 0; k < 4 && flag >= 0; ++k) {
+    KINSetFuncNormTol(kinsol_, largest);
+    flag = KINSol(kinsol_, u, search_.strategy, one, scale);
+    long iterations = 0;
+    KINGetNumNonlinSolvIters(kinsol_, &iterations);
+    report_.newton_iterations += static_cast<int>(iterations);
+    KINGetFuncNorm(kinsol_, &norm);
+    if (norm <= wanted || flag == KIN_STEP_LT_STPTOL) break;
+    largest *= 0.5 * wanted / norm;
+  }
+  return flag;
+}
+
+// How much of the direction lowers Phi enough.                        [Nocedal & Wright 2006, section 3.1]
+double NewtonKinsol::step_length(const VecX& v, const VecX& dv, double slope) {
+  if (search_.strategy != KIN_NONE) return 1;  // KINSOL does it
+  const double start = potential(v), allowed = start + noise_.energy(start);
+  double length = 1;
+  for (int halvings = 0; halvings < 20; ++halvings, length *= 0.5)
+    if (potential(v + length * dv) <= allowed + 1e-4 * length * slope) return length;
+  return length;
+}
+
+double NewtonKinsol::potential(const VecX& v) {
+  x_ = x_bar_ + h_ * v;
+  const double inertia = sum_chunks(system_.particles(), [&](int begin, int end) {
+    double sum = 0;
+    for (int i = begin; i < end; ++i)
+      sum +=
+          0.5 * system_.masses()[static_cast<std::size_t>(i)] *
+          (v.segment<3>(3 * i) - v_n_.segment<3>(3 * i) - h_ * system_.gravity_acceleration()).squaredNorm();
+    return sum;
+  });
+  return inertia + potential_of_forces(system_, friction_, x_, v, h_, h_);
+}
+
+// F = M (v - v_n) - h f(x_bar + h v, v) + friction, not filtered.
+void NewtonKinsol::equation(const VecX& v) {
+  x_ = x_bar_ + h_ * v;
+  F_.setZero();
+  for (const auto& force : system_.forces()) force->add_force(x_, v, F_);
+  for_chunks(system_.particles(), [&](int begin, int end) {
+    for (int i = begin; i < end; ++i)
+      F_.segment<3>(3 * i) =
+          system_.masses()[static_cast<std::size_t>(i)] *
+              (v.segment<3>(3 * i) - v_n_.segment<3>(3 * i) - h_ * system_.gravity_acceleration()) -
+          h_ * F_.segment<3>(3 * i);
+  });
+  for (const ContactFriction& f : friction_)
+    F_.segment<3>(3 * f.particle) +=
+        h_ * (f.damping * (v.segment<3>(3 * f.particle) - f.body_velocity)) - f.impulse;
+}
+
+int NewtonKinsol::residual(N_Vector v, N_Vector F) {
+  const Stopwatch watch(report_.assemble_ms);
+  dv_ = sundials::numbers(v);
+  equation(dv_);
+  held_.apply(F_);
+  sundials::numbers(F) = F_;
+  return F_.allFinite() ? 0 : 1;
+}
+
+// A at v.
+int NewtonKinsol::set_up(N_Vector v) {
+  v_here_ = sundials::numbers(v);
+  assemble(v_here_);
+  return 0;
+}
+
+void NewtonKinsol::assemble(const VecX& v) {
+  const Stopwatch watch(report_.assemble_ms);
+  x_ = x_bar_ + h_ * v;
+  newton_.assemble(x_, v, v, h_, search_.stiffness);
+  for (const ContactFriction& f : friction_) newton_.add_to_diagonal(f.particle, h_ * f.damping);
+  noise_ = round_off(newton_.matrix(), x_, v, h_);
+}
+
+int NewtonKinsol::solve_linear(N_Vector dv, N_Vector minus_F) {
+  const Stopwatch watch(report_.solve_ms);
+  minus_F_ = sundials::numbers(minus_F);
+  dv_.setZero();
+  // No closer than the next residual will be seen.
+  const double wanted = 0.1 * options_.newton_tolerance * scale_ / std::sqrt(dot(minus_F_, minus_F_));
+  const double tolerance = std::max(options_.tolerance, std::min(wanted, 1e-2));
+  const LinearReport linear =
+      newton_.solve(minus_F_, held_, {tolerance, options_.max_linear_iterations, 0}, dv_);
+  ++report_.linear_solves;
+  report_.linear_iterations += linear.iterations;
+  if (linear.reason == StopReason::indefinite || linear.reason == StopReason::not_finite) return -1;
+  dv_ *= step_length(v_here_, dv_, -dot(minus_F_, dv_));
+  sundials::numbers(dv) = dv_;
+  return 0;
+}
+
+bool NewtonKinsol::fail(const std::string& what) {
+  report_.failure = {what, -1, std::string(system_.not_finite_force(x_, v_))};
+  Eigen::Index worst = 0;
+  F_.cwiseAbs().maxCoeff(&worst);
+  report_.failure.particle = static_cast<int>(worst / 3);
+  return false;
+}
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_newton_kinsol(System& system, Constraints& constraints,
+                                               std::unique_ptr<LinearSolver> solver,
+                                               const StepOptions& options) {
+  return std::make_unique<NewtonKinsol>(system, constraints, std::move(solver), options);
+}
+
+}  // namespace drape

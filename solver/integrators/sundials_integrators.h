@@ -1,0 +1,18 @@
+// The integrators that are in the build when SUNDIALS is. Internal to the library (not installed).
+#pragma once
+
+#include "solver/integrators/integrator.h"
+
+namespace drape {
+
+std::unique_ptr<Integrator> make_newton_kinsol(System& system, Constraints& constraints,
+                                               std::unique_ptr<LinearSolver> solver,
+                                               const StepOptions& options);
+
+// CVODE and ARKODE.
+std::vector<IntegratorInfo> sundials_ode_methods();
+std::unique_ptr<Integrator> make_sundials_ode(std::string_view name, System& system, Constraints& constraints,
+                                              std::unique_ptr<LinearSolver> solver,
+                                              const StepOptions& options);  // null: no such method
+
+}  // namespace drape

@@ -1,0 +1,91 @@
+#include "solver/linear/linear_solver.h"
+
+#include <string>
+
+#include "mesh/base/errors.h"
+#include "solver/linear/pcg.h"
+
+namespace drape {
+
+std::unique_ptr<LinearSolver> make_eigen_ldlt();
+std::unique_ptr<LinearSolver> make_eigen_cg();
+#ifdef DRAPE_HAVE_CHOLMOD
+std::unique_ptr<LinearSolver> make_cholmod();
+#endif
+#ifdef DRAPE_HAVE_SUNDIALS
+std::unique_ptr<LinearSolver> make_sundials_pcg(std::string name,
+                                                std::unique_ptr<Preconditioner> preconditioner);
+#endif
+#ifdef DRAPE_HAVE_PETSC
+std::unique_ptr<LinearSolver> make_petsc();
+#endif
+
+namespace {
+
+struct Entry {
+  LinearSolverInfo info;
+  std::unique_ptr<LinearSolver> (*make)();
+};
+
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> all = {
+      {{"mpcg", "modified conjugate gradient of Baraff & Witkin, 3x3 block-Jacobi"},
+       [] { return make_pcg("mpcg", false, make_block_jacobi()); }},
+      {{"mpcg+block-ic0", "the same with incomplete Cholesky on 3x3 blocks (default)"},
+       [] { return make_pcg("mpcg+block-ic0", false, make_block_ic0()); }},
+      {{"ppcg", "prefiltered conjugate gradient of Tamstorf et al., 3x3 block-Jacobi"},
+       [] { return make_pcg("ppcg", true, make_block_jacobi()); }},
+      {{"ppcg+block-ic0", "the same with incomplete Cholesky on 3x3 blocks"},
+       [] { return make_pcg("ppcg+block-ic0", true, make_block_ic0()); }},
+      {{"ppcg+multigrid", "the same with smoothed aggregation: for large meshes"},
+       [] { return make_pcg("ppcg+multigrid", true, make_multigrid()); }},
+#ifdef DRAPE_HAVE_CHOLMOD
+      {{"cholmod", "sparse LL^T of SuiteSparse"}, make_cholmod},
+#endif
+#ifdef DRAPE_HAVE_SUNDIALS
+      {{"sundials-pcg", "SUNLinSol_PCG of SUNDIALS, 3x3 block-Jacobi"},
+       [] { return make_sundials_pcg("sundials-pcg", make_block_jacobi()); }},
+      {{"sundials-pcg+multigrid", "the same with smoothed aggregation"},
+       [] { return make_sundials_pcg("sundials-pcg+multigrid", make_multigrid()); }},
+#endif
+#ifdef DRAPE_HAVE_PETSC
+      {{"petsc", "KSP CG of PETSc with its multigrid GAMG"}, make_petsc},
+#endif
+      {{"eigen-ldlt", "sparse LDL^T of Eigen"}, make_eigen_ldlt},
+      {{"eigen-cg", "conjugate gradient of Eigen with incomplete Cholesky"}, make_eigen_cg},
+  };
+  return all;
+}
+
+}  // namespace
+
+std::string_view name(StopReason reason) {
+  switch (reason) {
+    case StopReason::converged:
+      return "converged";
+    case StopReason::iteration_limit:
+      return "iteration limit";
+    case StopReason::indefinite:
+      return "matrix not positive definite";
+    case StopReason::not_finite:
+      return "not finite";
+  }
+  return "";
+}
+
+std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name) {
+  std::string known;
+  for (const Entry& entry : entries()) {
+    if (entry.info.name == name) return entry.make();
+    known += (known.empty() ? "" : ", ") + std::string(entry.info.name);
+  }
+  throw InputError("linear solver '" + std::string(name) + "' is not in this build; it has: " + known);
+}
+
+std::vector<LinearSolverInfo> linear_solvers() {
+  std::vector<LinearSolverInfo> infos;
+  for (const Entry& entry : entries()) infos.push_back(entry.info);
+  return infos;
+}
+
+}  // namespace drape

@@ -1,0 +1,95 @@
+#include "solver/system/system.h"
+
+#include <cmath>
+#include <string>
+
+#include "mesh/base/errors.h"
+#include "mesh/base/parallel.h"
+
+namespace drape {
+
+State at_rest(const TriangleMesh& mesh) {
+  return {0, stacked(mesh.positions), VecX::Zero(3 * static_cast<Eigen::Index>(mesh.positions.size()))};
+}
+
+VecX stacked(const std::vector<Vec3>& points) {
+  VecX x(3 * static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i) x.segment<3>(3 * static_cast<Eigen::Index>(i)) = points[i];
+  return x;
+}
+
+std::vector<Vec3> unstacked(const VecX& numbers) {
+  std::vector<Vec3> points(static_cast<std::size_t>(numbers.size() / 3));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i] = numbers.segment<3>(3 * static_cast<Eigen::Index>(i));
+  return points;
+}
+
+System::System(std::vector<double> masses) : masses_(std::move(masses)) {
+  for (std::size_t i = 0; i < masses_.size(); ++i)
+    if (!(masses_[i] >= 0) || !std::isfinite(masses_[i]))
+      throw InputError("system: particle " + std::to_string(i) + " has mass " + std::to_string(masses_[i]) +
+                       " kg; a mass is finite and not negative");
+}
+
+void System::add(std::unique_ptr<Force> force) {
+  forces_.push_back(std::move(force));
+  pattern_.reset();
+}
+
+void System::add(std::vector<std::unique_ptr<Force>> forces) {
+  for (auto& force : forces) add(std::move(force));
+}
+
+const std::shared_ptr<const BlockPattern>& System::bind() {
+  if (!pattern_) {
+    std::vector<ParticlePair> pairs;
+    for (const auto& force : forces_) force->list_pairs(pairs);
+    pattern_ = std::make_shared<const BlockPattern>(particles(), std::move(pairs));
+    for (const auto& force : forces_) force->bind(*pattern_);
+  }
+  return pattern_;
+}
+
+double System::elastic_energy(const VecX& x) const {
+  double sum = 0;
+  for (const auto& force : forces_) sum += force->energy(x);
+  return sum;
+}
+
+double System::kinetic_energy(const VecX& v) const {
+  return sum_chunks(particles(), [&](int begin, int end) {
+    double sum = 0;
+    for (int i = begin; i < end; ++i)
+      sum += 0.5 * masses_[static_cast<std::size_t>(i)] * v.segment<3>(3 * i).squaredNorm();
+    return sum;
+  });
+}
+
+double System::gravity_energy(const VecX& x) const {
+  return sum_chunks(particles(), [&](int begin, int end) {
+    double sum = 0;
+    for (int i = begin; i < end; ++i)
+      sum -= masses_[static_cast<std::size_t>(i)] * gravity_.dot(x.segment<3>(3 * i));
+    return sum;
+  });
+}
+
+VecX System::force(const VecX& x, const VecX& v) const {
+  VecX f(x.size());
+  for (int i = 0; i < particles(); ++i) f.segment<3>(3 * i) = masses_[static_cast<std::size_t>(i)] * gravity_;
+  for (const auto& force : forces_) force->add_force(x, v, f);
+  return f;
+}
+
+std::string_view System::not_finite_force(const VecX& x, const VecX& v) const {
+  if (!gravity_.allFinite()) return "gravity";
+  for (const auto& force : forces_) {
+    VecX f = VecX::Zero(x.size());
+    force->add_force(x, v, f);
+    if (!f.allFinite()) return force->name();
+  }
+  return {};
+}
+
+}  // namespace drape
