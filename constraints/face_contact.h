@@ -55,11 +55,14 @@ struct FaceContact {
       sum += weights[k] * x.template segment<3>(3 * particles[static_cast<std::size_t>(k)]);
     return sum;
   }
-  double gap_at(const VecX& x) const { return gap + normal.dot(at(x)); }
-  Vec3 slip_at(const VecX& v) const {
-    const Vec3 u = at(v) - body_velocity;
+  // Of a place p [m] and of a velocity [m/s] of the point of the triangle.
+  double gap_of(const Vec3& p) const { return gap + normal.dot(p); }
+  Vec3 slip_of(const Vec3& velocity) const {
+    const Vec3 u = velocity - body_velocity;
     return u - normal.dot(u) * normal;
   }
+  double gap_at(const VecX& x) const { return gap_of(at(x)); }
+  Vec3 slip_at(const VecX& v) const { return slip_of(at(v)); }
   Vec3 impulse = Vec3::Zero();  // N s, on the cloth in this step
 
   Vec3 force_at(const VecX& x, const VecX& v) const {  // N, on the cloth

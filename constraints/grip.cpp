@@ -1,7 +1,7 @@
-// Constraints: how contacts hold. What sticks, slides or is let go, and what that is to a solve.
+// How contacts hold: what sticks, slides or is let go, and what that is to a solve.
 #include <algorithm>
 
-#include "constraints/constraints.h"
+#include "constraints/particle_contacts.h"
 
 namespace drape {
 namespace {
@@ -19,57 +19,58 @@ Vec3 tangential(const Contact& contact, const Vec3& v) {
   return v - Q * (Q.transpose() * v);
 }
 
-}  // namespace
-
-void Constraints::start_grip(Contact& contact, const Contact* before) const {
-  const Friction& mu = friction_of(contact);
-  contact.last_slip = tangential(contact, v_.segment<3>(3 * contact.particle) - contact.body_velocity());
-  contact.slip = contact.last_slip;
-  contact.grip = before ? before->grip : mu.statics == 0 ? Grip::slide : Grip::stick;
-  contact.arrival_impulse = arrival_impulse(contact);
-  if (!before) return;
-  const double steady = std::max(0.0, before->normal_impulse - before->arrival_impulse) * h_ / last_h_;
-  contact.normal_impulse = steady + contact.arrival_impulse;
-  if (before->grip != Grip::slide) return;
-  const double arrived = (before->arrival_impulse - contact.arrival_impulse) * mu.kinetic /
-                         masses_[static_cast<std::size_t>(contact.particle)];
-  const Vec3 expected =
-      2 * contact.slip - before->last_slip + arrived / std::max(contact.slip.norm(), 1e-12) * contact.slip;
-  if (expected.dot(contact.slip) > stop_fraction * contact.slip.squaredNorm()) contact.slip = expected;
+const Friction& friction_of(const ParticleContacts::Bodies& bodies, const Contact& contact) {
+  return bodies[static_cast<std::size_t>(contact.plane[0].obstacle)].obstacle().friction;
 }
 
-std::array<double, 3> Constraints::normal_speeds(const Contact& contact) const {
+// The speeds along the normals that the planes ask for at the end of the step [m/s].
+std::array<double, 3> normal_speeds(const Contact& contact, double h) {
   std::array<double, 3> speeds = {};
   for (int k = 0; k < contact.planes; ++k) {
     const ContactPlane& p = contact.plane[static_cast<std::size_t>(k)];
-    speeds[static_cast<std::size_t>(k)] = p.body_velocity.dot(p.normal) - std::max(p.gap, 0.0) / h_;
+    speeds[static_cast<std::size_t>(k)] = p.body_velocity.dot(p.normal) - std::max(p.gap, 0.0) / h;
   }
   return speeds;
 }
 
-// What stops the approach at the planes, whatever else pushes.
-double Constraints::arrival_impulse(const Contact& contact) const {
-  std::array<double, 3> change = normal_speeds(contact);
+// What stops the approach at the planes, whatever else pushes [N s].
+double arrival_impulse(const Contact& contact, const StepMotion& step) {
+  std::array<double, 3> change = normal_speeds(contact, step.h);
   for (int k = 0; k < contact.planes; ++k)
     change[static_cast<std::size_t>(k)] -=
-        v_.segment<3>(3 * contact.particle).dot(contact.plane[static_cast<std::size_t>(k)].normal);
-  const double mass = masses_[static_cast<std::size_t>(contact.particle)];
-  const std::array<double, 3> pushes = multipliers(contact, mass * along_planes(contact, change));
+        step.velocity(contact.particle).dot(contact.plane[static_cast<std::size_t>(k)].normal);
+  const std::array<double, 3> pushes =
+      multipliers(contact, step.mass(contact.particle) * along_planes(contact, change));
   double sum = 0;
   for (int k = 0; k < contact.planes; ++k) sum += std::max(pushes[static_cast<std::size_t>(k)], 0.0);
   return sum;
 }
 
-void Constraints::filter(const VecX& v, Filter& filter) const {
-  filter.clear();
-  for (int i = 0; i < static_cast<int>(held_.size()); ++i)
-    if (held(i))
-      filter.constrain(i, Mat3::Zero(),
-                       moving_pins_.empty() ? Vec3(-v.segment<3>(3 * i))
-                                            : Vec3(pin_velocity_.segment<3>(3 * i) - v.segment<3>(3 * i)));
+}  // namespace
+
+void ParticleContacts::start_grip(const Bodies& bodies, const StepMotion& step, Contact& contact,
+                                  const Contact* before) const {
+  const Friction& mu = friction_of(bodies, contact);
+  contact.last_slip = tangential(contact, step.velocity(contact.particle) - contact.body_velocity());
+  contact.slip = contact.last_slip;
+  contact.grip = before ? before->grip : mu.statics == 0 ? Grip::slide : Grip::stick;
+  contact.arrival_impulse = arrival_impulse(contact, step);
+  if (!before) return;
+  const double steady =
+      std::max(0.0, before->normal_impulse - before->arrival_impulse) * step.h / step.last_h;
+  contact.normal_impulse = steady + contact.arrival_impulse;
+  if (before->grip != Grip::slide) return;
+  const double arrived =
+      (before->arrival_impulse - contact.arrival_impulse) * mu.kinetic / step.mass(contact.particle);
+  const Vec3 expected =
+      2 * contact.slip - before->last_slip + arrived / std::max(contact.slip.norm(), 1e-12) * contact.slip;
+  if (expected.dot(contact.slip) > stop_fraction * contact.slip.squaredNorm()) contact.slip = expected;
+}
+
+void ParticleContacts::filter(const StepMotion& step, const VecX& v, Filter& filter) const {
   for (const Contact& c : trial_) {
     if (!c.active()) continue;
-    const Vec3 normal_part = along_planes(c, normal_speeds(c));
+    const Vec3 normal_part = along_planes(c, normal_speeds(c, step.h));
     const Mat3 Q = c.locked_directions();
     const Mat3 S = Mat3::Identity() - Q * Q.transpose();
     const Vec3 now = v.segment<3>(3 * c.particle);
@@ -80,18 +81,19 @@ void Constraints::filter(const VecX& v, Filter& filter) const {
   }
 }
 
-const std::vector<ContactFriction>& Constraints::friction() {
+const std::vector<ContactFriction>& ParticleContacts::make_friction(const Bodies& bodies,
+                                                                    const StepMotion& step) {
   friction_.clear();
   for (const Contact& c : trial_) {
     if (!c.active() || c.grip == Grip::stick) continue;
-    const double mu = friction_of(c).kinetic;
+    const double mu = friction_of(bodies, c).kinetic;
     if (mu == 0) continue;
     ContactFriction f{c.particle, c.plane[0].obstacle, Mat3::Zero(), c.body_velocity(), Vec3::Zero()};
     if (c.grip == Grip::breaking_loose) {
       f.impulse = c.friction_impulse;
     } else {
       const Mat3 Q = c.locked_directions();
-      const double coefficient = mu * c.normal_impulse / (h_ * std::max(c.slip.norm(), 1e-12));
+      const double coefficient = mu * c.normal_impulse / (step.h * std::max(c.slip.norm(), 1e-12));
       f.damping = coefficient * (Mat3::Identity() - Q * Q.transpose());
     }
     friction_.push_back(f);
@@ -99,16 +101,18 @@ const std::vector<ContactFriction>& Constraints::friction() {
   return friction_;
 }
 
-bool Constraints::react(const VecX& v, const VecX& r, double noise) {
+bool ParticleContacts::react(const Bodies& bodies, const StepMotion& step, const VecX& v, const VecX& r,
+                             double noise) {
   bool changed = false;
   for (Contact& c : trial_) {
     if (!c.active()) continue;
-    if (update_grip(c, v, r.segment<3>(3 * c.particle), noise)) changed = true;
+    if (update_grip(bodies, step, c, v, r.segment<3>(3 * c.particle), noise)) changed = true;
   }
   return changed;
 }
 
-bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double noise) const {
+bool ParticleContacts::update_grip(const Bodies& bodies, const StepMotion& step, Contact& c, const VecX& v,
+                                   const Vec3& r, double noise) const {
   const std::array<double, 3> lambda = multipliers(c, r);
   const auto weakest =
       static_cast<std::size_t>(std::min_element(lambda.begin(), lambda.begin() + c.planes) - lambda.begin());
@@ -116,14 +120,14 @@ bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double n
     for (auto k = static_cast<int>(weakest); k + 1 < c.planes; ++k)
       c.plane[static_cast<std::size_t>(k)] = c.plane[static_cast<std::size_t>(k) + 1];
     --c.planes;
-    c.arrival_impulse = arrival_impulse(c);
+    c.arrival_impulse = arrival_impulse(c, step);
     if (!c.active()) return true;
     // It slides along what still holds, more ways than before.
-    c.last_slip = tangential(c, v_.segment<3>(3 * c.particle) - c.body_velocity());
+    c.last_slip = tangential(c, step.velocity(c.particle) - c.body_velocity());
     c.slip = c.last_slip;
     return true;
   }
-  const Friction& mu = friction_of(c);
+  const Friction& mu = friction_of(bodies, c);
   double normal = 0;
   for (int k = 0; k < c.planes; ++k) normal += std::max(lambda[static_cast<std::size_t>(k)], 0.0);
   const double rubbed = mu.kinetic * c.normal_impulse;
@@ -144,7 +148,7 @@ bool Constraints::update_grip(Contact& c, const VecX& v, const Vec3& r, double n
       if (slip.dot(c.friction_impulse) > 0) next = Grip::stick;  // friction would drive the motion
       break;
     case Grip::slide:
-      if (masses_[static_cast<std::size_t>(c.particle)] * slip.norm() < stop_fraction * mu.kinetic * normal)
+      if (step.mass(c.particle) * slip.norm() < stop_fraction * mu.kinetic * normal)
         next = Grip::stick;
       else if (slip.norm() * rubbed > overrubbed * mu.kinetic * normal * c.slip.norm()) {
         c.slip = slip;  // faster than was expected: the damper rubbed with more than mu N

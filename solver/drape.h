@@ -1,7 +1,7 @@
 // The library in one header: #include <drape/drape.h>
 #pragma once
 
-#include "constraints/constraints.h"
+#include "constraints/contact_step.h"
 #include "mesh/base/threads.h"
 #include "mesh/lattice/embedding.h"
 #include "mesh/lattice/lattice.h"
@@ -14,6 +14,8 @@
 #include "mesh/triangles/topology.h"
 #include "solver/forces/choi_ko.h"
 #include "solver/forces/noh_jung.h"
+#include "solver/forces/pair_force.h"
 #include "solver/forces/soft.h"
+#include "solver/forces/stencil_force.h"
 #include "solver/integrators/bdf.h"
 #include "solver/system/system.h"

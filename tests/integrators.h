@@ -1,25 +1,48 @@
 // What the laws need to know of each integrator of the build, and small systems to try them on.
 #pragma once
 
+#include <array>
 #include <catch2/catch.hpp>
+#include <stdexcept>
+#include <string_view>
 
 #include "solver/forces/buckling_spring.h"
 #include "tests/tables.h"
 
 namespace drape::test {
 
-// 0: adaptive inner steps to a tolerance.
-inline int order_of(std::string_view name) {
-  if (name == "bdf2" || name == "midpoint") return 2;
-  if (name == "rk4") return 4;
-  if (name == "cvode-bdf" || name == "cvode-adams" || name == "arkode-erk" || name == "arkode-dirk") return 0;
-  return 1;
+// What the laws take an integrator for. A new one gets a line here, and with it every test.
+struct Traits {
+  std::string_view name;
+  int order;                // 0: inner steps of its own choice, to a tolerance
+  bool is_explicit;         // its step is bounded by the stiffest vibration, and needs no solve
+  bool bears_stiff;         // steps far longer than the stiffest vibration are stable
+  bool foresees;            // contact is found along the motion, within the solve
+  bool grows_undamped;      // unstable on a vibration without damping, however short the step
+  double momentum_kept_to;  // relative, of cloth and a body that reacts together
+};
+inline constexpr std::array<Traits, 12> traits = {{
+    {"implicit-euler", 1, false, true, true, false, 1e-6},
+    {"bdf2", 2, false, true, true, false, 0.1},
+    {"explicit-euler", 1, true, false, false, true, 1e-6},
+    {"symplectic-euler", 1, true, false, false, false, 1e-6},
+    {"midpoint", 2, true, false, false, true, 1e-6},
+    {"sb-implicit", 1, true, false, false, false, 1e-6},
+    {"rk4", 4, true, false, false, false, 1e-6},
+    {"newton-kinsol", 1, false, true, true, false, 1e-6},
+    {"cvode-bdf", 0, false, true, false, false, 0.1},
+    {"cvode-adams", 0, false, false, false, false, 0.1},
+    {"arkode-erk", 0, false, false, false, false, 0.1},
+    {"arkode-dirk", 0, false, true, false, false, 0.1},
+}};
+inline const Traits& traits_of(std::string_view name) {
+  for (const Traits& t : traits)
+    if (t.name == name) return t;
+  throw std::logic_error("tests/integrators.h knows no integrator " + std::string(name));
 }
-
-inline bool is_explicit(std::string_view name) {
-  return name == "explicit-euler" || name == "symplectic-euler" || name == "midpoint" ||
-         name == "sb-implicit" || name == "rk4";
-}
+inline int order_of(std::string_view name) { return traits_of(name).order; }
+inline bool is_explicit(std::string_view name) { return traits_of(name).is_explicit; }
+inline bool bears_stiff(std::string_view name) { return traits_of(name).bears_stiff; }
 
 inline std::vector<std::string> integrator_names() {
   std::vector<std::string> names;

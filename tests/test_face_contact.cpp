@@ -73,9 +73,10 @@ TEST_CASE("the force of a face's contact is the gradient of its energy, and its 
   system.add(face_contact_force(constraints));
   const State state = at_rest(one);
   const VecX v = random_vector(9, 0.1, 3);
-  constraints.begin_step(state.x, v, system.masses(), 0, 0.01);
+  ContactStep contacts = constraints.begin_step(state.x, v, system.masses(), 0, 0.01);
+  system.begin_step({0, 0.01, state.x, v});
   REQUIRE(constraints.faces().touching().size() == 1);
-  constraints.react_faces(state.x, v);
+  contacts.settle_faces(state.x, v);
   const FaceContact& contact = constraints.faces().touching()[0];
   REQUIRE(contact.active);
   CHECK(contact.weights.sum() == Approx(1));
@@ -87,7 +88,7 @@ TEST_CASE("the force of a face's contact is the gradient of its energy, and its 
     force.add_force(x, velocity, f);
     return f;
   };
-  BlockMatrix A(system.bind());
+  BlockMatrix A = system.matrix();
   const double c = 0.01, e = 1e-6;
   A.set_to_mass({0, 0, 0});
   VecX b = VecX::Zero(9);

@@ -68,7 +68,7 @@ struct Network {
   }
   static std::vector<ParticlePair> pairs() {
     std::vector<ParticlePair> all;
-    for (const auto& e : elements()) all.push_back({e.i, e.j});
+    for (const auto& e : elements()) all.push_back({e.particles[0], e.particles[1]});
     return all;
   }
   VecX f(const VecX& at) const {
@@ -149,26 +149,27 @@ TEMPLATE_LIST_TEST_CASE("the assembled stiffness is the positive semidefinite pa
     bool smooth = true;
     for (const auto& e :
          net.force.elements()) {  // element by element: exact by differences, clamped by eigenvalues
-      Force one({{e.i, e.j, e.rest}});
-      smooth = smooth &&
-               !near_kink(TestType::kinks(),
-                          (net.x.template segment<3>(3 * e.i) - net.x.template segment<3>(3 * e.j)).norm());
+      const auto [i, j] = e.particles;
+      Force one({{i, j, e.rest}});
+      smooth =
+          smooth && !near_kink(TestType::kinks(),
+                               (net.x.template segment<3>(3 * i) - net.x.template segment<3>(3 * j)).norm());
       Mat3 exact;
       for (int k = 0; k < 3; ++k) {
         VecX plus = net.x, minus = net.x, fp = VecX::Zero(24), fm = fp;
-        plus[3 * e.i + k] += 1e-6;
-        minus[3 * e.i + k] -= 1e-6;
+        plus[3 * i + k] += 1e-6;
+        minus[3 * i + k] -= 1e-6;
         one.add_force(plus, fp, fp);
         one.add_force(minus, fm, fm);
-        exact.col(k) = -(fp - fm).template segment<3>(3 * e.i) / 2e-6;
+        exact.col(k) = -(fp - fm).template segment<3>(3 * i) / 2e-6;
       }
       const Eigen::SelfAdjointEigenSolver<Mat3> eigen(0.5 * (exact + exact.transpose()));
       const Mat3 part = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() *
                         eigen.eigenvectors().transpose();
-      expected.block<3, 3>(3 * e.i, 3 * e.i) += part;
-      expected.block<3, 3>(3 * e.j, 3 * e.j) += part;
-      expected.block<3, 3>(3 * e.i, 3 * e.j) -= part;
-      expected.block<3, 3>(3 * e.j, 3 * e.i) -= part;
+      expected.block<3, 3>(3 * i, 3 * i) += part;
+      expected.block<3, 3>(3 * j, 3 * j) += part;
+      expected.block<3, 3>(3 * i, 3 * j) -= part;
+      expected.block<3, 3>(3 * j, 3 * i) -= part;
     }
     const Eigen::MatrixXd K = net.stiffness();
     if (smooth) CHECK((K - expected).norm() < 1e-5 * (1 + expected.norm()));

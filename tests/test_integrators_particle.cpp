@@ -146,8 +146,8 @@ TEST_CASE("a particle with no solve left is stopped at the surface all the same,
           "[integrators]") {
   for (const Method& method : methods()) {
     const std::string& name = method.name;
-    if (name == "implicit-euler" || name == "bdf2" || name == "newton-kinsol") continue;  // foresee it
-    if (contact_mode(name, method.contact) != ContactMode::constraint) continue;          // never needs it
+    if (traits_of(name).foresees) continue;
+    if (contact_mode(name, method.contact) != ContactMode::constraint) continue;  // never needs it
     INFO(method.label);
     System system({0.1});
     system.add(Gravity{});

@@ -1,6 +1,5 @@
 // Loops over fixed chunks. The chunks depend on the size of the problem only, never on the number of threads,
-// and every sum is taken chunk by chunk in order: so 1, 2 or 7 threads give the same bits. Internal to the
-// library (not installed).
+// and every sum is taken chunk by chunk in order: so 1, 2 or 7 threads give the same bits.
 #pragma once
 
 #include <algorithm>

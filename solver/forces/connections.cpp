@@ -33,8 +33,8 @@ std::vector<std::unique_ptr<Force>> forces_of(const Connections& connections, co
   if (fabric.damping > 0) {
     std::vector<PairDamping::Element> damped;
     damped.reserve(stretch.size() + bend.size());
-    for (const auto& e : stretch) damped.push_back({e.i, e.j});
-    for (const auto& e : bend) damped.push_back({e.i, e.j});
+    for (const auto& e : stretch) damped.push_back({e.particles});
+    for (const auto& e : bend) damped.push_back({e.particles});
     forces.push_back(std::make_unique<PairDamping>(std::move(damped), fabric.damping, fabric.damping_kind));
   }
   if (!stretch.empty()) forces.push_back(std::make_unique<PairForce<TensionSpring>>(std::move(stretch)));

@@ -4,35 +4,45 @@
 // k_d [N s/m].  Coincident particles: axial damping is nil.
 #pragma once
 
-#include "solver/forces/pair_force.h"
+#include "solver/forces/stencil_force.h"
 
 namespace drape {
 
-class PairDamping final : public Force {
- public:
-  struct Element {
-    int i, j;
-    PairSlots slots = {};
+struct Damper {
+  static constexpr const char* name = "damping";
+  static constexpr int particles = 2;
+  struct Rest {};
+  struct Common {
+    double k_d;  // N s/m
+    DampingKind kind;
   };
 
-  PairDamping(std::vector<Element> elements, double k_d, DampingKind kind);
+  static constexpr std::array<double, 2> weights(const Rest&) { return {1, -1}; }
 
-  std::string_view name() const override { return "damping"; }
-  void list_pairs(std::vector<ParticlePair>& pairs) const override;
-  void bind(const BlockPattern& pattern) override { bind_pairs(pattern, elements_, schedule_); }
-  double energy(const VecX&) const override { return 0; }
-  double dissipation(const VecX& x, const VecX& v) const override;
-  void add_force(const VecX& x, const VecX& v, VecX& f) const override;
-  void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,
-                      BlockMatrix& A, VecX& b) const override;
+  static Mat3 coefficient(const Common& damper, const Vec3& d) {
+    if (damper.kind == DampingKind::relative) return damper.k_d * Mat3::Identity();
+    const double l2 = d.squaredNorm();
+    return l2 == 0 ? Mat3::Zero() : Mat3((damper.k_d / l2 * d) * d.transpose());
+  }
+  static double energy(const Common&, const Rest&, const Vec3&) { return 0; }
+  static double dissipation(const Common& damper, const Rest&, const Vec3& d, const auto& velocity) {
+    const Vec3 v = velocity();
+    return 0.5 * v.dot(coefficient(damper, d) * v);
+  }
+  static Vec3 pull(const Common& damper, const Rest&, const Vec3& d, const auto& velocity) {
+    return coefficient(damper, d) * velocity();
+  }
+  static VectorResponse linearised(const Common& damper, const Rest&, const Vec3& d, const auto& velocity,
+                                   const auto&, double c, Stiffness) {
+    const Mat3 cD = c * coefficient(damper, d);
+    return {.impulse = cD * velocity(), .block = cD, .acts = true};
+  }
+};
 
- private:
-  Mat3 coefficient(const VecX& x, const Element& e) const;  // D of the pair
-
-  std::vector<Element> elements_;
-  double k_d_;
-  DampingKind kind_;
-  ChunkSchedule schedule_;
+class PairDamping final : public StencilForce<Damper> {
+ public:
+  PairDamping(std::vector<Element> elements, double k_d, DampingKind kind)
+      : StencilForce(std::move(elements), {k_d, kind}) {}
 };
 
 }  // namespace drape

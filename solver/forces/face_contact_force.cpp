@@ -1,75 +1,69 @@
 #include "solver/forces/face_contact_force.h"
 
-#include <algorithm>
+#include "solver/forces/stencil_force.h"
 
 namespace drape {
 namespace {
 
-class FaceContactForce final : public Force {
+struct FaceLaw {
+  static constexpr const char* name = "face-contact";
+  static constexpr int particles = 3;
+  using Rest = const FaceContact*;  // of the contacts of the step
+  struct Common {};
+
+  static std::array<double, 3> weights(const Rest& c) {
+    return {c->weights[0], c->weights[1], c->weights[2]};
+  }
+
+  static double energy(const Common&, const Rest& c, const Vec3& p) {
+    const double g = std::min(c->gap_of(p), 0.0);
+    return 0.5 * c->stiffness * g * g;
+  }
+  static double dissipation(const Common&, const Rest& c, const Vec3&, const auto& velocity) {
+    return 0.5 * c->damper * c->slip_of(velocity()).squaredNorm();
+  }
+  static Vec3 pull(const Common&, const Rest& c, const Vec3& p, const auto& velocity) {
+    return c->stiffness * std::min(c->gap_of(p), 0.0) * c->normal + c->damper * c->slip_of(velocity());
+  }
+  static VectorResponse linearised(const Common&, const Rest& contact, const Vec3& p, const auto& velocity,
+                                   const auto& shift, double c, Stiffness stiffness) {
+    const double g = contact->gap_of(p), d = contact->damper;
+    const Vec3& n = contact->normal;
+    const bool acts = stiffness == Stiffness::tangent ? g < 0 : contact->active;
+    const double push = acts ? contact->stiffness * (g + n.dot(shift())) : 0;
+    const double k = acts || stiffness == Stiffness::majorant ? contact->stiffness : 0;
+    const Mat3 along = n * n.transpose();
+    return {.impulse = c * (push * n + d * contact->slip_of(velocity())),
+            .block = c * c * k * along + c * d * (Mat3::Identity() - along),
+            .acts = true};
+  }
+};
+
+class FaceContactForce final : public StencilForce<FaceLaw> {
  public:
-  explicit FaceContactForce(const Constraints& constraints) : constraints_(constraints) {}
+  explicit FaceContactForce(const Constraints& constraints)
+      : StencilForce([&constraints](const StepStart&, std::vector<Element>& found) {
+          return find(constraints, found);
+        }),
+        constraints_(constraints) {}
 
-  std::string_view name() const override { return "face-contact"; }
-
+  bool from_contact() const override { return true; }
+  // The edges of all triangles: which of them touch changes with every step.
   void list_pairs(std::vector<ParticlePair>& pairs) const override {
     for (const ClothFace& face : constraints_.faces().all())
       for (std::size_t k = 0; k < 3; ++k) pairs.push_back({face.particles[k], face.particles[(k + 1) % 3]});
   }
 
-  void bind(const BlockPattern& pattern) override { pattern_ = &pattern; }
-
-  double energy(const VecX& x) const override {
-    double sum = 0;
-    for (const FaceContact& c : touching()) {
-      const double g = std::min(c.gap_at(x), 0.0);
-      sum += 0.5 * c.stiffness * g * g;
-    }
-    return sum;
-  }
-
-  double dissipation(const VecX&, const VecX& v) const override {
-    double sum = 0;
-    for (const FaceContact& c : touching()) sum += 0.5 * c.damper * c.slip_at(v).squaredNorm();
-    return sum;
-  }
-
-  void add_force(const VecX& x, const VecX& v, VecX& f) const override {
-    for (const FaceContact& c : touching()) spread(c, c.force_at(x, v), f);
-  }
-
-  void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,
-                      BlockMatrix& A, VecX& b) const override {
-    for (const FaceContact& contact : touching()) {
-      const double g = contact.gap_at(x), d = contact.damper;
-      const bool acts = stiffness == Stiffness::tangent ? g < 0 : contact.active;
-      const double push = acts ? contact.stiffness * (g + contact.normal.dot(contact.at(y))) : 0;
-      spread(contact, c * (-push * contact.normal - d * contact.slip_at(v)), b);
-      const double k = acts || stiffness == Stiffness::majorant ? contact.stiffness : 0;
-      const Mat3 along = contact.normal * contact.normal.transpose();
-      add_blocks(contact, c * c * k * along + c * d * (Mat3::Identity() - along), A);
-    }
-  }
-
  private:
-  const std::vector<FaceContact>& touching() const { return constraints_.faces().touching(); }
-
-  static void spread(const FaceContact& c, const Vec3& force, VecX& f) {
-    for (int k = 0; k < 3; ++k)
-      f.segment<3>(3 * c.particles[static_cast<std::size_t>(k)]) += c.weights[k] * force;
-  }
-
-  void add_blocks(const FaceContact& c, const Mat3& block, BlockMatrix& A) const {
-    std::array<int, 3> row;
-    for (std::size_t k = 0; k < 3; ++k) row[k] = pattern_->row_of()[static_cast<std::size_t>(c.particles[k])];
-    for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t l = 0; l < 3; ++l)
-        if (row[k] <= row[l])
-          A.at(pattern_->slot(row[k], row[l])) +=
-              c.weights[static_cast<int>(k)] * c.weights[static_cast<int>(l)] * block;
+  static bool find(const Constraints& constraints, std::vector<Element>& found) {
+    const bool were = !found.empty();
+    found.clear();
+    for (const FaceContact& contact : constraints.faces().touching())
+      found.push_back({.particles = contact.particles, .rest = &contact});
+    return were || !found.empty();
   }
 
   const Constraints& constraints_;
-  const BlockPattern* pattern_ = nullptr;
 };
 
 }  // namespace

@@ -72,7 +72,7 @@ std::vector<std::unique_ptr<Force>> soft_body(const Lattice& lattice, const Soft
   if (material.damping > 0 && !axial) {
     std::vector<PairDamping::Element> damped;
     damped.reserve(springs.size());
-    for (const auto& s : springs) damped.push_back({s.i, s.j});
+    for (const auto& s : springs) damped.push_back({s.particles});
     forces.push_back(
         std::make_unique<PairDamping>(std::move(damped), material.damping, material.damping_kind));
   }

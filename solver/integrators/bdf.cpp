@@ -1,10 +1,12 @@
 #include "solver/integrators/bdf.h"
 
+#include <algorithm>
+
 #include "mesh/base/errors.h"
 #include "mesh/base/parallel.h"
 #include "mesh/base/stopwatch.h"
-#include "solver/integrators/pieces.h"
-#include "solver/integrators/potential.h"
+#include "solver/integrators/contact_loop.h"
+#include "solver/integrators/newton_loop.h"
 
 namespace drape {
 
@@ -12,9 +14,10 @@ Bdf::Bdf(System& system, Constraints& constraints, std::unique_ptr<LinearSolver>
          const StepOptions& options, int order)
     : system_(system),
       constraints_(constraints),
-      solver_(std::move(solver)),
       options_(options),
-      order_(order) {
+      history_(order),
+      A_(system, std::move(solver)),
+      merit_(system) {
   if (order != 1 && order != 2) throw InputError("bdf order = " + std::to_string(order) + ": it is 1 or 2");
 }
 
@@ -29,284 +32,197 @@ StepReport Bdf::advance(State& state, double h) {
   return report;
 }
 
-void Bdf::resize() {
-  const auto& pattern = system_.bind();
-  if (A_ && &A_->pattern() == pattern.get()) return;
-  A_ = std::make_unique<BlockMatrix>(pattern);
-  const Eigen::Index n = 3 * system_.particles();
-  for (VecX* vector : {&x_, &v_, &x_bar_, &v_bar_, &y_, &x_new_, &v_new_, &v_base_, &guess_, &b_,
-                       &b_friction_, &dv_rows_, &b_rows_, &dv_})
-    vector->setZero(n);
-  past_.touched.assign(static_cast<std::size_t>(system_.particles()), 0);
-  past_.h = 0;
-  filter_.reserve(static_cast<std::size_t>(system_.particles()));
-  rubbed_.reserve(static_cast<std::size_t>(system_.particles()));
-  friction_.reserve(static_cast<std::size_t>(system_.particles()));
-}
+// S (A dv - b) = 0 within the contacts as they are.                                   [Baraff & Witkin 1998, 5.3]
+// Which contacts hold is found with loose solves; the last one is to the tolerance asked for, from where they
+// came. Bodies that react wait for that one, and then the contacts may change their mind again.
+class Bdf::ContactSolve {
+ public:
+  ContactSolve(Bdf& bdf, const State& state, Stiffness stiffness, ContactStep& contacts, StepReport& report)
+      : bdf_(bdf),
+        state_(state),
+        stiffness_(stiffness),
+        contacts_(contacts),
+        report_(report),
+        wanted_(bdf.options_.tolerance),
+        tolerance_(contacts.bodies() ? std::max(wanted_, std::sqrt(wanted_)) : wanted_) {}
+
+  const LinearReport& linear() const { return linear_; }
+
+  bool solve() {
+    const Stopwatch watch(report_.solve_ms);
+    bdf_.add_friction(bdf_.friction(contacts_));
+    contacts_.filter(bdf_.p_.v, bdf_.filter_);
+    linear_ = bdf_.A_.solve(bdf_.b_rubbed_, bdf_.filter_,
+                            {tolerance_, bdf_.options_.max_linear_iterations, bdf_.merit_.weight_impulse()},
+                            bdf_.dv_);
+    ++report_.linear_solves;
+    report_.linear_iterations += linear_.iterations;
+    return linear_.reason != StopReason::indefinite && linear_.reason != StopReason::not_finite;
+  }
+
+  ContactTrial trial() {
+    const auto& scale = bdf_.k().scale;
+    const auto unscale = [&](int i) { bdf_.r_.segment<3>(3 * i) /= scale[static_cast<std::size_t>(i)]; };
+    bdf_.A_.reaction(bdf_.r_);
+    for (const Contact& c : contacts_.touching()) unscale(c.particle);
+    for (const MovingPin& p : contacts_.moving_pins()) unscale(p.particle);
+    bdf_.end_.v = bdf_.p_.v + bdf_.dv_;
+    bdf_.end_.x = bdf_.k().x_bar + bdf_.k().c * bdf_.end_.v;
+    return {bdf_.end_.v, bdf_.end_.x, bdf_.r_, 2 * linear_.residual_impulse};
+  }
+
+  void release() {}  // a particle that is let go moves in the next solve
+
+  bool refine() {
+    if (linear_.residual <= wanted_ || tolerance_ <= wanted_) return false;
+    tolerance_ = wanted_;
+    return true;
+  }
+
+  void changed(const ContactChange& change) {
+    if (change.caught || change.faces) bdf_.history_.restart_touching(contacts_);
+    if (change.faces || (change.caught && bdf_.k().order_2())) linearise();
+  }
+
+  void bodies_moved() {
+    if (bdf_.k().order_2() || !contacts_.touching_faces().empty()) linearise();
+  }
+
+ private:
+  void linearise() { bdf_.linearise(state_, stiffness_, contacts_, report_); }
+
+  Bdf& bdf_;
+  const State& state_;
+  Stiffness stiffness_;
+  ContactStep& contacts_;
+  StepReport& report_;
+  LinearReport linear_;
+  double wanted_, tolerance_;
+};
 
 bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
-  resize();
-  const double h = piece.h;
-  const double fall = h * system_.gravity_acceleration().norm();
-  weight_impulse_ = fall_energy_ = 0;
-  for (double m : system_.masses()) {
-    weight_impulse_ += m * m;
-    fall_energy_ += m * fall * fall;
-  }
-  weight_impulse_ = fall * std::sqrt(weight_impulse_);
-
-  choose_coefficients(state, h, piece.whole);
-  {
-    const Stopwatch watch(report.collide_ms);
-    constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h);
-  }
-  x_ = state.x;
-  v_ = state.v;
-  if (back_ > 0) look_back(state);
-  guess();
+  ContactStep contacts = begin(state, piece, report);  // what touches; c = gamma h; the first (x, v) and dv
   LinearReport linear;
-  bool full = false;  // the last Newton step was taken whole
-  for (int k = 0; k < options_.newton_iterations || !full; ++k) {
-    if (k == options_.newton_iterations + options_.max_rescues)
-      return fail(report, "no step lowers the energy", linear);
-    // Linearise at (x, v): A = M + c D + c^2 K, b = M (v_bar - v) + c (f - K y).
-    const Stiffness stiffness = full || k == 0 ? Stiffness::chord : Stiffness::majorant;
-    linearise(state, stiffness, report);
-    if (k > 0) {
-      if (full && nonlinear_residual() <= options_.newton_tolerance * weight_impulse_ + noise_.impulse) break;
-      guess_.setZero();
-    }
-    // Solve S (A dv - b) = 0 until the contacts agree with the solution.
-    linear = solve_within_contacts(state, stiffness, report);
-    ++report.newton_iterations;
-    if (!good(linear))
-      return fail(report, "linear solve: " + std::string(drape::name(linear.reason)), linear);
-    // v += dv, x = x_bar + c v
-    full = descend(k == 0);
-    if (!full) ++report.rescues;
-    x_ = x_bar_ + c_ * v_;
-    if (!x_.allFinite()) return fail(report, "the new positions are not finite numbers", linear);
+  for (NewtonLoop newton(options_); newton.next();) {
+    if (newton.exhausted()) return fail(report, "no step lowers the energy", linear.residual);
+    linearise(state, newton.stiffness(), contacts,
+              report);  // A = M + c D + c^2 K,  b = M (v_bar - v) + c (f - K y)
+    if (newton.may_stop() && residual(contacts) <= residual_wanted()) break;
+    if (!newton.first()) dv_.setZero();
+    ContactSolve solve(*this, state, newton.stiffness(), contacts, report);
+    const bool settled =
+        settle_contacts(contacts, options_.max_contact_solves, solve, report);  // S (A dv - b) = 0
+    linear = solve.linear();
+    if (!settled || !good(linear))
+      return fail(report, "linear solve: " + std::string(drape::name(linear.reason)), linear.residual);
+    newton.took(descend(contacts, newton.first()), report);  // v += dv, as far as Phi falls      [NW06, 3.1]
+    p_.x = k().x_bar + k().c * p_.v;                         // x = x_bar + c v
+    if (!p_.x.allFinite()) return fail(report, "the new positions are not finite numbers", linear.residual);
   }
-  if (back_ > 0 && makes_energy(state)) {
+  if (k().order_2() && merit_.makes_energy(state, p_, contacts.work())) {
     ++report.rescues;
-    return attempt(state, {h, false, piece.shortest}, report);
+    return attempt(state, {piece.h, false, piece.shortest}, report);  // order 1
   }
-  // In a shorter step the cloth weighs less on them; where none is short enough the report says so.
-  if (!constraints_.bodies_converged() && !piece.shortest)
-    return fail(report, "the motion of a body that reacts and that of the cloth do not agree", linear);
-  x_new_ = x_;
-  v_new_ = v_;
-  end_step(constraints_, x_new_, v_new_, report);
-  report.residual = std::max(report.residual, linear.residual);
-  report.converged = report.converged && linear.reason == StopReason::converged;
-  if (order_ == 2) remember(state, h);
-  state.x = x_new_;
-  state.v = v_new_;
-  state.time += h;
+  // In a shorter step the cloth weighs less on bodies; where none is short enough the report says so.
+  if (!contacts.bodies_agree() && !piece.shortest)
+    return fail(report, "the motion of a body that reacts and that of the cloth do not agree",
+                linear.residual);
+  finish(state, contacts, linear, report);
   return true;
 }
 
-// More than what moving bodies bring and the error of a smooth motion: order 2 has looked back across a
-// contact or a slackening of stiff cloth, and the step is taken again by order 1.
-bool Bdf::makes_energy(const State& state) const {
-  const double kinetic = system_.kinetic_energy(state.v), elastic = system_.elastic_energy(x_);
-  const double before = kinetic + system_.elastic_energy(state.x) + system_.gravity_energy(state.x);
-  const double after = system_.kinetic_energy(v_) + elastic + system_.gravity_energy(x_);
-  return after > before + constraints_.work() + 0.05 * fall_energy_ + 1e-3 * kinetic + noise_.energy(elastic);
-}
-
-void Bdf::choose_coefficients(const State& state, double h, bool whole) {
-  h_ = h;
-  // BDF2 is stable as long as steps grow by less than 1 + sqrt(2).   [Hairer, Norsett & Wanner, III.5]
-  const bool smooth = whole && past_.h > 0 && h <= 2 * past_.h && state.x.size() == past_.x_end.size() &&
-                      state.x == past_.x_end && state.v == past_.v_end;
-  ahead_ = order_ == 2 && smooth ? h / past_.h : 0;
-  back_ = ahead_ * ahead_ / (1 + 2 * ahead_);
-  c_ = (1 + ahead_) / (1 + 2 * ahead_) * h;
-}
-
-// The point of linearisation of order 2.
-void Bdf::look_back(const State& state) {
-  mark_touching();
-  v_ = state.v + ahead_ * (state.v - past_.v);
+ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& report) {
+  if (A_.follow_system()) {
+    const Eigen::Index n = 3 * system_.particles();
+    for (VecX* vector : {&y_, &b_, &b_rubbed_, &dv_, &v_base_, &r_, &end_.x, &end_.v}) vector->setZero(n);
+    filter_.reserve(static_cast<std::size_t>(system_.particles()));
+    friction_.reserve(static_cast<std::size_t>(system_.particles()));
+    history_.forget(system_);
+  }
+  merit_.begin(piece.h);
+  const Stopwatch watch(report.collide_ms);
+  ContactStep contacts = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, piece.h);
+  system_.begin_step({state.time, piece.h, state.x, state.v});
+  history_.begin(state, piece, contacts);
+  history_.first_point(state, p_);
+  // The first dv is free fall: so rigid motion is right from the first iterate, and a solve that is cut short
+  // cannot eat gravity. In the point of order 2 it is there already, but for what starts anew.
   for (int i = 0; i < system_.particles(); ++i)
-    if (restarts(i)) v_.segment<3>(3 * i) = state.v.segment<3>(3 * i);
-  x_ = state.x + back_ * (state.x - past_.x) + c_ * v_;
+    dv_.segment<3>(3 * i) =
+        history_.extrapolates(i) ? Vec3(Vec3::Zero()) : Vec3(piece.h * system_.gravity_acceleration());
+  return contacts;
 }
 
-// What the velocity will change by, as a start for the iteration: free fall. So rigid motion is right from
-// the first iterate, and a solve that is cut short cannot eat gravity. (Order 2: it is in the extrapolation.)
-void Bdf::guess() {
-  for (Eigen::Index i = 0; i < guess_.size() / 3; ++i)
-    guess_.segment<3>(3 * i) = back_ > 0 && !restarts(static_cast<int>(i))
-                                   ? Vec3::Zero()
-                                   : Vec3(h_ * system_.gravity_acceleration());
-}
-
-void Bdf::linearise(const State& state, Stiffness stiffness, StepReport& report) {
-  x_bar_ = state.x;
-  v_bar_ = state.v;
-  mass_ = system_.masses();
-  if (back_ > 0) {
-    x_bar_ += back_ * (state.x - past_.x);
-    v_bar_ += back_ * (state.v - past_.v);
-    restart_touching(state);
-  }
-  if (constraints_.correction().size() > 0) x_bar_ += constraints_.correction();
-  y_ = x_bar_ + c_ * v_ - x_;
+void Bdf::linearise(const State& state, Stiffness stiffness, const ContactStep& contacts,
+                    StepReport& report) {
+  history_.update(system_, state, contacts);
+  y_ = k().x_bar + k().c * p_.v - p_.x;
   const Stopwatch watch(report.assemble_ms);
-  assemble(stiffness);
-  noise_ = round_off(*A_, x_, v_, c_);
-}
-
-// Particles whose past says nothing of their future, because a body stopped them or may: see the header.
-void Bdf::restart_touching(const State& state) {
-  for (int i = 0; i < system_.particles(); ++i) {
-    if (!restarts(i)) continue;
-    mass_[static_cast<std::size_t>(i)] *= c_ / h_;
-    v_bar_.segment<3>(3 * i) = state.v.segment<3>(3 * i);
-    x_bar_.segment<3>(3 * i) = state.x.segment<3>(3 * i) + (h_ - c_) * state.v.segment<3>(3 * i);
-  }
-  constraints_.filter(state.v, filter_);
-  for (const FilterEntry& e : filter_.entries())
-    if (restarts(e.particle)) x_bar_.segment<3>(3 * e.particle) += (h_ - c_) * e.z;
-}
-
-void Bdf::remember(const State& state, double h) {
-  past_.x = state.x;
-  past_.v = state.v;
-  past_.x_end = x_new_;
-  past_.v_end = v_new_;
-  past_.h = h;
-  std::fill(past_.touched.begin(), past_.touched.end(), 0);
-  mark_touching();
-}
-
-void Bdf::mark_touching() {
-  for (const Contact& c : constraints_.touching()) past_.touched[static_cast<std::size_t>(c.particle)] = 1;
-  for (const MovingPin& p : constraints_.moving_pins())
-    past_.touched[static_cast<std::size_t>(p.particle)] = 1;
-  for (const FaceContact& c : constraints_.faces().touching())
-    if (c.active)
-      for (int i : c.particles) past_.touched[static_cast<std::size_t>(i)] = 1;
-}
-
-void Bdf::assemble(Stiffness stiffness) {
-  A_->set_to_mass(mass_);
   for_chunks(system_.particles(), [&](int begin, int end) {
-    for (int i = begin; i < end; ++i)
-      b_.segment<3>(3 * i) =
-          mass_[static_cast<std::size_t>(i)] *
-          (v_bar_.segment<3>(3 * i) - v_.segment<3>(3 * i) + fall_time(i) * system_.gravity_acceleration());
+    for (int i = begin; i < end; ++i) {
+      const auto particle = static_cast<std::size_t>(i);
+      b_.segment<3>(3 * i) = k().mass[particle] * (k().v_bar.segment<3>(3 * i) - p_.v.segment<3>(3 * i) +
+                                                   k().fall[particle] * system_.gravity_acceleration());
+    }
   });
-  for (const auto& force : system_.forces()) force->add_linearised(x_, v_, y_, c_, stiffness, *A_, b_);
+  A_.assemble({p_.x, p_.v, y_, k().c, stiffness}, k().mass, b_);
+  merit_.measure(A_.matrix(), p_, k().c);
 }
 
-LinearReport Bdf::solve_within_contacts(const State& state, Stiffness stiffness, StepReport& report) {
-  // Which contacts hold is found with loose solves; the last one is to the tolerance asked for, from where
-  // they came. Bodies that react wait for that one, and then the contacts may change their mind again.
-  const bool contact = !constraints_.bodies().empty();
-  double tolerance =
-      contact ? std::max(options_.tolerance, std::sqrt(options_.tolerance)) : options_.tolerance;
-  for (int round = 0;; ++round) {
-    LinearReport linear;
-    {
-      const Stopwatch watch(report.solve_ms);
-      linear = solve_once(tolerance);
-    }
-    ++report.linear_solves;
-    report.linear_iterations += linear.iterations;
-    if (linear.reason == StopReason::indefinite || linear.reason == StopReason::not_finite) return linear;
-    if (!contact) return linear;
-
-    const Stopwatch watch(report.collide_ms);
-    const double noise = 2 * linear.residual_impulse;  // what the solve left over is not a reaction
-    bool changed = false, anew = false;                // anew: the forces are others, too
-    if (round < options_.max_contact_solves) {
-      changed = constraints_.react(v_new_, r_, noise);
-      x_new_ = x_bar_ + c_ * v_new_;
-      const bool caught = constraints_.check_paths(x_new_), faces = constraints_.react_faces(x_new_, v_new_);
-      if ((caught || faces) && back_ > 0) mark_touching();  // what is caught now starts anew
-      changed = changed || caught || faces;
-      anew = (caught && back_ > 0) || faces;
-    }
-    if (!changed) {
-      if (linear.residual > options_.tolerance && tolerance > options_.tolerance) {
-        tolerance = options_.tolerance;
-      } else {
-        if (!constraints_.move_bodies(noise)) return linear;
-        round = 0;
-        anew = back_ > 0 || !constraints_.faces().touching().empty();  // what they touch moves otherwise, too
-      }
-    }
-    if (anew) linearise(state, stiffness, report);
-    guess_ = dv_;
-  }
+// |S b| at (x, v): what is left of the nonlinear equation in the free directions [N s].
+double Bdf::residual(ContactStep& contacts) {
+  add_friction(friction(contacts));
+  contacts.filter(p_.v, filter_);
+  filter_.apply(b_rubbed_);
+  return std::sqrt(dot(b_rubbed_, b_rubbed_));
 }
 
-LinearReport Bdf::solve_once(double tolerance) {
-  const BlockPattern& pattern = A_->pattern();
-  b_friction_ = b_;
-  add_contact_friction();
-  to_rows(pattern, b_friction_, b_rows_);
-  to_rows(pattern, guess_, dv_rows_);
-  constraints_.filter(v_, filter_);
-  filter_.renumber(pattern.row_of());
-  const LinearOptions options{tolerance, options_.max_linear_iterations, weight_impulse_};
-  const LinearReport linear = solver_->solve(*A_, b_rows_, filter_, options, dv_rows_);
-  to_particles(pattern, dv_rows_, dv_);
-  if (!constraints_.bodies().empty() || !constraints_.moving_pins().empty())
-    reaction();  // while the friction stands in A
-  remove_contact_friction();
-  return linear;
+double Bdf::residual_wanted() const {
+  return options_.newton_tolerance * merit_.weight_impulse() + merit_.noise_impulse();
 }
 
-// |S b| at (x, v): what is left of the nonlinear equation in the free directions.
-double Bdf::nonlinear_residual() {
-  b_friction_ = b_;
-  add_contact_friction();
-  remove_contact_friction();
-  constraints_.filter(v_, filter_);
-  filter_.apply(b_friction_);
-  return std::sqrt(dot(b_friction_, b_friction_));
-}
-
-// r = A dv - b: the impulse with which the constraints hold the particles.
-void Bdf::reaction() {
-  r_.resize(dv_.size());
-  r_rows_.resize(dv_.size());
-  A_->multiply(dv_rows_, r_rows_);
-  r_rows_ -= b_rows_;
-  to_particles(A_->pattern(), r_rows_, r_);
-  const auto unscale = [&](int particle) { r_.segment<3>(3 * particle) /= row_scale(particle); };
-  for (const Contact& c : constraints_.touching()) unscale(c.particle);
-  for (const MovingPin& p : constraints_.moving_pins()) unscale(p.particle);
-  v_new_ = v_ + dv_;
-  constraints_.receive(v_new_, r_);
-}
-
-const std::vector<ContactFriction>& Bdf::friction() {
-  friction_ = constraints_.friction();
+// The friction of contacts, scaled as the rows are.
+const std::vector<ContactFriction>& Bdf::friction(ContactStep& contacts) {
+  friction_ = contacts.friction();
   for (ContactFriction& f : friction_) {
-    f.damping *= row_scale(f.particle);
-    f.impulse *= row_scale(f.particle);
+    f.damping *= k().scale[static_cast<std::size_t>(f.particle)];
+    f.impulse *= k().scale[static_cast<std::size_t>(f.particle)];
   }
   return friction_;
 }
 
-void Bdf::add_contact_friction() {
-  rubbed_.clear();
-  for (const ContactFriction& f : friction()) {
-    const int slot = A_->pattern().diagonal(A_->pattern().row_of()[static_cast<std::size_t>(f.particle)]);
-    const Vec3 slip = v_.segment<3>(3 * f.particle) - f.body_velocity;
-    b_friction_.segment<3>(3 * f.particle) += f.impulse - h_ * (f.damping * slip);
-    rubbed_.emplace_back(slot, A_->at(slot));
-    A_->at(slot) += h_ * f.damping;
+// A += h D,  b_rubbed = b + the impulse - h D slip.
+void Bdf::add_friction(const std::vector<ContactFriction>& friction) {
+  b_rubbed_ = b_;
+  for (const ContactFriction& f : friction) {
+    const Vec3 slip = p_.v.segment<3>(3 * f.particle) - f.body_velocity;
+    b_rubbed_.segment<3>(3 * f.particle) += f.impulse - k().h * (f.damping * slip);
   }
+  A_.rub(
+      friction.size(), [&](std::size_t f) { return friction[f].particle; },
+      [&](std::size_t f) { return Mat3(k().h * friction[f].damping); });
 }
 
-void Bdf::remove_contact_friction() {
-  for (const auto& [slot, block] : rubbed_) A_->at(slot) = block;
+bool Bdf::descend(ContactStep& contacts, bool first) {
+  v_base_ = p_.v;
+  if (first) {  // standing still, but for what is prescribed
+    contacts.filter(p_.v, filter_);
+    v_base_ = -p_.v;
+    filter_.impose(v_base_);
+    v_base_ += p_.v;
+  }
+  return merit_.descend(k(), friction(contacts), v_base_, dv_, p_.v);
+}
+
+void Bdf::finish(State& state, ContactStep& contacts, const LinearReport& linear, StepReport& report) {
+  end_ = p_;
+  end_step(contacts, end_.x, end_.v, report);
+  report.residual = std::max(report.residual, linear.residual);
+  report.converged = report.converged && linear.reason == StopReason::converged;
+  history_.remember(state, end_, contacts);
+  state.x = end_.x;
+  state.v = end_.v;
+  state.time += k().h;
 }
 
 bool Bdf::good(const LinearReport& linear) const {
@@ -315,9 +231,9 @@ bool Bdf::good(const LinearReport& linear) const {
          (linear.reason == StopReason::iteration_limit && options_.max_linear_iterations > 0);
 }
 
-bool Bdf::fail(StepReport& report, const std::string& what, const LinearReport& linear) {
-  report.residual = linear.residual;
-  report.failure = {what, -1, std::string(system_.not_finite_force(x_, v_))};
+bool Bdf::fail(StepReport& report, const std::string& what, double linear_residual) {
+  report.residual = linear_residual;
+  report.failure = {what, -1, std::string(system_.not_finite_force(p_.x, p_.v))};
   double worst = -1;
   for (int i = 0; i < system_.particles(); ++i) {
     const double size = dv_.segment<3>(3 * i).norm();
@@ -326,60 +242,9 @@ bool Bdf::fail(StepReport& report, const std::string& what, const LinearReport& 
     report.failure.particle = i;
     if (!std::isfinite(size)) break;
   }
-  if (report.failure.force.empty()) report.failure.force = stiffest_force(report.failure.particle);
-  return false;
-}
-
-// The force with the largest stiffness at a particle, or one that is not finite: what to look at when a solve
-// failed there.
-std::string Bdf::stiffest_force(int particle) {
-  const int slot = A_->pattern().diagonal(A_->pattern().row_of()[static_cast<std::size_t>(particle)]);
-  std::string stiffest;
-  double most = -1;
-  for (const auto& force : system_.forces()) {
-    A_->set_to_mass(std::vector<double>(system_.masses().size(), 0.0));
-    force->add_linearised(x_, v_, y_, 1.0, Stiffness::majorant, *A_, b_);
-    const double size = A_->at(slot).norm();
-    if (size <= most) continue;
-    stiffest = force->name();
-    if (!std::isfinite(size)) break;
-    most = size;
-  }
-  return stiffest;
-}
-
-// Phi(v), see the header.
-double Bdf::potential(const VecX& v) {
-  x_new_ = x_bar_ + c_ * v;
-  const double inertia = sum_chunks(system_.particles(), [&](int begin, int end) {
-    double sum = 0;
-    for (int i = begin; i < end; ++i) {
-      const Vec3 d =
-          v.segment<3>(3 * i) - v_bar_.segment<3>(3 * i) - fall_time(i) * system_.gravity_acceleration();
-      sum += 0.5 * mass_[static_cast<std::size_t>(i)] * d.squaredNorm();
-    }
-    return sum;
-  });
-  return inertia + potential_of_forces(system_, friction(), x_new_, v, c_, h_);
-}
-
-// v <- v + dv when that lowers Phi, else as far towards it as does. True when the step was taken whole.
-bool Bdf::descend(bool first) {
-  v_base_ = v_;
-  if (first) {  // the point of linearisation: standing still, but for what is prescribed
-    constraints_.filter(v_, filter_);
-    v_base_ = -v_;
-    filter_.impose(v_base_);
-    v_base_ += v_;
-  }
-  v_ += dv_;
-  const double start = potential(v_base_);
-  // A tenth of the energy that the fall of one step brings: what a solve to its tolerance may leave.
-  const double allowed = start + 1e-9 * std::abs(start) + 0.05 * fall_energy_ + noise_.energy(start);
-  for (int halvings = 0; halvings < 12; ++halvings) {
-    if (potential(v_) <= allowed) return halvings == 0;
-    v_ = 0.5 * (v_ + v_base_);
-  }
+  if (report.failure.force.empty())
+    report.failure.force =
+        A_.stiffest_force(report.failure.particle, {p_.x, p_.v, y_, k().c, Stiffness::majorant});
   return false;
 }
 

@@ -79,11 +79,11 @@ StepReport Explicit::advance(State& state, double h) {
 void Explicit::count_given(const State& state) {
   double more = system_.kinetic_energy(motion_.start_velocity());
   if (x_.size() != state.x.size())
-    more += system_.elastic_energy(state.x);
+    more += system_.stored_energy(state.x);
   else if (x_ == state.x)
     more -= system_.kinetic_energy(v_);
   else
-    more += system_.elastic_energy(state.x) - system_.kinetic_energy(v_) - system_.elastic_energy(x_);
+    more += system_.stored_energy(state.x) - system_.kinetic_energy(v_) - system_.stored_energy(x_);
   given_ += std::max(0.0, more);
 }
 

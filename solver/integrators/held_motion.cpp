@@ -5,16 +5,16 @@
 
 #include "mesh/base/parallel.h"
 #include "mesh/base/stopwatch.h"
+#include "solver/integrators/contact_loop.h"
 
 namespace drape {
 
 void HeldMotion::begin(const State& state, double h, StepReport& report) {
   const Stopwatch watch(report.collide_ms);
-  if (contact_ == ContactMode::constraint)
-    constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h, false);
-  else
-    constraints_.begin_response(state.x, state.v, system_.masses(), state.time, h);
-  constraints_.filter(state.v, held_);
+  contacts_ = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h,
+                                      contact_ == ContactMode::constraint ? Look::here : Look::nowhere);
+  system_.begin_step({state.time, h, state.x, state.v});
+  contacts_->filter(state.v, held_);
   pull_.setZero(state.x.size());
   pulled_.setZero(state.x.size());
   v_start_ = state.v;
@@ -38,20 +38,42 @@ void HeldMotion::acceleration(const VecX& x, const VecX& v, VecX& a) {
     power_ += v.segment<3>(3 * e.particle).dot(pull_.segment<3>(3 * e.particle));
     a.segment<3>(3 * e.particle) = kept;
   }
-  for (const FaceContact& c : constraints_.faces().touching())
-    power_ += c.body_velocity.dot(c.force_at(x, v));
+  for (const FaceContact& c : contacts_->touching_faces()) power_ += c.body_velocity.dot(c.force_at(x, v));
 }
 
 bool HeldMotion::counts() const {
-  return !constraints_.touching().empty() || !constraints_.faces().touching().empty() ||
-         (!constraints_.bodies().empty() && !constraints_.moving_pins().empty());
+  return !contacts_->touching().empty() || !contacts_->touching_faces().empty() ||
+         (contacts_->bodies() && !contacts_->moving_pins().empty());
 }
 
 void HeldMotion::count(double duration, const VecX& x, const VecX& v) {
-  constraints_.count_face_impulse(duration, x, v);
+  contacts_->count_face_impulse(duration, x, v);
   for (const FilterEntry& e : held_.entries())
     pulled_.segment<3>(3 * e.particle) += duration * pull_.segment<3>(3 * e.particle);
 }
+
+// The constrained step with the mass alone.
+class HeldMotion::ContactSolve {
+ public:
+  ContactSolve(HeldMotion& motion, const State& state, const VecX& x, const VecX& v, double h)
+      : motion_(motion), state_(state), x_(x), v_(v), h_(h) {}
+
+  bool solve() {
+    motion_.move_within_constraints(state_, x_, h_);
+    return true;
+  }
+  ContactTrial trial() { return {motion_.v_new_, motion_.x_new_, motion_.r_, motion_.impulse_noise(h_)}; }
+  void release() { motion_.let_go(x_, v_); }
+  bool refine() { return false; }
+  void changed(const ContactChange&) {}
+  void bodies_moved() {}
+
+ private:
+  HeldMotion& motion_;
+  const State& state_;
+  const VecX &x_, &v_;
+  double h_;
+};
 
 bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOptions& options, State& state,
                         StepReport& report) {
@@ -62,22 +84,23 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
   }
   x_new_ = x;
   v_new_ = v;
-  if (!constraints_.bodies().empty()) {
+  if (contacts_->bodies()) {
     if (contact_ == ContactMode::constraint) {
       set_free(v);
-      solve_contacts(state, x, v, h, options, report);
+      ContactSolve solve(*this, state, x, v, h);
+      settle_contacts(*contacts_, options.max_contact_solves, solve, report);
     } else {
       const Stopwatch watch(report.collide_ms);
-      constraints_.respond(contact_, x, v, pulled_, x_new_, v_new_, impulse_noise(h));
+      contacts_->respond(contact_, x, v, pulled_, x_new_, v_new_, impulse_noise(h));
     }
-    constraints_.react_faces(x_new_, v_new_);
-    if (!constraints_.bodies_converged(0.5)) {  // what is nearer is counted as not converged
+    contacts_->settle_faces(x_new_, v_new_);
+    if (!contacts_->bodies_agree(0.5)) {  // what is nearer is counted as not converged
       report.done = false;
       report.failure = {.what = "the motion of a body that reacts and that of the cloth do not agree",
                         .force = {}};
       return false;
     }
-    end_step(constraints_, x_new_, v_new_, report);
+    end_step(*contacts_, x_new_, v_new_, report);
   }
   state.x = x_new_;
   state.v = v_new_;
@@ -97,7 +120,7 @@ void HeldMotion::set_free(const VecX& v) {
 // less friction; it moves from the next step on. Not h (I - S) M^-1 f, which is explicit: where the cloth is
 // stiff and h long it is far more than the particle would gain.
 void HeldMotion::let_go(const VecX& x, const VecX& v) {
-  for (const Contact& c : constraints_.touching()) {
+  for (const Contact& c : contacts_->touching()) {
     if (c.active() && c.grip != Grip::breaking_loose) continue;
     const auto held = std::find_if(held_.entries().begin(), held_.entries().end(),
                                    [&](const FilterEntry& e) { return e.particle == c.particle; });
@@ -121,39 +144,20 @@ double HeldMotion::impulse_noise(double h) const {
   return 1e-9 * heaviest * h * system_.gravity_acceleration().norm();
 }
 
-void HeldMotion::solve_contacts(const State& state, const VecX& x, const VecX& v, double h,
-                                const StepOptions& options, StepReport& report) {
-  const Stopwatch watch(report.collide_ms);
-  const double noise = impulse_noise(h);
-  for (int round = 0;; ++round) {
-    move_within_constraints(state, x, h);
-    constraints_.receive(v_new_, r_);
-    let_go(x, v);
-    bool changed = false;
-    if (round < options.max_contact_solves) {
-      changed = constraints_.react(v_new_, r_, noise);
-      if (constraints_.check_paths(x_new_)) changed = true;
-    }
-    if (changed) continue;
-    if (!constraints_.move_bodies(noise)) return;
-    round = 0;
-  }
-}
-
 // S (A dv - b) = 0 within the filter, A = m + h D of what rubs: one particle at a time.
 void HeldMotion::move_within_constraints(const State& state, const VecX& x, double h) {
   x_new_ = x;
   v_new_ = v_free_;
   r_.setZero(x.size());
   const auto mass = [&](int i) { return system_.masses()[static_cast<std::size_t>(i)]; };
-  const auto& friction = constraints_.friction();
+  const auto& friction = contacts_->friction();
   for (const ContactFriction& f : friction) {
     const Mat3 A = mass(f.particle) * Mat3::Identity() + h * f.damping;
     const Vec3 b = f.impulse - h * (f.damping * (v_free_.segment<3>(3 * f.particle) - f.body_velocity));
     v_new_.segment<3>(3 * f.particle) += A.inverse() * b;
     r_.segment<3>(3 * f.particle) -= b;
   }
-  constraints_.filter(v_free_, filter_);
+  contacts_->filter(v_free_, filter_);
   for (const FilterEntry& e : filter_.entries()) {
     const Vec3 v = v_free_.segment<3>(3 * e.particle), dv = v_new_.segment<3>(3 * e.particle) - v;
     v_new_.segment<3>(3 * e.particle) = v + (e.S * dv + e.z);
@@ -161,19 +165,19 @@ void HeldMotion::move_within_constraints(const State& state, const VecX& x, doub
   for (const ContactFriction& f : friction)
     r_.segment<3>(3 * f.particle) +=
         h * (f.damping * (v_new_.segment<3>(3 * f.particle) - v_free_.segment<3>(3 * f.particle)));
-  for (const MovingPin& pin : constraints_.moving_pins()) {
+  for (const MovingPin& pin : contacts_->moving_pins()) {
     const int i = 3 * pin.particle;
     x_new_.segment<3>(i) = state.x.segment<3>(i) + h * v_new_.segment<3>(i);
     r_.segment<3>(i) =
         pulled_.segment<3>(i) + mass(pin.particle) * (v_new_.segment<3>(i) - state.v.segment<3>(i));
   }
-  for (const Contact& c : constraints_.touching()) {
+  for (const Contact& c : contacts_->touching()) {
     const int i = 3 * c.particle;
     r_.segment<3>(i) += mass(c.particle) * (v_new_.segment<3>(i) - v_free_.segment<3>(i));
     // Along the planes as far as they say; across them as it came, and not h v: within a step it may vibrate.
     const Mat3 Q = c.locked_directions();
     const Vec3 wanted = h * v_new_.segment<3>(i) - (x.segment<3>(i) - state.x.segment<3>(i));
-    x_new_.segment<3>(i) += Q * (Q.transpose() * wanted) + constraints_.correction().segment<3>(i);
+    x_new_.segment<3>(i) += Q * (Q.transpose() * wanted) + contacts_->correction().segment<3>(i);
   }
 }
 

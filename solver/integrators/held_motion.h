@@ -13,6 +13,9 @@
 // x [m], v [m/s], h [s], f [N], r [N s].
 #pragma once
 
+#include <optional>
+
+#include "constraints/contact_step.h"
 #include "solver/integrators/integrator.h"
 
 namespace drape {
@@ -39,16 +42,17 @@ class HeldMotion {
               StepReport& report);
 
  private:
+  class ContactSolve;
+
   double impulse_noise(double h) const;
   void set_free(const VecX& v);
   void move_within_constraints(const State& state, const VecX& x, double h);
   void let_go(const VecX& x, const VecX& v);
-  void solve_contacts(const State& state, const VecX& x, const VecX& v, double h, const StepOptions& options,
-                      StepReport& report);
 
   System& system_;
   Constraints& constraints_;
   ContactMode contact_;
+  std::optional<ContactStep> contacts_;  // of the step under way
   Filter held_, filter_;
   VecX v_start_, v_free_, x_new_, v_new_, r_;
   VecX pull_, pulled_;  // N, N s, of what holds particles, besides bringing them to their velocity

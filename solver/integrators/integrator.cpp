@@ -19,9 +19,9 @@ void check_step(const System& system, const State& state, double h) {
                      std::to_string(system.particles()));
 }
 
-void end_step(Constraints& constraints, VecX& x, VecX& v, StepReport& report) {
+void end_step(ContactStep& contacts, VecX& x, VecX& v, StepReport& report) {
   const Stopwatch watch(report.collide_ms);
-  const ContactReport contact = constraints.end_step(x, v);
+  const ContactReport contact = contacts.finish(x, v);
   report.contacts = contact.contacts;
   report.guarded += contact.guarded;
   report.converged = report.converged && contact.converged;

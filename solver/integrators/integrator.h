@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "constraints/constraints.h"
+#include "constraints/contact_step.h"
 #include "solver/linear/linear_solver.h"
 #include "solver/system/system.h"
 
@@ -70,7 +70,7 @@ class Integrator {
 void check_step(const System& system, const State& state, double h);
 
 // Lets the constraints end a step at x, v, which they may change, and notes in the report what they found.
-void end_step(Constraints& constraints, VecX& x, VecX& v, StepReport& report);
+void end_step(ContactStep& contacts, VecX& x, VecX& v, StepReport& report);
 
 // "implicit-euler". Throws InputError for a name that integrators() does not list.
 std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,

@@ -16,10 +16,11 @@
 
 #include "mesh/base/parallel.h"
 #include "mesh/base/stopwatch.h"
-#include "solver/integrators/pieces.h"
-#include "solver/integrators/potential.h"
+#include "solver/integrators/contact_loop.h"
+#include "solver/integrators/merit.h"
+#include "solver/integrators/newton_matrix.h"
 #include "solver/integrators/sundials_integrators.h"
-#include "solver/integrators/sundials_newton.h"
+#include "solver/linear/sundials.h"
 
 namespace drape {
 namespace {
@@ -36,7 +37,7 @@ class NewtonKinsol final : public Integrator {
                const StepOptions& options)
       : system_(system), constraints_(constraints), options_(options), newton_(system, std::move(solver)) {
     const Eigen::Index n = 3 * system.particles();
-    for (VecX* vector : {&x_, &x_bar_, &v_, &v_n_, &v_here_, &F_, &f_scale_, &one_, &dv_, &minus_F_, &r_})
+    for (VecX* vector : {&x_, &x_bar_, &v_, &v_n_, &v_here_, &F_, &f_scale_, &b_, &one_, &dv_, &minus_F_})
       vector->setZero(n);
     one_.setOnes();
     sundials::View u(v_, context_);
@@ -68,6 +69,8 @@ class NewtonKinsol final : public Integrator {
   int solve_linear(N_Vector dv, N_Vector minus_F);
 
  private:
+  class ContactSolve;
+
   bool attempt(State& state, const Piece& piece);
   bool solve();
   int iterate(double wanted, double& norm);
@@ -81,9 +84,10 @@ class NewtonKinsol final : public Integrator {
 
   System& system_;
   Constraints& constraints_;
+  std::optional<ContactStep> contacts_;  // of the step under way
   StepOptions options_;
   sundials::Context context_;
-  sundials::Newton newton_;
+  NewtonMatrix newton_;
   void* kinsol_ = nullptr;
   SUNLinearSolver linear_ = nullptr;
   SUNMatrix matrix_ = nullptr;
@@ -95,7 +99,7 @@ class NewtonKinsol final : public Integrator {
   double h_ = 0, scale_ = 0;  // s, N s
   RoundOff noise_;            // where A was assembled last
   bool solved_ = false;       // the last equation, to its tolerance
-  VecX x_, x_bar_, v_, v_n_, v_here_, F_, f_scale_, one_, dv_, minus_F_, r_;
+  VecX x_, x_bar_, v_, v_n_, v_here_, F_, f_scale_, one_, b_, dv_, minus_F_;
 };
 
 StepReport NewtonKinsol::advance(State& state, double h) {
@@ -112,6 +116,33 @@ StepReport NewtonKinsol::advance(State& state, double h) {
   return report_;
 }
 
+// KINSOL's solution within the contacts as they are, from the last one on.
+class NewtonKinsol::ContactSolve {
+ public:
+  ContactSolve(NewtonKinsol& kinsol, const State& state) : kinsol_(kinsol), state_(state) {}
+
+  bool solve() {
+    kinsol_.x_bar_ = state_.x;
+    if (kinsol_.contacts_->correction().size() > 0) kinsol_.x_bar_ += kinsol_.contacts_->correction();
+    kinsol_.contacts_->filter(kinsol_.v_, kinsol_.filter_);
+    for (const FilterEntry& e : kinsol_.filter_.entries()) kinsol_.v_.segment<3>(3 * e.particle) += e.z;
+    kinsol_.friction_ = kinsol_.contacts_->friction();
+    return kinsol_.solve();
+  }
+  ContactTrial trial() {  // what is left of the equation in the locked directions is the reaction
+    kinsol_.equation(kinsol_.v_);
+    return {kinsol_.v_, kinsol_.x_, kinsol_.F_, 2 * kinsol_.report_.residual * kinsol_.scale_};
+  }
+  void release() {}
+  bool refine() { return false; }  // every solve is to the tolerance
+  void changed(const ContactChange&) {}
+  void bodies_moved() {}
+
+ private:
+  NewtonKinsol& kinsol_;
+  const State& state_;
+};
+
 bool NewtonKinsol::attempt(State& state, const Piece& piece) {
   const double h = piece.h;
   h_ = h;
@@ -125,41 +156,19 @@ bool NewtonKinsol::attempt(State& state, const Piece& piece) {
   f_scale_.setConstant(1 / scale_);
   {
     const Stopwatch watch(report_.collide_ms);
-    constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h);
+    contacts_ = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h);
+    system_.begin_step({state.time, h, state.x, state.v});
   }
   v_ = state.v;
   for (int i = 0; i < system_.particles(); ++i) v_.segment<3>(3 * i) += h * system_.gravity_acceleration();
-  for (int round = 0;; ++round) {
-    x_bar_ = state.x;
-    if (constraints_.correction().size() > 0) x_bar_ += constraints_.correction();
-    constraints_.filter(v_, filter_);
-    for (const FilterEntry& e : filter_.entries()) v_.segment<3>(3 * e.particle) += e.z;
-    friction_ = constraints_.friction();
-    if (!solve()) return false;
-    if (constraints_.bodies().empty()) break;
-    // What is left of the equation in the locked directions is the reaction.
-    const Stopwatch watch(report_.collide_ms);
-    equation(v_);
-    r_ = F_;
-    constraints_.receive(v_, r_);
-    const double noise = 2 * report_.residual * scale_;
-    bool changed = false;
-    if (round < options_.max_contact_solves) {
-      changed = constraints_.react(v_, r_, noise);
-      x_ = x_bar_ + h * v_;
-      if (constraints_.check_paths(x_)) changed = true;
-      if (constraints_.react_faces(x_, v_)) changed = true;
-    }
-    if (changed) continue;
-    if (!constraints_.move_bodies(noise)) break;
-    round = 0;
-  }
-  if (!constraints_.bodies_converged() && !piece.shortest)  // the report says so then
+  ContactSolve solve(*this, state);
+  if (!settle_contacts(*contacts_, options_.max_contact_solves, solve, report_)) return false;
+  if (!contacts_->bodies_agree() && !piece.shortest)  // the report says so then
     return fail("the motion of a body that reacts and that of the cloth do not agree");
   x_ = x_bar_ + h * v_;
   if (!x_.allFinite()) return fail("the new positions are not finite numbers");
   report_.converged = report_.converged && solved_;
-  end_step(constraints_, x_, v_, report_);
+  end_step(*contacts_, x_, v_, report_);
   state.x = x_;
   state.v = v_;
   state.time += h;
@@ -271,8 +280,11 @@ int NewtonKinsol::set_up(N_Vector v) {
 void NewtonKinsol::assemble(const VecX& v) {
   const Stopwatch watch(report_.assemble_ms);
   x_ = x_bar_ + h_ * v;
-  newton_.assemble(x_, v, v, h_, search_.stiffness);
-  for (const ContactFriction& f : friction_) newton_.add_to_diagonal(f.particle, h_ * f.damping);
+  newton_.follow_system();
+  newton_.assemble({x_, v, v, h_, search_.stiffness}, system_.masses(), b_);  // of b nothing is needed
+  newton_.rub(
+      friction_.size(), [&](std::size_t f) { return friction_[f].particle; },
+      [&](std::size_t f) { return Mat3(h_ * friction_[f].damping); });
   noise_ = round_off(newton_.matrix(), x_, v, h_);
 }
 

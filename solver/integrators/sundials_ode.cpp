@@ -15,8 +15,9 @@
 
 #include "mesh/base/stopwatch.h"
 #include "solver/integrators/held_motion.h"
+#include "solver/integrators/newton_matrix.h"
 #include "solver/integrators/sundials_integrators.h"
-#include "solver/integrators/sundials_newton.h"
+#include "solver/linear/sundials.h"
 
 namespace drape {
 namespace {
@@ -58,7 +59,7 @@ class SundialsOde final : public Integrator {
   HeldMotion motion_;
   StepOptions options_;
   sundials::Context context_;
-  sundials::Newton newton_;
+  NewtonMatrix newton_;
   void* memory_ = nullptr;
   SUNLinearSolver linear_ = nullptr;
   SUNNonlinearSolver fixed_point_ = nullptr;
@@ -267,10 +268,12 @@ int SundialsOde::solve_linear(N_Vector d, N_Vector r) {
     const Stopwatch watch(report_.assemble_ms);
     x_ = sundials::numbers(y).head(n);
     v_ = sundials::numbers(y).tail(n);
-    newton_.assemble(x_, v_, rx, g, Stiffness::tangent);  // its right side: g (f - K rx)
+    b_.setZero(n);
+    newton_.follow_system();
+    newton_.assemble({x_, v_, rx, g, Stiffness::tangent}, system_.masses(), b_);  // g (f - K rx)
     f_.setZero(n);
     for (const auto& force : system_.forces()) force->add_force(x_, v_, f_);
-    b_ = newton_.right_side() - g * f_;
+    b_ -= g * f_;
     for (int i = 0; i < system_.particles(); ++i)
       b_.segment<3>(3 * i) += system_.masses()[static_cast<std::size_t>(i)] * dv_.segment<3>(3 * i);
   }

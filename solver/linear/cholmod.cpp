@@ -65,7 +65,7 @@ class Cholmod final : public LinearSolver {
     {
       const Stopwatch watch(report.setup_ms);
       system_.project(A, b, filter, options);
-      factorise(A.pattern().serial(), report);
+      factorise(A.serial(), report);
     }
     if (report.reason != StopReason::converged) return report;
     {

@@ -20,9 +20,9 @@ class EigenLdlt final : public LinearSolver {
     {
       const Stopwatch watch(report.setup_ms);
       system_.project(A, b, filter, options);
-      if (analysed_ != A.pattern().serial()) {
+      if (analysed_ != A.serial()) {
         factor_.analyzePattern(system_.matrix());
-        analysed_ = A.pattern().serial();
+        analysed_ = A.serial();
         report.analyses = 1;
       }
       factor_.factorize(system_.matrix());

@@ -86,17 +86,18 @@ class Petsc final : public LinearSolver {
       if (!positive_definite(projected.block(pattern.diagonal(r), r, r)))
         report.reason = StopReason::indefinite;
     if (report.reason != StopReason::converged) return;
-    const bool same = serial_ == pattern.serial();
-    if (!same) below_ = below_diagonal(pattern);
-    const ProjectedRows both_halves(A, projected, below_);
+    const bool same = serial_ == A.serial();
+    if (!same) below_ = below_diagonal(A);
     start_.assign(1, 0);
     column_.clear();
     block_.clear();
     for (int r = 0; r < A.rows(); ++r) {
-      both_halves.each(r, [&](int c, const Mat3& block) {
-        column_.push_back(c);
+      const auto add = [&](int column, const Mat3& block) {
+        column_.push_back(column);
         block_.push_back(block);
-      });
+      };
+      below_.in_column(r, [&](int c, int slot) { add(c, projected.block(slot, c, r).transpose()); });
+      A.each(r, [&](int c, int slot) { add(c, projected.block(slot, r, c)); });
       start_.push_back(static_cast<PetscInt>(column_.size()));
     }
     MatDestroy(&matrix_);
@@ -114,7 +115,7 @@ class Petsc final : public LinearSolver {
     KSPSetOperators(ksp_, matrix_, rows_);
     if (KSPSetUp(ksp_) != 0) report.reason = StopReason::indefinite;
     if (!same) ++report.analyses;
-    serial_ = report.reason == StopReason::converged ? pattern.serial() : 0;
+    serial_ = report.reason == StopReason::converged ? A.serial() : 0;
   }
 
   void iterate(int rows, const LinearOptions& options, double reference, VecX& y, LinearReport& report) {

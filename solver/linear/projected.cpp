@@ -4,33 +4,29 @@
 
 namespace drape {
 
-void ProjectedSystem::build_pattern(const BlockPattern& pattern) {
-  const std::vector<int>&start = pattern.row_start(), &column = pattern.column();
-  const int n = 3 * pattern.rows();
+void ProjectedSystem::build_pattern(const BlockMatrix& A) {
+  const int n = 3 * A.rows();
   matrix_.resize(n, n);
   int* outer = matrix_.outerIndexPtr();
   std::vector<int> inner;
-  inner.reserve(static_cast<std::size_t>(pattern.blocks()) * 5);
-  for (int j = 0; j < pattern.rows();
-       ++j) {  // the pattern is symmetric: row j of blocks is column j of blocks
+  inner.reserve(static_cast<std::size_t>(A.pattern().blocks() + A.overlay().blocks()) * 9);
+  for (int j = 0; j < A.rows(); ++j)  // the matrix is symmetric: row j of blocks is column j of blocks
     for (int c = 0; c < 3; ++c) {
       outer[3 * j + c] = static_cast<int>(inner.size());
-      for (int s = pattern.diagonal(j); s < start[static_cast<std::size_t>(j) + 1]; ++s)
+      A.each(j, [&](int column, int) {
         for (int r = 0; r < 3; ++r)
-          if (const int row = 3 * column[static_cast<std::size_t>(s)] + r; row >= 3 * j + c)
-            inner.push_back(row);
+          if (const int row = 3 * column + r; row >= 3 * j + c) inner.push_back(row);
+      });
     }
-  }
   outer[n] = static_cast<int>(inner.size());
   matrix_.resizeNonZeros(static_cast<Eigen::Index>(inner.size()));
   std::copy(inner.begin(), inner.end(), matrix_.innerIndexPtr());
-  serial_ = pattern.serial();
+  serial_ = A.serial();
 }
 
 void ProjectedSystem::project(const BlockMatrix& A, const VecX& b, const Filter& filter,
                               const LinearOptions& options) {
-  const BlockPattern& pattern = A.pattern();
-  if (serial_ != pattern.serial()) build_pattern(pattern);
+  if (serial_ != A.serial()) build_pattern(A);
   right_.resize(b.size());
   z_.resize(b.size());
   reference_ = reference_impulse(A, b, filter, options, z_, right_);  // leaves S (b - A z) in right_
@@ -43,24 +39,22 @@ void ProjectedSystem::project(const BlockMatrix& A, const VecX& b, const Filter&
     return e < 0 ? nullptr : &filter.entries()[static_cast<std::size_t>(e)];
   };
   double* value = matrix_.valuePtr();
-  const std::vector<int>&start = pattern.row_start(), &column = pattern.column();
   for (int j = 0; j < A.rows(); ++j) {
     const FilterEntry* fj = S_of(j);
-    const int first = pattern.diagonal(j), last = start[static_cast<std::size_t>(j) + 1];
-    for (int s = first; s < last; ++s) {
-      const int i = column[static_cast<std::size_t>(s)];
+    int above = 0;  // how many numbers of the column of the block stand above it
+    A.each(j, [&](int i, int slot) {
       const FilterEntry* fi = S_of(i);
-      Mat3 block = A.at(s).transpose();  // block (j, i) of a symmetric matrix, turned to (i, j)
+      Mat3 block = A.at(slot).transpose();  // block (j, i) of a symmetric matrix, turned to (i, j)
       if (fi) block = fi->S * block;
       if (fj) block = block * fj->S;
       if (fi && i == j) block += Mat3::Identity() - fi->S;
-      const int above = 3 * (s - first);
-      for (int c = 0; c < 3;
-           ++c)  // column c starts c entries lower: its part above the diagonal is not stored
+      // Column c starts c entries lower: its part above the diagonal is not stored.
+      for (int c = 0; c < 3; ++c)
         for (int r = (i == j ? c : 0); r < 3; ++r)
           value[static_cast<std::ptrdiff_t>(matrix_.outerIndexPtr()[3 * j + c]) + above + r - c] =
               block(r, c);
-    }
+      above += 3;
+    });
   }
 }
 

@@ -1,8 +1,8 @@
 // The filtered system as an ordinary sparse one, for solvers that know no filter:             [Tamstorf,
 // Jones & McCormick 2015]
 //   (S A S + I - S) y = S (b - A z),   dv = S y + z
-// The lower triangle, column by column; its pattern is kept while the block pattern's serial stands, values
-// are refilled.
+// The lower triangle, column by column; its pattern is kept while the serial of the matrix stands, values are
+// refilled.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -22,7 +22,7 @@ class ProjectedSystem {
   double reference() const { return reference_; }  // N s, what a residual is relative to
 
  private:
-  void build_pattern(const BlockPattern& pattern);
+  void build_pattern(const BlockMatrix& A);
 
   Matrix matrix_;
   std::uint64_t serial_ = 0;

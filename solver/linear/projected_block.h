@@ -43,7 +43,7 @@ class ProjectedBlocks {
   std::vector<int> entry_;  // row -> entry of the filter, -1: free
 };
 
-// What stands below the diagonal, by rows: the place of an entry is the slot of its transpose.
+// What stands below the diagonal of the base, by rows: the place of an entry is the slot of its transpose.
 inline Mirror below_diagonal(const BlockPattern& pattern) {
   Mirror below;
   below.build(pattern.rows(), pattern.rows(), [&](int r, const auto& f) {
@@ -53,7 +53,18 @@ inline Mirror below_diagonal(const BlockPattern& pattern) {
   return below;
 }
 
-// The projected matrix with both its halves, row by row.
+// The same of the whole matrix, the overlay included.
+inline Mirror below_diagonal(const BlockMatrix& A) {
+  Mirror below;
+  below.build(A.rows(), A.rows(), [&](int r, const auto& f) {
+    A.each(r, [&](int c, int slot) {
+      if (c != r) f(c, slot);
+    });
+  });
+  return below;
+}
+
+// The projected base of the matrix with both its halves, row by row: what a preconditioner is made from.
 class ProjectedRows {
  public:
   ProjectedRows(const BlockMatrix& A, const ProjectedBlocks& projected, const Mirror& below)

@@ -1,75 +1,74 @@
-// The global sparse symmetric matrix in 3x3 blocks: a pattern that is built once, values that are refilled
-// every step.
-//   Rows are renumbered by reverse Cuthill-McKee for locality [Cuthill & McKee 1969]; row_of() maps particle
-//   -> row. The upper triangle is stored, the diagonal block first in its row, a block column by column (9
-//   doubles): a block (i, j) also stands for its transpose (j, i). Rows are cut into chunks at least as long
-//   as the bandwidth: an element, and a row of the product, touches the chunk of its lowest row and the next
-//   one only, so all even chunks can be done at the same time, then all odd ones, without locks and in an
-//   order that no thread count changes.
+// The global sparse symmetric matrix in 3x3 blocks: a base whose pattern stands (solver/matrix/block_pattern.h),
+// an overlay of blocks that come and go (solver/matrix/block_overlay.h), and values that are refilled every
+// step. A block is stored column by column, 9 doubles.
 #pragma once
 
-#include <cstdint>
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
-#include "mesh/base/vectors.h"
+#include "solver/matrix/block_overlay.h"
+#include "solver/matrix/block_pattern.h"
 
 namespace drape {
 
-struct ParticlePair {
-  int i, j;
-};
-
-class BlockPattern {
- public:
-  // particles: how many; pairs: which particles act on each other (any order, repeats allowed).
-  BlockPattern(int particles, std::vector<ParticlePair> pairs);
-
-  int rows() const { return static_cast<int>(row_start_.size()) - 1; }
-  int blocks() const { return static_cast<int>(column_.size()); }  // stored ones: of the upper triangle
-  std::uint64_t serial() const { return serial_; }  // differs between any two patterns of a process
-
-  const std::vector<int>& row_of() const { return row_of_; }            // particle -> row
-  const std::vector<int>& particle_of() const { return particle_of_; }  // row -> particle
-  const std::vector<int>& row_start() const { return row_start_; }      // rows + 1
-  const std::vector<int>& column() const { return column_; }  // ascending within a row, from the row itself
-  int diagonal(int row) const { return row_start_[static_cast<std::size_t>(row)]; }
-  int slot(int row, int column) const;  // row <= column; throws std::logic_error when there is no such block
-
-  int bandwidth() const { return bandwidth_; }
-  int chunk_rows() const { return chunk_rows_; }
-  int chunks() const { return (rows() + chunk_rows_ - 1) / chunk_rows_; }
-
- private:
-  std::vector<int> row_of_, particle_of_, row_start_, column_;
-  int bandwidth_ = 0, chunk_rows_ = 1;
-  std::uint64_t serial_ = 0;
+// What is added to the diagonal block of a row.
+struct DiagonalBlock {
+  int row;
+  Mat3 block;
 };
 
 class BlockMatrix {
  public:
-  explicit BlockMatrix(std::shared_ptr<const BlockPattern> pattern);
+  // The overlay may change its blocks; the matrix follows when it is set to the mass. Null: there is none.
+  explicit BlockMatrix(std::shared_ptr<const BlockPattern> pattern,
+                       std::shared_ptr<const BlockOverlay> overlay = nullptr);
 
   const BlockPattern& pattern() const { return *pattern_; }
+  const BlockOverlay& overlay() const { return *overlay_; }
   int rows() const { return pattern_->rows(); }
+  // Of the base and the overlay together: what a solver that analyses the whole matrix has to look at.
+  std::uint64_t serial() const { return overlay_->empty() ? pattern_->serial() : overlay_->serial(); }
 
   double* block(int slot) { return values_.data() + 9 * static_cast<std::size_t>(slot); }
   const double* block(int slot) const { return values_.data() + 9 * static_cast<std::size_t>(slot); }
   Eigen::Map<Mat3> at(int slot) { return Eigen::Map<Mat3>(block(slot)); }
   Eigen::Map<const Mat3> at(int slot) const { return Eigen::Map<const Mat3>(block(slot)); }
 
+  // The blocks of a row from the diagonal on, columns ascending, those of the overlay among them:
+  // f(column, slot).
+  template <class F>
+  void each(int row, const F& f) const;
+
   // All zero but the diagonal blocks, which become mass of the row's particle times the identity.
   void set_to_mass(const std::vector<double>& mass);
+  // What stands on the diagonal besides what was assembled, in place of what was given the last time: a
+  // contact that rubs another way needs no new assembly. Rows at most once each.
+  void set_diagonal_additions(std::span<const DiagonalBlock> additions);
 
   void multiply(const VecX& x, VecX& y) const;  // y = A x, in row order
 
  private:
+  void multiply_base(const VecX& x, VecX& y) const;
+  void add_overlay(const VecX& x, VecX& y) const;
+
   std::shared_ptr<const BlockPattern> pattern_;
+  std::shared_ptr<const BlockOverlay> overlay_;
   std::vector<double> values_;  // 9 a block, and 3 more, so that the last column can be read four wide
+  std::vector<std::pair<int, Mat3>> assembled_;  // slots of diagonal blocks with additions: without them
 };
 
-// Particle order <-> row order, three numbers a particle.
-void to_rows(const BlockPattern& pattern, const VecX& by_particle, VecX& by_row);
-void to_particles(const BlockPattern& pattern, const VecX& by_row, VecX& by_particle);
+template <class F>
+void BlockMatrix::each(int row, const F& f) const {
+  int s = pattern_->diagonal(row);
+  const int end = pattern_->row_start()[static_cast<std::size_t>(row) + 1];
+  const auto column = [&] { return pattern_->column()[static_cast<std::size_t>(s)]; };
+  overlay_->right_of_diagonal(row, [&](const BlockOverlay::Entry& e) {
+    for (; s < end && column() < e.column; ++s) f(column(), s);
+    f(e.column, e.slot);
+  });
+  for (; s < end; ++s) f(column(), s);
+}
 
 }  // namespace drape

@@ -46,15 +46,53 @@ const std::shared_ptr<const BlockPattern>& System::bind() {
     std::vector<ParticlePair> pairs;
     for (const auto& force : forces_) force->list_pairs(pairs);
     pattern_ = std::make_shared<const BlockPattern>(particles(), std::move(pairs));
-    for (const auto& force : forces_) force->bind(*pattern_);
+    overlay_ = std::make_shared<BlockOverlay>();
+    cover_changing();
+    for (const auto& force : forces_) force->bind(BlockLayout(*pattern_, *overlay_));
   }
   return pattern_;
 }
 
+void System::cover_changing() {
+  changing_.clear();
+  for (const auto& force : forces_) force->list_changing_pairs(changing_);
+  overlay_->assign(*pattern_, changing_);
+}
+
+void System::begin_step(const StepStart& start) {
+  bind();
+  bool changed = false;
+  for (const auto& force : forces_)
+    if (force->begin_step(start)) changed = true;
+  if (!changed) return;
+  cover_changing();
+  for (const auto& force : forces_)
+    if (force->changes()) force->bind(BlockLayout(*pattern_, *overlay_));
+}
+
+BlockMatrix System::matrix() {
+  bind();
+  return BlockMatrix(pattern_, overlay_);
+}
+
 double System::elastic_energy(const VecX& x) const {
   double sum = 0;
-  for (const auto& force : forces_) sum += force->energy(x);
+  for (const auto& force : forces_)
+    if (!force->from_contact()) sum += force->energy(x);
   return sum;
+}
+
+double System::contact_energy(const VecX& x) const {
+  double sum = 0;
+  for (const auto& force : forces_)
+    if (force->from_contact()) sum += force->energy(x);
+  return sum;
+}
+
+double System::stored_energy(const VecX& x) const { return elastic_energy(x) + contact_energy(x); }
+
+double System::total_energy(const State& state) const {
+  return kinetic_energy(state.v) + stored_energy(state.x) + gravity_energy(state.x);
 }
 
 double System::kinetic_energy(const VecX& v) const {

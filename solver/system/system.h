@@ -31,10 +31,16 @@ class System {
 
   // The pattern of all forces together; built, and the forces bound to it, on the first call after a change.
   const std::shared_ptr<const BlockPattern>& bind();
+  // Before a step: forces find the stencils that come and go, whose blocks make up the overlay.
+  void begin_step(const StepStart& start);
+  BlockMatrix matrix();  // of the pattern, and of the overlay as it will be in each step
 
-  double elastic_energy(const VecX& x) const;      // J
-  double kinetic_energy(const VecX& v) const;      // J
-  double gravity_energy(const VecX& x) const;      // J, zero at the origin
+  double elastic_energy(const VecX& x) const;     // J, a function of x alone
+  double contact_energy(const VecX& x) const;     // J, of the contacts of the step, where the cloth gives way
+  double stored_energy(const VecX& x) const;      // J, both
+  double kinetic_energy(const VecX& v) const;     // J
+  double gravity_energy(const VecX& x) const;     // J, zero at the origin
+  double total_energy(const State& state) const;  // J: kinetic, stored and of gravity
   VecX force(const VecX& x, const VecX& v) const;  // N, gravity included
 
   // Which force first gives something that is not a finite number at (x, v); "gravity" and the like. Empty:
@@ -42,10 +48,14 @@ class System {
   std::string_view not_finite_force(const VecX& x, const VecX& v) const;
 
  private:
+  void cover_changing();  // the overlay gets the blocks of the stencils that come and go
+
   std::vector<double> masses_;
   std::vector<std::unique_ptr<Force>> forces_;
   Vec3 gravity_ = Vec3::Zero();
   std::shared_ptr<const BlockPattern> pattern_;
+  std::shared_ptr<BlockOverlay> overlay_;
+  std::vector<ParticlePair> changing_;  // scratch of begin_step
 };
 
 }  // namespace drape

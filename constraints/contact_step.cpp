@@ -1,0 +1,160 @@
+#include "constraints/contact_step.h"
+
+#include <algorithm>
+
+namespace drape {
+
+void ContactStep::filter(const VecX& v, Filter& filter) const {
+  filter.clear();
+  constraints_->pins_.filter(constraints_->step_, v, filter);
+  constraints_->contacts_.filter(constraints_->step_, v, filter);
+}
+
+const std::vector<ContactFriction>& ContactStep::friction() {
+  return constraints_->contacts_.make_friction(constraints_->bodies_, constraints_->step_);
+}
+
+const VecX& ContactStep::correction() const { return constraints_->contacts_.correction(); }
+const std::vector<Contact>& ContactStep::touching() const { return constraints_->contacts_.touching(); }
+const std::vector<FaceContact>& ContactStep::touching_faces() const {
+  return constraints_->faces_.touching();
+}
+
+void ContactStep::clear_impulses() {
+  constraints_->step_.work = 0;
+  for (MovingBody& body : constraints_->bodies_) body.clear_impulse();
+}
+
+// The other side of an impulse on a particle, which ends the step with v and is pushed at body_velocity.
+void ContactStep::push(int body, int particle, const Vec3& v, const Vec3& body_velocity,
+                       const Vec3& impulse) {
+  const StepMotion& step = constraints_->step_;
+  constraints_->step_.work += body_velocity.dot(impulse);
+  constraints_->bodies_[static_cast<std::size_t>(body)].push(
+      -impulse, step.place(particle) + step.h * v, (body_velocity - step.velocity(particle)).norm());
+}
+
+void ContactStep::receive(const VecX& v, const VecX& r) {
+  clear_impulses();
+  for (const Contact& c : touching()) {
+    if (!c.active()) continue;
+    Vec3 rest = r.segment<3>(3 * c.particle);
+    const std::array<double, 3> lambda = multipliers(c, rest);
+    for (int k = 1; k < c.planes; ++k) {  // of several bodies each has its plane's part
+      const ContactPlane& p = c.plane[static_cast<std::size_t>(k)];
+      const Vec3 part = lambda[static_cast<std::size_t>(k)] * p.normal;
+      push(p.obstacle, c.particle, v.segment<3>(3 * c.particle), p.body_velocity, part);
+      rest -= part;
+    }
+    push(c.plane[0].obstacle, c.particle, v.segment<3>(3 * c.particle), c.body_velocity(), rest);
+  }
+  for (const ContactFriction& f : constraints_->contacts_.friction()) {
+    const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
+    push(f.body, f.particle, v.segment<3>(3 * f.particle), f.body_velocity,
+         f.impulse - constraints_->step_.h * (f.damping * slip));
+  }
+  receive_faces(v);
+  for (const MovingPin& pin : moving_pins()) receive_pin(pin, r.segment<3>(3 * pin.particle));
+}
+
+void ContactStep::receive_pin(const MovingPin& pin, const Vec3& impulse) {
+  const Vec3 velocity = constraints_->pins_.velocity(pin.particle);
+  if (pin.body < 0)
+    constraints_->step_.work += velocity.dot(impulse);
+  else
+    push(pin.body, pin.particle, velocity, velocity, impulse);
+}
+
+void ContactStep::receive_faces(const VecX& v) {
+  FaceContacts& faces = constraints_->faces_;
+  if (faces.touching().empty()) return;
+  const StepMotion& step = constraints_->step_;
+  VecX& x_new = constraints_->x_new_;
+  x_new = step.x + step.h * v + correction();
+  faces.take_impulse(step.h, x_new, v);
+  for (const FaceContact& c : faces.touching()) {
+    constraints_->step_.work += c.body_velocity.dot(c.impulse);
+    constraints_->bodies_[static_cast<std::size_t>(c.body)].push(-c.impulse, c.at(x_new),
+                                                                 (c.at(step.v) - c.body_velocity).norm());
+  }
+}
+
+ContactChange ContactStep::judge(const VecX& v, const VecX& r, const VecX& x_new, double noise) {
+  const StepMotion& step = constraints_->step_;
+  ParticleContacts& contacts = constraints_->contacts_;
+  ContactChange change;
+  change.grip = contacts.react(constraints_->bodies_, step, v, r, noise);
+  change.caught = contacts.find_on_path(constraints_->bodies_, step, x_new);
+  if (step.look == Look::ahead) change.faces = constraints_->faces_.react(x_new, v);
+  return change;
+}
+
+bool ContactStep::move_bodies(double noise) {
+  std::vector<MovingBody>& bodies = constraints_->bodies_;
+  bool moved = false;
+  for (MovingBody& body : bodies)
+    if (body.correct(noise)) moved = true;
+  if (!moved) return false;
+  constraints_->contacts_.follow(bodies, constraints_->step_);
+  constraints_->faces_.follow(bodies);
+  constraints_->pins_.move(bodies, constraints_->step_);
+  return true;
+}
+
+bool ContactStep::bodies_agree(double share) const {
+  return std::all_of(
+      constraints_->bodies_.begin(), constraints_->bodies_.end(),
+      [share](const MovingBody& body) { return !body.reacting() || body.reacting()->converged(share); });
+}
+
+void ContactStep::respond(ContactMode mode, const VecX& x, const VecX& v, const VecX& pulled, VecX& x_new,
+                          VecX& v_new, double noise) {
+  const StepMotion& step = constraints_->step_;
+  const PinSet& pins = constraints_->pins_;
+  bool moved = false;
+  for (bool again = true; again; moved = moved || again) {
+    constraints_->contacts_.respond(mode, constraints_->bodies_, step, x, v, x_new, v_new);
+    clear_impulses();
+    constraints_->contacts_.each_response([&](const ContactResponse& r) {
+      constraints_->step_.work += r.body_velocity.dot(r.impulse);
+      constraints_->bodies_[static_cast<std::size_t>(r.body)].push(-r.impulse, r.place, r.approach);
+    });
+    receive_faces(v_new);
+    for (const MovingPin& pin : moving_pins()) {
+      const Vec3 brought = pins.velocity(pin.particle) - step.velocity(pin.particle);
+      receive_pin(pin, pulled.segment<3>(3 * pin.particle) + step.mass(pin.particle) * brought);
+    }
+    again = move_bodies(noise);
+  }
+  if (!moved) return;
+  for (const MovingPin& pin : moving_pins()) {  // with the body as it moves now
+    const Vec3 velocity = pins.velocity(pin.particle);
+    x_new.segment<3>(3 * pin.particle) = step.place(pin.particle) + step.h * velocity;
+    v_new.segment<3>(3 * pin.particle) = velocity;
+  }
+}
+
+void ContactStep::count_face_impulse(double duration, const VecX& x, const VecX& v) {
+  constraints_->faces_.count_impulse(duration, x, v);
+}
+
+void ContactStep::settle_faces(const VecX& x_new, const VecX& v_new) {
+  constraints_->faces_.react(x_new, v_new);
+}
+
+ContactReport ContactStep::finish(VecX& x_new, VecX& v_new) {
+  ContactReport report;
+  if (!bodies()) return report;
+  StepMotion& step = constraints_->step_;
+  constraints_->contacts_.guard(constraints_->bodies_, step, x_new, v_new, report);
+  constraints_->contacts_.commit();
+  constraints_->faces_.end_step(constraints_->bodies_, step.x, x_new);
+  for (MovingBody& body : constraints_->bodies_)
+    if (!body.end_step()) report.converged = false;
+  step.last_h = step.h;
+  step.x_end = x_new;
+  report.contacts = static_cast<int>(constraints_->contacts().size());
+  return report;
+}
+
+}  // namespace drape

@@ -1,0 +1,189 @@
+#include "constraints/particle_contacts.h"
+
+#include <algorithm>
+
+#include "mesh/base/parallel.h"
+
+namespace drape {
+namespace {
+
+const ContactPlane* plane_with(const Contact* contact, int obstacle) {
+  if (!contact) return nullptr;
+  for (int k = 0; k < contact->planes; ++k)
+    if (const ContactPlane& p = contact->plane[static_cast<std::size_t>(k)]; p.obstacle == obstacle)
+      return &p;
+  return nullptr;
+}
+
+// f(particle, chunk) for all that is not held.
+template <class F>
+void for_free(const StepMotion& step, const F& f) {
+  const int n = static_cast<int>(step.held.size());
+  parallel_for(chunk_count(n), n < serial_below, [&](int k) {
+    for (int i = k * chunk_size; i < std::min(n, (k + 1) * chunk_size); ++i)
+      if (!step.is_held(i)) f(i, static_cast<std::size_t>(k));
+  });
+}
+
+}  // namespace
+
+void ParticleContacts::prepare(int particles, std::size_t bodies) {
+  const auto n = static_cast<std::size_t>(particles);
+  particles_ = n;
+  clearance_.assign(n * bodies, 0.0);  // nothing known yet: look at once
+  trial_.clear();
+  committed_.clear();
+  if (bodies == 0) return;  // pins need no more memory than this
+  committed_of_.assign(n, -1);
+  contact_of_.assign(n, -1);
+  correction_ = VecX::Zero(3 * particles);
+  const auto chunks = static_cast<std::size_t>(chunk_count(particles));
+  found_.resize(chunks);
+  responses_.resize(chunks);
+  deepest_.resize(chunks);
+  guarded_.resize(chunks);
+  trial_.reserve(n);  // so that no step allocates, however many touch
+  committed_.reserve(n);
+  friction_.reserve(n);
+  for (auto& found : found_) found.reserve(chunk_size);
+}
+
+void ParticleContacts::look_again() { std::fill(clearance_.begin(), clearance_.end(), 0.0); }
+
+void ParticleContacts::open() {
+  for (const Contact& c : trial_) {
+    contact_of_[static_cast<std::size_t>(c.particle)] = -1;
+    correction_.segment<3>(3 * c.particle).setZero();
+  }
+  trial_.clear();
+}
+
+void ParticleContacts::find(const Bodies& bodies, const StepMotion& step) {
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    found_[k].clear();
+    deepest_[k] = 0;
+  }
+  for_free(step, [&](int i, std::size_t k) { look_for(i, bodies, step, found_[k], deepest_[k]); });
+  take_found(step.h);
+}
+
+void ParticleContacts::take_found(double h) {
+  for (const auto& found : found_) {
+    for (const Contact& c : found) {
+      contact_of_[static_cast<std::size_t>(c.particle)] = static_cast<int>(trial_.size());
+      trial_.push_back(c);
+      std::array<double, 3> out = {};
+      for (int k = 0; k < c.planes; ++k) {
+        const auto p = static_cast<std::size_t>(k);
+        out[p] = std::clamp(-c.plane[p].gap, 0.0, recovery_speed_ * h);
+      }
+      correction_.segment<3>(3 * c.particle) = along_planes(c, out);
+    }
+  }
+}
+
+void ParticleContacts::look_for(int particle, const Bodies& bodies, const StepMotion& step,
+                                std::vector<Contact>& found, double& deepest) {
+  const Vec3 x = step.place(particle), v = step.velocity(particle);
+  const int old = committed_of_[static_cast<std::size_t>(particle)];
+  const Contact* before = old < 0 ? nullptr : &committed_[static_cast<std::size_t>(old)];
+  Contact contact{.particle = particle, .plane = {}};
+  for (int o = 0; o < static_cast<int>(bodies.size()); ++o) {
+    const MovingBody& body = bodies[static_cast<std::size_t>(o)];
+    const double margin = body.obstacle().margin;
+    const Vec3 x_new = step.look == Look::ahead ? Vec3(x + step.h * v) : body.carried(x);
+    const double travel = body.travel(x, x_new);
+    if (clearance(o, particle) > margin + std::max(travel, touching_range(margin))) continue;
+    const SurfacePoint start = body.at_start(x);
+    clearance(o, particle) = start.distance;
+    deepest = std::max(deepest, -start.distance);
+    if (start.distance > margin + std::max(travel, touching_range(margin))) continue;
+    const ContactPlane plane = body.plane(x, start, x + step.h * v);
+    const bool touched = plane_with(before, o) != nullptr;
+    if (touched ? plane.gap < touching_range(margin)
+                : plane.gap < 0 && plane.gap + body.approach(x, x_new, plane) < 0) {
+      add_plane(contact, plane);
+    } else if (plane.gap < travel) {
+      if (const auto met = body.meeting(x, x_new)) add_plane(contact, *met);
+    }
+  }
+  if (!contact.active()) return;
+  start_grip(bodies, step, contact, before);
+  found.push_back(contact);
+}
+
+bool ParticleContacts::find_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new) {
+  for (auto& found : found_) found.clear();
+  for_free(step, [&](int i, std::size_t k) {
+    if (contact_of_[static_cast<std::size_t>(i)] < 0)
+      look_along(i, bodies, step, x_new.segment<3>(3 * i), found_[k]);
+  });
+  const std::size_t before = trial_.size();
+  take_found(step.h);
+  return trial_.size() != before;
+}
+
+void ParticleContacts::look_along(int particle, const Bodies& bodies, const StepMotion& step,
+                                  const Vec3& x_new, std::vector<Contact>& found) {
+  const Vec3 x = step.place(particle);
+  Contact contact{.particle = particle, .plane = {}};
+  for (int o = 0; o < static_cast<int>(bodies.size()); ++o) {
+    const MovingBody& body = bodies[static_cast<std::size_t>(o)];
+    if (clearance(o, particle) > body.obstacle().margin + body.travel(x, x_new)) continue;
+    if (const auto met = body.meeting(x, x_new)) add_plane(contact, *met);
+  }
+  if (!contact.active()) return;
+  start_grip(bodies, step, contact, nullptr);
+  found.push_back(contact);
+}
+
+void ParticleContacts::follow(const Bodies& bodies, const StepMotion& step) {
+  for (Contact& c : trial_) {
+    c.changes = 0;
+    for (int k = 0; k < c.planes; ++k) {
+      ContactPlane& p = c.plane[static_cast<std::size_t>(k)];
+      p.body_velocity = bodies[static_cast<std::size_t>(p.obstacle)].velocity(step.place(c.particle));
+    }
+  }
+}
+
+void ParticleContacts::guard(const Bodies& bodies, const StepMotion& step, VecX& x_new, VecX& v_new,
+                             ContactReport& report) {
+  std::fill(guarded_.begin(), guarded_.end(), 0);
+  for_free(step, [&](int i, std::size_t k) { guard(i, bodies, step, x_new, v_new, guarded_[k]); });
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    report.guarded += guarded_[k];
+    report.deepest = std::max(report.deepest, deepest_[k]);
+  }
+}
+
+void ParticleContacts::guard(int particle, const Bodies& bodies, const StepMotion& step, VecX& x_new,
+                             VecX& v_new, int& guarded) {
+  const Vec3 x = step.place(particle);
+  for (int o = 0; o < static_cast<int>(bodies.size()); ++o) {
+    const MovingBody& body = bodies[static_cast<std::size_t>(o)];
+    Vec3 end = x_new.segment<3>(3 * particle);
+    const double travel = body.travel(x, end), clear = clearance(o, particle);
+    clearance(o, particle) = std::max(0.0, clear - travel);
+    if (clear >= travel) continue;
+    const auto normal = body.stop(x, end, clear);
+    if (!normal) continue;
+    x_new.segment<3>(3 * particle) = end;
+    const double inward = (v_new.segment<3>(3 * particle) - body.velocity(x)).dot(*normal);
+    if (inward < 0) v_new.segment<3>(3 * particle) -= inward * *normal;
+    ++guarded;
+  }
+}
+
+void ParticleContacts::commit() {
+  for (const Contact& c : committed_) committed_of_[static_cast<std::size_t>(c.particle)] = -1;
+  committed_.clear();
+  for (const Contact& c : trial_) {
+    if (!c.active()) continue;
+    committed_of_[static_cast<std::size_t>(c.particle)] = static_cast<int>(committed_.size());
+    committed_.push_back(c);
+    if (c.grip == Grip::breaking_loose) committed_.back().grip = Grip::slide;
+  }
+}
+
+}  // namespace drape

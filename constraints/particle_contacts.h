@@ -1,0 +1,123 @@
+// The particles that touch bodies, in one step and from step to step: which they are, how they hold (stick,
+// slide, let go), and what that is to a solve. constraints/contact.h has the equations.
+//   particle_contacts.cpp   where contacts are found: at the start, along the way, and what the guard stops
+//   grip.cpp                how they hold, after each solve: here friction is decided
+//   respond.cpp             the response of constraints/response.h, for explicit methods
+// Scratch of the step under way is kept from step to step, so that no step allocates.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "constraints/filter.h"
+#include "constraints/moving_body.h"
+#include "constraints/response.h"
+#include "constraints/step_motion.h"
+
+namespace drape {
+
+// What rubs on a sliding particle in this step: f = -D (v - v_b), and an impulse.
+struct ContactFriction {
+  int particle, body;
+  Mat3 damping;        // N s/m
+  Vec3 body_velocity;  // m/s
+  Vec3 impulse;        // N s
+};
+
+struct ContactReport {
+  int contacts = 0;
+  int guarded = 0;        // particles stopped at a surface after the solve, outside the equations
+  bool converged = true;  // the motion of bodies that react agrees with the impulses on them
+  double deepest = 0;     // m, how far the deepest particle was inside a body when the step began
+};
+
+// An impulse of a body on a particle, see constraints/response.h.
+struct ContactResponse {
+  int body;
+  Vec3 impulse;        // N s, on the particle
+  Vec3 place;          // m
+  Vec3 body_velocity;  // m/s
+  double approach;     // m/s
+};
+
+class ParticleContacts {
+ public:
+  using Bodies = std::vector<MovingBody>;
+
+  explicit ParticleContacts(double recovery_speed) : recovery_speed_(recovery_speed) {}
+
+  bool prepared(int particles, std::size_t bodies) const {
+    return clearance_.size() == static_cast<std::size_t>(particles) * bodies;
+  }
+  void prepare(int particles, std::size_t bodies);  // for other particles or bodies: all is forgotten
+  void look_again();                                // the particles were moved from outside
+  void open();                                      // a step begins, without contacts
+
+  // Finds what touches in the motion that is foreseen.
+  void find(const Bodies& bodies, const StepMotion& step);
+  // Finds what the motion found would pass through; true when there is any.
+  bool find_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new);
+  // Takes the reaction r [N s] of a solve that gave v [m/s]; impulses below `noise` [N s] are its round-off.
+  // True when a contact is let go, sticks or slides otherwise than the solve took it to.
+  bool react(const Bodies& bodies, const StepMotion& step, const VecX& v, const VecX& r, double noise);
+  // The bodies move otherwise than they were taken to.
+  void follow(const Bodies& bodies, const StepMotion& step);
+
+  // In place of find and react: a free motion to x, v ends at x_new, v_new after the response of the bodies.
+  void respond(ContactMode mode, const Bodies& bodies, const StepMotion& step, const VecX& x, const VecX& v,
+               VecX& x_new, VecX& v_new);
+  template <class F>  // f(response) for every one, in the order of the particles
+  void each_response(const F& f) const {
+    for (const auto& responses : responses_)
+      for (const ContactResponse& response : responses) f(response);
+  }
+
+  // The last line of defence, outside the equations: no particle that was outside a body ends inside it, or
+  // behind it; none that was inside ends deeper.
+  void guard(const Bodies& bodies, const StepMotion& step, VecX& x_new, VecX& v_new, ContactReport& report);
+  void commit();
+
+  // S and z of what touches; the dampers and impulses of what slides.
+  void filter(const StepMotion& step, const VecX& v, Filter& filter) const;
+  const std::vector<ContactFriction>& make_friction(const Bodies& bodies, const StepMotion& step);
+  const std::vector<ContactFriction>& friction() const { return friction_; }  // as it was made last
+  const VecX& correction() const { return correction_; }                      // y [m]; empty without bodies
+
+  const std::vector<Contact>& touching() const { return trial_; }  // those let go have no planes
+  const std::vector<Contact>& contacts() const { return committed_; }
+
+ private:
+  void look_for(int particle, const Bodies& bodies, const StepMotion& step, std::vector<Contact>& found,
+                double& deepest);
+  void look_along(int particle, const Bodies& bodies, const StepMotion& step, const Vec3& x_new,
+                  std::vector<Contact>& found);
+  void take_found(double h);
+  void start_grip(const Bodies& bodies, const StepMotion& step, Contact& contact,
+                  const Contact* before) const;
+  bool update_grip(const Bodies& bodies, const StepMotion& step, Contact& contact, const VecX& v,
+                   const Vec3& r, double noise) const;
+  void guard(int particle, const Bodies& bodies, const StepMotion& step, VecX& x_new, VecX& v_new,
+             int& guarded);
+  void respond(ContactMode mode, int particle, const Bodies& bodies, const StepMotion& step,
+               std::size_t chunk, VecX& x_new, VecX& v_new);
+  bool respond(ContactMode mode, const MovingBody& body, const StepMotion& step, std::size_t chunk,
+               StepVelocities& velocities, Contact& contact);
+  double& clearance(int body, int particle) {
+    return clearance_[static_cast<std::size_t>(body) * particles_ + static_cast<std::size_t>(particle)];
+  }
+
+  double recovery_speed_;  // m/s
+  std::size_t particles_ = 0;
+  std::vector<Contact> trial_, committed_;      // of the step under way; of the last completed one
+  std::vector<int> contact_of_, committed_of_;  // particle -> its place in those, -1: none
+  std::vector<double> clearance_;  // body, particle -> a distance within which no surface was [m]
+  VecX correction_;                // m
+  std::vector<ContactFriction> friction_;
+  // By chunk of particles, so that threads do not share them.
+  std::vector<std::vector<Contact>> found_;
+  std::vector<std::vector<ContactResponse>> responses_;
+  std::vector<double> deepest_;  // m
+  std::vector<int> guarded_;
+};
+
+}  // namespace drape

@@ -1,0 +1,63 @@
+#include "constraints/pin_set.h"
+
+#include <algorithm>
+
+namespace drape {
+
+bool PinSet::has(int particle) const { return std::binary_search(pinned_.begin(), pinned_.end(), particle); }
+
+void PinSet::pin(const std::vector<int>& particles) {
+  pinned_.insert(pinned_.end(), particles.begin(), particles.end());
+  std::sort(pinned_.begin(), pinned_.end());
+  pinned_.erase(std::unique(pinned_.begin(), pinned_.end()), pinned_.end());
+}
+
+void PinSet::pin_to_body(const std::vector<int>& particles, const MovingBody& body, const VecX& x) {
+  for (int i : particles)
+    if (!has(i)) moving_.push_back({i, body.number(), -1, body.mark(x.segment<3>(3 * i))});
+  pin(particles);
+}
+
+void PinSet::pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x) {
+  const int path = static_cast<int>(paths_.size());
+  paths_.push_back(motion);
+  const Pose start = motion.at(0);
+  for (int i : particles)
+    if (!has(i)) moving_.push_back({i, -1, path, {start.to_body(x.segment<3>(3 * i)), {}}});
+  pin(particles);
+}
+
+void PinSet::renumber(const std::vector<int>& number_of) {
+  const auto number = [&](int i) { return number_of[static_cast<std::size_t>(i)]; };
+  std::vector<int> first(number_of.size(), -1);  // pin of a number
+  for (int i : pinned_)
+    if (int& owner = first[static_cast<std::size_t>(number(i))]; owner < 0) owner = i;
+  std::erase_if(moving_, [&](const MovingPin& pin) {
+    return first[static_cast<std::size_t>(number(pin.particle))] != pin.particle;
+  });
+  for (MovingPin& pin : moving_) pin.particle = number(pin.particle);
+  for (int& i : pinned_) i = number(i);
+  std::sort(pinned_.begin(), pinned_.end());
+  pinned_.erase(std::unique(pinned_.begin(), pinned_.end()), pinned_.end());
+}
+
+void PinSet::move(const std::vector<MovingBody>& bodies, const StepMotion& step) {
+  if (moving_.empty()) return;
+  velocity_.setZero(step.x.size());
+  for (const MovingPin& pin : moving_) {
+    const Vec3 end =
+        pin.body < 0 ? paths_[static_cast<std::size_t>(pin.path)].at(step.t + step.h).to_world(pin.mark.place)
+                     : bodies[static_cast<std::size_t>(pin.body)].carried(pin.mark);
+    velocity_.segment<3>(3 * pin.particle) = (end - step.place(pin.particle)) / step.h;
+  }
+}
+
+void PinSet::filter(const StepMotion& step, const VecX& v, Filter& filter) const {
+  for (int i = 0; i < static_cast<int>(step.held.size()); ++i)
+    if (step.is_held(i))
+      filter.constrain(
+          i, Mat3::Zero(),
+          moving_.empty() ? Vec3(-v.segment<3>(3 * i)) : Vec3(velocity(i) - v.segment<3>(3 * i)));
+}
+
+}  // namespace drape

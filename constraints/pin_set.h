@@ -1,0 +1,46 @@
+// The particles that are held: where they are, or carried along by a body or on a path of their own.
+#pragma once
+
+#include <vector>
+
+#include "constraints/filter.h"
+#include "constraints/moving_body.h"
+#include "constraints/step_motion.h"
+
+namespace drape {
+
+// A pinned particle that is carried along.
+struct MovingPin {
+  int particle;
+  int body;  // that carries it; -1: its own path
+  int path;
+  MovingBody::Mark mark;
+};
+
+class PinSet {
+ public:
+  void pin(const std::vector<int>& particles);
+  void pin_to_body(const std::vector<int>& particles, const MovingBody& body, const VecX& x);
+  void pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x);
+  // Particle i is number[i] from now on; of pins that become one the lowest stays.
+  void renumber(const std::vector<int>& number);
+
+  const std::vector<int>& pinned() const { return pinned_; }  // ascending
+  const std::vector<MovingPin>& moving() const { return moving_; }
+
+  // The velocities that bring the moving pins to where they are carried by the end of the step.
+  void move(const std::vector<MovingBody>& bodies, const StepMotion& step);
+  Vec3 velocity(int particle) const { return velocity_.segment<3>(3 * particle); }  // of a moving pin [m/s]
+  // Everything that is held gets its target: dv = velocity of the pin - v.
+  void filter(const StepMotion& step, const VecX& v, Filter& filter) const;
+
+ private:
+  bool has(int particle) const;
+
+  std::vector<int> pinned_;
+  std::vector<MovingPin> moving_;
+  std::vector<Motion> paths_;
+  VecX velocity_;  // m/s; empty without moving pins
+};
+
+}  // namespace drape

@@ -1,0 +1,44 @@
+// The elements of a force, cut at the chunks of a pattern, so that threads never write the same row.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "mesh/base/parallel.h"
+#include "solver/matrix/block_pattern.h"
+
+namespace drape {
+
+class ChunkSchedule {
+ public:
+  // first_row(e) ascending over the elements e = 0 .. count-1, whose rows all lie within the bandwidth.
+  template <class FirstRow>
+  void bind(const BlockPattern& pattern, int count, const FirstRow& first_row) {
+    start_.assign(static_cast<std::size_t>(pattern.chunks()) + 1, count);
+    int chunk = -1;
+    for (int e = 0; e < count; ++e)
+      while (chunk < first_row(e) / pattern.chunk_rows()) start_[static_cast<std::size_t>(++chunk)] = e;
+    start_[0] = 0;
+    for (std::size_t k = start_.size() - 1; k-- > 0;) start_[k] = std::min(start_[k], start_[k + 1]);
+    serial_ = pattern.rows() < serial_below;
+  }
+
+  // f(e) for every element: even chunks side by side, then odd ones; in order when not bound.
+  template <class F>
+  void run(int count, const F& f) const {
+    if (start_.empty()) {
+      for (int e = 0; e < count; ++e) f(e);
+      return;
+    }
+    even_then_odd(static_cast<int>(start_.size()) - 1, serial_, [&](int k) {
+      const auto chunk = static_cast<std::size_t>(k);
+      for (int e = start_[chunk]; e < start_[chunk + 1]; ++e) f(e);
+    });
+  }
+
+ private:
+  std::vector<int> start_;
+  bool serial_ = true;
+};
+
+}  // namespace drape

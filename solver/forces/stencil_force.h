@@ -1,0 +1,262 @@
+// Forces of stencils: what 2, 3 or 4 particles do to each other. Gather, scatter, slots, threads, damping and
+// the product K y stand here, once, for every law.
+//
+// A law is a struct of pure functions. It knows no mesh, no time step and no matrix:
+//   static constexpr const char* name;   static constexpr int particles;   // 2, 3 or 4
+//   struct Rest {...};      // one element's data, such as its rest length
+//   struct Common {...};    // the same for all elements, such as a damping coefficient (may be any type)
+// and, with X [m] the positions, one column a particle, either
+//   static double energy(const Common&, const Rest&, const Points<n>& X);                          // E [J]
+//   static Points<n> gradient(const Common&, const Rest&, const Points<n>& X);                     // dE/dX [N]
+//   static Blocks<n> hessian(const Common&, const Rest&, const Points<n>& X, Stiffness);           // [N/m]
+//   static Blocks<n> damping(const Common&, const Rest&, const Points<n>& X);  // D [N s/m]; may be left out
+// where the Hessian is symmetric and positive semidefinite: the exact one, projected, for Stiffness::tangent;
+// one that is nowhere smaller where the law asks for a chord or a majorant (solver/forces/force.h). Or, when
+// the law depends on one vector alone, p = sum w_k x_k (a distance, the gap of a contact; a VectorLaw),
+//   static std::array<double, n> weights(const Rest&);                                             // w_k
+//   static double energy(const Common&, const Rest&, const Vec3& p);
+//   static double dissipation(const Common&, const Rest&, const Vec3& p, const auto& velocity);    // W
+//   static Vec3 pull(const Common&, const Rest&, const Vec3& p, const auto& velocity);
+//   static VectorResponse linearised(const Common&, const Rest&, const Vec3& p, const auto& velocity,
+//                                    const auto& shift, double c, Stiffness);
+// velocity() is sum w_k v_k, shift() is sum w_k y_k: asked for only where they are needed. The pull is
+// dE/dp + D v: f_k = -w_k pull. The response is that of an implicit step, see Force::add_linearised.
+//
+// Stencils either stand as long as the force does, or are found anew in every step by a function that is given
+// to the force. Those that stand are worked on by all threads; those that are found, in the order in which
+// they were found, by one.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <utility>
+
+#include "solver/forces/chunk_schedule.h"
+#include "solver/forces/force.h"
+
+namespace drape {
+
+template <int n>
+using Points = Eigen::Matrix<double, 3, n>;
+template <int n>
+using Blocks = Eigen::Matrix<double, 3 * n, 3 * n>;
+
+// c (dE/dp + K s) + c D v  [N s] and c D + c^2 K  [kg], symmetric to the last bit.
+struct VectorResponse {
+  Vec3 impulse = Vec3::Zero();
+  Mat3 block = Mat3::Zero();
+  bool acts = false;  // false: both are zero
+};
+
+template <class Law>
+concept VectorLaw = requires(const typename Law::Rest& rest) {
+  Law::weights(rest);
+};
+
+template <class Law>
+class StencilForce : public Force {
+ public:
+  static constexpr int n = Law::particles;
+  static constexpr int blocks = n * (n + 1) / 2;
+  using Common = typename Law::Common;
+
+  struct Element {
+    std::array<int, static_cast<std::size_t>(n)> particles;
+    typename Law::Rest rest = {};
+    // Of the blocks (0,0), (0,1) .. (n-1,n-1) in the matrix; ~slot where it stands there transposed.
+    std::array<int, static_cast<std::size_t>(blocks)> slots = {};
+  };
+  // Fills in the stencils of a step, and says whether they are others than those that it was given.
+  using Finder = std::function<bool(const StepStart&, std::vector<Element>&)>;
+
+  explicit StencilForce(std::vector<Element> elements, Common common = {})
+      : elements_(std::move(elements)), common_(common) {}
+  explicit StencilForce(Finder find, Common common = {}) : common_(common), find_(std::move(find)) {}
+
+  const std::vector<Element>& elements() const { return elements_; }
+  // Between steps: change(rest) for every element, such as a rest length that goes with time.
+  template <class F>
+  void change_rest(const F& change) {
+    for (Element& e : elements_) change(e.rest);
+  }
+
+  std::string_view name() const override { return Law::name; }
+  void list_pairs(std::vector<ParticlePair>& all) const override {
+    if (!find_) list(all);
+  }
+  void list_changing_pairs(std::vector<ParticlePair>& all) const override {
+    if (find_) list(all);
+  }
+  bool changes() const override { return static_cast<bool>(find_); }
+  bool begin_step(const StepStart& start) override { return find_ && find_(start, elements_); }
+
+  void bind(const BlockLayout& layout) override {
+    const auto row = [&](int i) { return layout.base.row_of()[static_cast<std::size_t>(i)]; };
+    const auto rows = [&](const Element& e) {
+      auto sorted = e.particles;
+      for (int& i : sorted) i = row(i);
+      std::sort(sorted.begin(), sorted.end());
+      return sorted;
+    };
+    if (!find_) {
+      std::stable_sort(elements_.begin(), elements_.end(),
+                       [&](const Element& a, const Element& b) { return rows(a) < rows(b); });
+      schedule_.bind(layout.base, static_cast<int>(elements_.size()),
+                     [&](int e) { return rows(elements_[static_cast<std::size_t>(e)])[0]; });
+    }
+    for (Element& e : elements_) {
+      auto slot = e.slots.begin();
+      for (std::size_t k = 0; k < e.particles.size(); ++k)
+        for (std::size_t l = k; l < e.particles.size(); ++l) {
+          const int i = row(e.particles[k]), j = row(e.particles[l]);
+          *slot++ = i <= j ? layout.slot(i, j) : ~layout.slot(j, i);
+        }
+    }
+  }
+
+  double energy(const VecX& x) const override {
+    return sum([&](const Element& e) {
+      if constexpr (VectorLaw<Law>)
+        return Law::energy(common_, e.rest, at(e, x));
+      else
+        return Law::energy(common_, e.rest, points(e, x));
+    });
+  }
+
+  double dissipation(const VecX& x, const VecX& v) const override {
+    if constexpr (VectorLaw<Law>)
+      return sum([&](const Element& e) {
+        return Law::dissipation(common_, e.rest, at(e, x), [&] { return at(e, v); });
+      });
+    else if constexpr (damps)
+      return sum([&](const Element& e) {
+        const Points<n> V = points(e, v);
+        return 0.5 * flat(V).dot(Law::damping(common_, e.rest, points(e, x)) * flat(V));
+      });
+    else
+      return 0;
+  }
+
+  void add_force(const VecX& x, const VecX& v, VecX& f) const override {
+    run([&](const Element& e) {
+      if constexpr (VectorLaw<Law>) {
+        const Vec3 pull = Law::pull(common_, e.rest, at(e, x), [&] { return at(e, v); });
+        if (!pull.isZero(0)) subtract(e, pull, f);
+      } else {
+        const Points<n> X = points(e, x);
+        Points<n> pull = Law::gradient(common_, e.rest, X);
+        if constexpr (damps) flat(pull) += Law::damping(common_, e.rest, X) * flat(points(e, v));
+        subtract(e, pull, f);
+      }
+    });
+  }
+
+  void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,
+                      BlockMatrix& A, VecX& b) const override {
+    run([&](const Element& e) {
+      if constexpr (VectorLaw<Law>) {
+        const VectorResponse response = Law::linearised(
+            common_, e.rest, at(e, x), [&] { return at(e, v); }, [&] { return at(e, y); }, c, stiffness);
+        if (!response.acts) return;
+        subtract(e, response.impulse, b);
+        add_blocks(e, response.block, A);
+      } else {
+        const Points<n> X = points(e, x);
+        const Blocks<n> K = Law::hessian(common_, e.rest, X, stiffness);
+        Points<n> impulse = Law::gradient(common_, e.rest, X);
+        flat(impulse) += K * flat(points(e, y));
+        Blocks<n> block = c * c * K;
+        impulse *= c;
+        if constexpr (damps) {
+          const Blocks<n> cD = c * Law::damping(common_, e.rest, X);
+          flat(impulse) += cD * flat(points(e, v));
+          block += cD;
+        }
+        subtract(e, impulse, b);
+        add_blocks(e, block, A);
+      }
+    });
+  }
+
+ private:
+  static constexpr bool damps =
+      requires(const Common& common, const typename Law::Rest& rest, const Points<n>& X) {
+    Law::damping(common, rest, X);
+  };
+
+  void list(std::vector<ParticlePair>& all) const {
+    for (const Element& e : elements_)
+      for (std::size_t k = 0; k < e.particles.size(); ++k)
+        for (std::size_t l = k + 1; l < e.particles.size(); ++l)
+          all.push_back({e.particles[k], e.particles[l]});
+  }
+
+  template <class F>
+  void run(const F& f) const {
+    schedule_.run(static_cast<int>(elements_.size()),
+                  [&](int e) { f(elements_[static_cast<std::size_t>(e)]); });
+  }
+  template <class F>
+  double sum(const F& f) const {
+    return sum_chunks(static_cast<int>(elements_.size()), [&](int begin, int end) {
+      double total = 0;
+      for (int e = begin; e < end; ++e) total += f(elements_[static_cast<std::size_t>(e)]);
+      return total;
+    });
+  }
+
+  static Points<n> points(const Element& e, const VecX& all) {
+    Points<n> X;
+    for (int k = 0; k < n; ++k) X.col(k) = all.segment<3>(3 * e.particles[static_cast<std::size_t>(k)]);
+    return X;
+  }
+  static Eigen::Map<Eigen::Matrix<double, 3 * n, 1>> flat(Points<n>& X) {
+    return Eigen::Map<Eigen::Matrix<double, 3 * n, 1>>(X.data());
+  }
+  static Eigen::Map<const Eigen::Matrix<double, 3 * n, 1>> flat(const Points<n>& X) {
+    return Eigen::Map<const Eigen::Matrix<double, 3 * n, 1>>(X.data());
+  }
+  // sum w_k x_k
+  static Vec3 at(const Element& e, const VecX& all) {
+    const auto w = Law::weights(e.rest);
+    Vec3 p = w[0] * all.segment<3>(3 * e.particles[0]);
+    for (std::size_t k = 1; k < e.particles.size(); ++k) p += w[k] * all.segment<3>(3 * e.particles[k]);
+    return p;
+  }
+
+  static void subtract(const Element& e, const Vec3& pull, VecX& f) {
+    const auto w = Law::weights(e.rest);
+    for (std::size_t k = 0; k < e.particles.size(); ++k) f.segment<3>(3 * e.particles[k]) -= w[k] * pull;
+  }
+  static void subtract(const Element& e, const Points<n>& pull, VecX& f) {
+    for (int k = 0; k < n; ++k) f.segment<3>(3 * e.particles[static_cast<std::size_t>(k)]) -= pull.col(k);
+  }
+
+  static void add_blocks(const Element& e, const Mat3& block, BlockMatrix& A) {
+    const auto w = Law::weights(e.rest);
+    auto slot = e.slots.begin();
+    for (std::size_t k = 0; k < e.particles.size(); ++k)
+      for (std::size_t l = k; l < e.particles.size(); ++l, ++slot) {
+        double* a = A.block(*slot < 0 ? ~*slot : *slot);  // the block is symmetric
+        const double weight = w[k] * w[l];
+        for (int i = 0; i < 9; ++i) a[i] += weight * block.data()[i];
+      }
+  }
+  static void add_blocks(const Element& e, const Blocks<n>& block, BlockMatrix& A) {
+    auto slot = e.slots.begin();
+    for (int k = 0; k < n; ++k)
+      for (int l = k; l < n; ++l, ++slot) {
+        if (*slot >= 0)
+          A.at(*slot) += block.template block<3, 3>(3 * k, 3 * l);
+        else
+          A.at(~*slot) += block.template block<3, 3>(3 * k, 3 * l).transpose();
+      }
+  }
+
+  std::vector<Element> elements_;
+  Common common_;
+  Finder find_;  // empty: the stencils stand
+  ChunkSchedule schedule_;
+};
+
+}  // namespace drape

@@ -1,0 +1,87 @@
+#include "solver/integrators/merit.h"
+
+#include <limits>
+
+#include "mesh/base/parallel.h"
+
+namespace drape {
+
+RoundOff round_off(const BlockMatrix& A, const VecX& x, const VecX& v, double c) {
+  constexpr double eps = 8 * std::numeric_limits<double>::epsilon();
+  struct Sums {
+    double energy = 0, squares = 0;  // of A_ii e_i^2, and of (A_ii e_i)^2
+    void operator+=(const Sums& other) { energy += other.energy, squares += other.squares; }
+  };
+  const Sums all = sum_chunks(A.rows(), [&](int begin, int end) {
+    Sums sums;
+    for (int i = begin; i < end; ++i) {
+      const int row = A.pattern().row_of()[static_cast<std::size_t>(i)];
+      const double a = A.at(A.pattern().diagonal(row)).norm();
+      const double e = eps * (x.segment<3>(3 * i).norm() / c + v.segment<3>(3 * i).norm());
+      sums += {a * e * e, a * e * a * e};
+    }
+    return sums;
+  });
+  return {all.energy, std::sqrt(all.squares)};
+}
+
+double potential_of_forces(const System& system, const std::vector<ContactFriction>& friction, const VecX& x,
+                           const VecX& v, double c, double h) {
+  double phi = 0;
+  for (const auto& force : system.forces()) phi += force->energy(x) + c * force->dissipation(x, v);
+  for (const ContactFriction& f : friction) {
+    const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
+    phi += 0.5 * h * slip.dot(f.damping * slip) - f.impulse.dot(slip);
+  }
+  return phi;
+}
+
+void Merit::begin(double h) {
+  const double fall = h * system_.gravity_acceleration().norm();
+  weight_impulse_ = fall_energy_ = 0;
+  for (double m : system_.masses()) {
+    weight_impulse_ += m * m;
+    fall_energy_ += m * fall * fall;
+  }
+  weight_impulse_ = fall * std::sqrt(weight_impulse_);
+}
+
+void Merit::measure(const BlockMatrix& A, const Point& p, double c) { noise_ = round_off(A, p.x, p.v, c); }
+
+double Merit::potential(const StepCoefficients& k, const std::vector<ContactFriction>& friction,
+                        const VecX& v) {
+  x_ = k.x_bar + k.c * v;
+  const double inertia = sum_chunks(system_.particles(), [&](int begin, int end) {
+    double sum = 0;
+    for (int i = begin; i < end; ++i) {
+      const auto particle = static_cast<std::size_t>(i);
+      const Vec3 d =
+          v.segment<3>(3 * i) - k.v_bar.segment<3>(3 * i) - k.fall[particle] * system_.gravity_acceleration();
+      sum += 0.5 * k.mass[particle] * d.squaredNorm();
+    }
+    return sum;
+  });
+  return inertia + potential_of_forces(system_, friction, x_, v, k.c, k.h);
+}
+
+bool Merit::descend(const StepCoefficients& k, const std::vector<ContactFriction>& friction,
+                    const VecX& v_base, const VecX& dv, VecX& v) {
+  v += dv;
+  const double start = potential(k, friction, v_base);
+  // A tenth of the energy that the fall of one step brings: what a solve to its tolerance may leave.
+  const double allowed = start + 1e-9 * std::abs(start) + 0.05 * fall_energy_ + noise_.energy(start);
+  for (int halvings = 0; halvings < 12; ++halvings) {
+    if (potential(k, friction, v) <= allowed) return halvings == 0;
+    v = 0.5 * (v + v_base);
+  }
+  return false;
+}
+
+bool Merit::makes_energy(const State& before, const Point& after, double work) const {
+  const double kinetic = system_.kinetic_energy(before.v), stored = system_.stored_energy(after.x);
+  const double start = kinetic + system_.stored_energy(before.x) + system_.gravity_energy(before.x);
+  const double end = system_.kinetic_energy(after.v) + stored + system_.gravity_energy(after.x);
+  return end > start + work + 0.05 * fall_energy_ + 1e-3 * kinetic + noise_.energy(stored);
+}
+
+}  // namespace drape

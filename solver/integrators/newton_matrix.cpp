@@ -1,0 +1,60 @@
+#include "solver/integrators/newton_matrix.h"
+
+#include <cmath>
+
+namespace drape {
+
+bool NewtonMatrix::follow_system() {
+  const auto& pattern = system_.bind();
+  if (A_ && &A_->pattern() == pattern.get()) return false;
+  A_ = std::make_unique<BlockMatrix>(system_.matrix());
+  const Eigen::Index n = 3 * system_.particles();
+  for (VecX* vector : {&b_rows_, &dv_rows_, &r_rows_}) vector->setZero(n);
+  filter_.reserve(static_cast<std::size_t>(system_.particles()));
+  rubs_.reserve(static_cast<std::size_t>(system_.particles()));
+  return true;
+}
+
+void NewtonMatrix::assemble(const Linearisation& at, const std::vector<double>& masses, VecX& b) {
+  A_->set_to_mass(masses);
+  for (const auto& force : system_.forces())
+    force->add_linearised(at.x, at.v, at.y, at.c, at.stiffness, *A_, b);
+}
+
+LinearReport NewtonMatrix::solve(const VecX& b, const Filter& filter, const LinearOptions& options,
+                                 VecX& dv) {
+  const BlockPattern& pattern = A_->pattern();
+  to_rows(pattern, b, b_rows_);
+  to_rows(pattern, dv, dv_rows_);
+  filter_ = filter;
+  filter_.renumber(pattern.row_of());
+  const LinearReport report = solver_->solve(*A_, b_rows_, filter_, options, dv_rows_);
+  to_particles(pattern, dv_rows_, dv);
+  return report;
+}
+
+void NewtonMatrix::reaction(VecX& r) {
+  A_->multiply(dv_rows_, r_rows_);
+  r_rows_ -= b_rows_;
+  r.resize(r_rows_.size());
+  to_particles(A_->pattern(), r_rows_, r);
+}
+
+std::string NewtonMatrix::stiffest_force(int particle, const Linearisation& at) {
+  const int slot = A_->pattern().diagonal(row(particle));
+  std::string stiffest;
+  double most = -1;
+  VecX b = VecX::Zero(at.x.size());
+  for (const auto& force : system_.forces()) {
+    A_->set_to_mass(std::vector<double>(system_.masses().size(), 0.0));
+    force->add_linearised(at.x, at.v, at.y, 1.0, Stiffness::majorant, *A_, b);
+    const double size = A_->at(slot).norm();
+    if (size <= most) continue;
+    stiffest = force->name();
+    if (!std::isfinite(size)) break;
+    most = size;
+  }
+  return stiffest;
+}
+
+}  // namespace drape

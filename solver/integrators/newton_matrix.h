@@ -1,0 +1,62 @@
+// The matrix of an implicit step and its linear solver, with all vectors in particle order:
+//   A = M + c D + c^2 K   at a point (x, v), and what rubs on its diagonal.
+#pragma once
+
+#include <memory>
+
+#include "solver/linear/linear_solver.h"
+#include "solver/system/system.h"
+
+namespace drape {
+
+// Where forces are linearised.
+struct Linearisation {
+  const VecX& x;  // m
+  const VecX& v;  // m/s
+  const VecX& y;  // m, see solver/integrators/bdf.h
+  double c;       // s
+  Stiffness stiffness;
+};
+
+class NewtonMatrix {
+ public:
+  NewtonMatrix(System& system, std::unique_ptr<LinearSolver> solver)
+      : system_(system), solver_(std::move(solver)) {}
+
+  // True when the system has another pattern than before: what has its size must be made anew.
+  bool follow_system();
+  // A from these masses [kg]; b += c (f - K y).
+  void assemble(const Linearisation& at, const std::vector<double>& masses, VecX& b);
+  // c D of what rubs on single particles, in place of what rubbed before. particle(k), block(k), k < count.
+  template <class Particle, class Block>
+  void rub(std::size_t count, const Particle& particle, const Block& block);
+
+  // A dv = b within the filter; dv: in, the guess.
+  LinearReport solve(const VecX& b, const Filter& filter, const LinearOptions& options, VecX& dv);
+  // r = A dv - b of the last solve: the impulse with which the constraints hold the particles.
+  void reaction(VecX& r);
+
+  const BlockMatrix& matrix() const { return *A_; }
+  // The force with the largest stiffness at a particle, or one that is not finite: what to look at when a
+  // solve failed there. The matrix is scratch of this.
+  std::string stiffest_force(int particle, const Linearisation& at);
+
+ private:
+  int row(int particle) const { return A_->pattern().row_of()[static_cast<std::size_t>(particle)]; }
+
+  System& system_;
+  std::unique_ptr<LinearSolver> solver_;
+  std::unique_ptr<BlockMatrix> A_;
+  Filter filter_;                    // in row order
+  std::vector<DiagonalBlock> rubs_;  // the same
+  VecX b_rows_, dv_rows_, r_rows_;
+};
+
+template <class Particle, class Block>
+void NewtonMatrix::rub(std::size_t count, const Particle& particle, const Block& block) {
+  rubs_.clear();
+  for (std::size_t k = 0; k < count; ++k) rubs_.push_back({row(particle(k)), block(k)});
+  A_->set_diagonal_additions(rubs_);
+}
+
+}  // namespace drape

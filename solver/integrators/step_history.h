@@ -1,0 +1,74 @@
+// What an implicit step knows of the steps before it, and the coefficients that follow from it.
+//   order 1   gamma = 1                     x_bar = x_n                         [Baraff & Witkin 1998, eq. 6]
+//   order 2   gamma = (1 + w) / (1 + 2 w)   x_bar = x_n + w^2 / (1 + 2 w) (x_n - x_{n-1})   [Choi & Ko 2002]
+//             w = h_n / h_{n-1}; 2/3 and 1/3 when steps do not change    [Hairer, Norsett & Wanner, III.5]
+//   c = gamma h; v_bar like x_bar; contact adds its correction to x_bar. [Baraff & Witkin 1998, section 6 and
+//   eq. 18]
+// Order 2 looks back over smooth motion only. Without a last step (the first one, a state that was changed
+// from outside, a failed step taken in halves, h more than doubled) the step is of order 1. A particle that
+// touches a body, or did in the last step, starts anew, with what is known of its present motion u alone:
+//   gamma m (v - v_n) = c f,   x = x_n + (h - c) u + c v      (u = v_n, and the target where it is locked)
+// x [m], v [m/s], h [s].
+#pragma once
+
+#include <vector>
+
+#include "constraints/contact_step.h"
+#include "solver/integrators/pieces.h"
+#include "solver/system/system.h"
+
+namespace drape {
+
+// A place and a velocity of every particle.
+struct Point {
+  VecX x, v;  // m, m/s
+};
+
+// Of one step, per particle where it matters.
+struct StepCoefficients {
+  double h = 0, c = 0;        // s
+  double ahead = 0;           // w above; 0: order 1
+  double back = 0;            // x_bar = x_n + back (x_n - x_{n-1})
+  std::vector<double> scale;  // a row is multiplied by this: 1, or gamma where a particle starts anew
+  std::vector<double> fall;   // s, how long gravity acts in a row before it is scaled: c, or h there
+  std::vector<double> mass;   // kg, scaled
+  VecX x_bar, v_bar;
+  bool order_2() const { return back > 0; }
+};
+
+class StepHistory {
+ public:
+  // order: 1 or 2, the highest one.
+  explicit StepHistory(int order) : order_(order) {}
+
+  int order() const { return order_; }
+  void forget(const System& system);  // for a system of other particles
+
+  // The coefficients of a step whose contacts have just been looked for.
+  void begin(const State& state, const Piece& piece, const ContactStep& contacts);
+  const StepCoefficients& coefficients() const { return k_; }
+  // Where the step is linearised first: the last state, or ahead of it by order 2.
+  void first_point(const State& state, Point& point) const;
+  // Whether that velocity of a particle is ahead of the last state.
+  bool extrapolates(int particle) const { return k_.order_2() && !restarts(particle); }
+  // x_bar, v_bar and the masses with the contacts as they are now.
+  void update(const System& system, const State& state, const ContactStep& contacts);
+  // What has been caught starts anew, too.
+  void restart_touching(const ContactStep& contacts);
+  // The step is done: it went from `state` to `end`.
+  void remember(const State& state, const Point& end, const ContactStep& contacts);
+
+ private:
+  void mark_touching(const ContactStep& contacts);
+  bool restarts(int particle) const { return touched_[static_cast<std::size_t>(particle)] != 0; }
+
+  int order_;
+  StepCoefficients k_;
+  // The last step that was done.
+  Point begin_, end_;
+  double last_h_ = 0;          // s; 0: there is none
+  std::vector<char> touched_;  // particle -> it met a body, then or now
+  Filter filter_;              // scratch
+};
+
+}  // namespace drape

@@ -1,0 +1,87 @@
+#include "solver/matrix/block_overlay.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace drape {
+namespace {
+
+bool before(const ParticlePair& a, const ParticlePair& b) {
+  return std::pair(a.i, a.j) < std::pair(b.i, b.j);
+}
+bool same(const ParticlePair& a, const ParticlePair& b) { return a.i == b.i && a.j == b.j; }
+
+}  // namespace
+
+bool BlockOverlay::assign(const BlockPattern& pattern, std::vector<ParticlePair>& pairs) {
+  for (ParticlePair& p : pairs) {
+    const auto [i, j] = std::minmax(pattern.row_of()[static_cast<std::size_t>(p.i)],
+                                    pattern.row_of()[static_cast<std::size_t>(p.j)]);
+    p = {i, j};
+  }
+  std::erase_if(pairs, [&](const ParticlePair& p) { return p.i == p.j || pattern.has(p.i, p.j); });
+  std::sort(pairs.begin(), pairs.end(), before);
+  pairs.erase(std::unique(pairs.begin(), pairs.end(), same), pairs.end());
+  const bool stands = first_slot_ == pattern.blocks() &&
+                      std::equal(pairs.begin(), pairs.end(), pairs_.begin(), pairs_.end(), same);
+  if (stands) return false;
+  first_slot_ = pattern.blocks();
+  pairs_.assign(pairs.begin(), pairs.end());
+  serial_ = next_pattern_serial();
+  list_rows(pattern.rows());
+  return true;
+}
+
+void BlockOverlay::clear() {
+  pairs_.clear();
+  rows_.clear();
+  start_.assign(1, 0);
+  entries_.clear();
+}
+
+void BlockOverlay::list_rows(int rows) {
+  place_.assign(static_cast<std::size_t>(rows), 0);  // counts the entries of each row, then says where it is
+  for (const ParticlePair& p : pairs_) {
+    ++place_[static_cast<std::size_t>(p.i)];
+    ++place_[static_cast<std::size_t>(p.j)];
+  }
+  rows_.clear();
+  start_.assign(1, 0);
+  for (int r = 0; r < rows; ++r) {
+    int& here = place_[static_cast<std::size_t>(r)];
+    if (here == 0) {
+      here = -1;
+      continue;
+    }
+    start_.push_back(start_.back() + here);
+    here = static_cast<int>(rows_.size());
+    rows_.push_back(r);
+  }
+  entries_.resize(2 * pairs_.size());
+  // Filled from the front; the starts are moved on meanwhile and moved back at the end. Pairs ascend, so the
+  // columns left of the diagonal of a row come before those right of it, each ascending.
+  const auto add = [&](int row, const Entry& entry) {
+    const auto k = static_cast<std::size_t>(place_[static_cast<std::size_t>(row)]);
+    entries_[static_cast<std::size_t>(start_[k]++)] = entry;
+  };
+  for (std::size_t p = 0; p < pairs_.size(); ++p)
+    add(pairs_[p].j, {pairs_[p].i, first_slot_ + static_cast<int>(p), true});
+  for (std::size_t p = 0; p < pairs_.size(); ++p)
+    add(pairs_[p].i, {pairs_[p].j, first_slot_ + static_cast<int>(p), false});
+  for (std::size_t k = start_.size() - 1; k > 0; --k) start_[k] = start_[k - 1];
+  start_[0] = 0;
+}
+
+int BlockOverlay::slot(int row, int column) const {
+  const ParticlePair wanted{row, column};
+  const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), wanted, before);
+  if (at == pairs_.end() || !same(*at, wanted)) return -1;
+  return first_slot_ + static_cast<int>(at - pairs_.begin());
+}
+
+const BlockOverlay& BlockLayout::no_overlay() {
+  static const BlockOverlay none;
+  return none;
+}
+
+}  // namespace drape

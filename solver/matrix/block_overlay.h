@@ -1,0 +1,83 @@
+// The blocks that come and go, beside a pattern that stands: which rows touch in this step and are not
+// neighbours in the pattern.
+//   A block (i, j), i < j, is stored once and stands for its transpose (j, i), as in the pattern. Both are
+//   listed, row by row with ascending columns, so that a product gathers each row by itself: the sums have one
+//   order, whatever the number of threads and however far apart i and j are.
+// The diagonal blocks are always those of the pattern. What is made from the pattern alone (a preconditioner)
+// therefore knows the diagonal parts of the overlay, and stays positive definite without the rest.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "solver/matrix/block_pattern.h"
+
+namespace drape {
+
+class BlockOverlay {
+ public:
+  struct Entry {
+    int column;
+    int slot;         // of the block (min, max) in the matrix, after the slots of the pattern
+    bool transposed;  // the row is the larger of the two
+  };
+
+  // The blocks that these pairs of particles need and the pattern lacks, in any order, repeats allowed. True
+  // when they are others than before; the serial is another one then. Memory is kept for the next time.
+  bool assign(const BlockPattern& pattern, std::vector<ParticlePair>& pairs);
+  void clear();
+
+  bool empty() const { return pairs_.empty(); }
+  int blocks() const { return static_cast<int>(pairs_.size()); }
+  std::uint64_t serial() const { return serial_; }  // differs between any two patterns and overlays
+  int slot(int row, int column) const;              // row < column; -1: there is no such block
+
+  // The rows with blocks, ascending, and their entries, columns ascending.
+  int row_count() const { return static_cast<int>(rows_.size()); }
+  int row(int k) const { return rows_[static_cast<std::size_t>(k)]; }
+  template <class F>  // f(entry)
+  void in_row(int k, const F& f) const {
+    for (int e = start_[static_cast<std::size_t>(k)]; e < start_[static_cast<std::size_t>(k) + 1]; ++e)
+      f(entries_[static_cast<std::size_t>(e)]);
+  }
+  // Of any row of the matrix: the entries right of the diagonal.
+  template <class F>
+  void right_of_diagonal(int row, const F& f) const {
+    if (empty()) return;
+    if (const int k = place_[static_cast<std::size_t>(row)]; k >= 0)
+      in_row(k, [&](const Entry& e) {
+        if (!e.transposed) f(e);
+      });
+  }
+
+ private:
+  void list_rows(int rows);
+
+  int first_slot_ = 0;
+  std::uint64_t serial_ = 0;
+  std::vector<ParticlePair> pairs_;  // rows i < j, ascending
+  std::vector<int> rows_, start_;
+  std::vector<Entry> entries_;
+  std::vector<int> place_;  // row of the matrix -> k, -1: it has no blocks here
+};
+
+// A pattern and what comes and goes beside it: where every block stands.
+struct BlockLayout {
+  BlockLayout(const BlockPattern& pattern, const BlockOverlay& beside) : base(pattern), overlay(beside) {}
+  BlockLayout(const BlockPattern& pattern) : BlockLayout(pattern, no_overlay()) {}
+
+  const BlockPattern& base;
+  const BlockOverlay& overlay;
+
+  // row <= column; throws std::logic_error when there is no such block
+  int slot(int row, int column) const {
+    if (!overlay.empty())
+      if (const int found = overlay.slot(row, column); found >= 0) return found;
+    return base.slot(row, column);
+  }
+
+ private:
+  static const BlockOverlay& no_overlay();
+};
+
+}  // namespace drape
