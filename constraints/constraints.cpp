@@ -49,11 +49,11 @@ void Constraints::prepare(int particles, const std::vector<double>& masses) {
 }
 
 ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double t,
-                                    double h, Look look) {
+                                    double h, Foresight foresight) {
   prepare(static_cast<int>(x.size() / 3), masses);
   step_.t = t;
   step_.h = h;
-  step_.look = look;
+  step_.foresight = foresight;
   step_.work = 0;
   if (x.size() != step_.x_end.size() || x != step_.x_end) {  // a state from elsewhere
     contacts_.look_again();
@@ -65,12 +65,12 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
   pins_.move(bodies_, step_);
   if (!bodies_.empty()) {
     contacts_.open();
-    if (look != Look::nowhere) contacts_.find(bodies_, step_);
+    if (foresight != Foresight::none) contacts_.find(bodies_, step_);
     x_new_ = x;
-    if (look == Look::ahead) x_new_ += h * v;
+    if (foresight == Foresight::ahead) x_new_ += h * v;
     if (!faces_.all().empty()) {
       faces_.begin_step(bodies_, x, x_new_, options_.recovery_speed * h);
-      if (look != Look::ahead) faces_.limit_dampers(masses, h);
+      if (foresight != Foresight::ahead) faces_.limit_dampers(masses, h);
     }
   }
   return ContactStep(*this);

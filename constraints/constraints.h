@@ -47,7 +47,7 @@ class Constraints {
   double work() const { return step_.work; }  // J, that moving bodies and pins did in the last step
   // Begins the step from x [m], v [m/s] at t for h [s] and finds what touches. masses [kg].
   [[nodiscard]] ContactStep begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses,
-                                       double t, double h, Look look = Look::ahead);
+                                       double t, double h, Foresight foresight = Foresight::ahead);
 
   // How deep each particle is inside a body: 0 outside [m]. For the start and the end of a run.
   std::vector<double> penetration(const VecX& x) const;

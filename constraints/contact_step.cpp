@@ -85,7 +85,7 @@ ContactChange ContactStep::judge(const VecX& v, const VecX& r, const VecX& x_new
   ContactChange change;
   change.grip = contacts.react(constraints_->bodies_, step, v, r, noise);
   change.caught = contacts.find_on_path(constraints_->bodies_, step, x_new);
-  if (step.look == Look::ahead) change.faces = constraints_->faces_.react(x_new, v);
+  if (step.foresight == Foresight::ahead) change.faces = constraints_->faces_.react(x_new, v);
   return change;
 }
 

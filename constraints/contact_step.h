@@ -7,7 +7,7 @@
 //   move_bodies   when no contact changes any more: bodies that react move as the impulses make them, and
 //            contacts, faces and pins go with them
 //   finish   guards the final motion (nothing crosses a surface) and commits the contacts
-// With Look::nowhere only pins are held; a free motion is then changed by the response of the bodies.
+// With Foresight::none only pins are held; a free motion is then changed by the response of the bodies.
 // x [m], v [m/s], h [s].
 #pragma once
 

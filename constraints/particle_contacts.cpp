@@ -91,7 +91,7 @@ void ParticleContacts::look_for(int particle, const Bodies& bodies, const StepMo
   for (int o = 0; o < static_cast<int>(bodies.size()); ++o) {
     const MovingBody& body = bodies[static_cast<std::size_t>(o)];
     const double margin = body.obstacle().margin;
-    const Vec3 x_new = step.look == Look::ahead ? Vec3(x + step.h * v) : body.carried(x);
+    const Vec3 x_new = step.foresight == Foresight::ahead ? Vec3(x + step.h * v) : body.carried(x);
     const double travel = body.travel(x, x_new);
     if (clearance(o, particle) > margin + std::max(travel, touching_range(margin))) continue;
     const SurfacePoint start = body.at_start(x);

@@ -9,16 +9,16 @@
 namespace drape {
 
 // How far contacts are looked for when a step begins.
-enum class Look {
-  ahead,    // along the motion x -> x + h v that is foreseen
-  here,     // where the particles are: for motions that vibrate within a step
-  nowhere,  // contact is answered after the motion, see ContactStep::respond
+enum class Foresight {
+  ahead,  // along the motion x -> x + h v that is foreseen
+  here,   // where the particles are: for motions that vibrate within a step
+  none,   // contact is answered after the motion, see ContactStep::respond
 };
 
 struct StepMotion {
   double t = 0, h = 0;  // s
   double last_h = 0;    // s, of the last completed step
-  Look look = Look::ahead;
+  Foresight foresight = Foresight::ahead;
   double work = 0;             // J, that moving bodies and pins do on the particles
   VecX x, v;                   // at the start [m], [m/s]
   VecX x_end;                  // where the last completed step ended [m]

@@ -2,10 +2,11 @@
 // every step; and the overlay of the matrix that carries their blocks.
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
-#include <numeric>
+#include <random>
 #include <tuple>
 
 #include "solver/forces/damping.h"
+#include "solver/forces/linear_spring.h"
 #include "solver/forces/pair_force.h"
 #include "tests/integrators.h"
 #include "tests/outside/forces.h"
@@ -80,9 +81,9 @@ struct Stencils {
     std::vector<std::array<int, Law::particles>> stencils;
     for (int first = 0; first < particles; ++first) {
       std::array<int, Law::particles> s;
-      for (std::size_t k = 0; k < s.size(); ++k)  // far apart and in no order
-        s[k] = (first + static_cast<int>(k * k) * 5 + static_cast<int>(k)) % particles;
-      if (std::set<int>(s.begin(), s.end()).size() == s.size()) stencils.push_back(s);
+      constexpr std::array<int, 4> offset = {0, 5, 2, 9};  // far apart and in no order
+      for (std::size_t k = 0; k < s.size(); ++k) s[k] = (first + offset[k]) % particles;
+      stencils.push_back(s);
     }
     return stencils;
   }
@@ -122,6 +123,9 @@ Eigen::MatrixXd dense(const BlockMatrix& A) {  // in particle order
   }
   return D;
 }
+
+// Of the direct solvers; a multigrid may make its levels anew whenever they work badly.
+bool analyses_are_kept(std::string_view solver) { return solver == "cholmod" || solver == "eigen-ldlt"; }
 
 }  // namespace
 
@@ -238,7 +242,7 @@ TEST_CASE("every linear solver solves with an overlay of far pairs, and analyses
         const LinearReport report = solver->solve(A, b, filter, {.tolerance = 1e-11}, dv);
         INFO(info.name << ", overlay " << shift);
         CHECK(report.reason == StopReason::converged);
-        if (again == 1) CHECK(report.analyses == 0);
+        if (again == 1 && analyses_are_kept(info.name)) CHECK(report.analyses == 0);
         VecX r(3 * n);
         A.multiply(dv, r);
         r -= b;
@@ -261,8 +265,9 @@ TEST_CASE("a product with an overlay is that of the dense matrix, the same bits 
   for (int k = 0; k < 4000; ++k)
     far.push_back({static_cast<int>(engine() % 3600u), static_cast<int>(engine() % 3600u)});
   const auto overlay = std::make_shared<BlockOverlay>();
+  std::vector<ParticlePair> same = far;
   CHECK(overlay->assign(*pattern, far));
-  CHECK_FALSE(overlay->assign(*pattern, far));  // the same again
+  CHECK_FALSE(overlay->assign(*pattern, same));
   BlockMatrix A(pattern, overlay);
   const VecX numbers = random_vector(9 * (pattern->blocks() + overlay->blocks()), 1, 5),
              x = random_vector(3 * A.rows(), 1, 6);

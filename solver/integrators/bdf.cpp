@@ -46,18 +46,16 @@ class Bdf::ContactSolve {
         wanted_(bdf.options_.tolerance),
         tolerance_(contacts.bodies() ? std::max(wanted_, std::sqrt(wanted_)) : wanted_) {}
 
-  const LinearReport& linear() const { return linear_; }
-
   bool solve() {
     const Stopwatch watch(report_.solve_ms);
     bdf_.add_friction(bdf_.friction(contacts_));
     contacts_.filter(bdf_.p_.v, bdf_.filter_);
-    linear_ = bdf_.A_.solve(bdf_.b_rubbed_, bdf_.filter_,
-                            {tolerance_, bdf_.options_.max_linear_iterations, bdf_.merit_.weight_impulse()},
-                            bdf_.dv_);
+    const LinearOptions options{tolerance_, bdf_.options_.max_linear_iterations,
+                                bdf_.merit_.weight_impulse()};
+    bdf_.linear_ = bdf_.A_.solve(bdf_.b_rubbed_, bdf_.filter_, options, bdf_.dv_);
     ++report_.linear_solves;
-    report_.linear_iterations += linear_.iterations;
-    return linear_.reason != StopReason::indefinite && linear_.reason != StopReason::not_finite;
+    report_.linear_iterations += bdf_.linear_.iterations;
+    return bdf_.linear_.reason != StopReason::indefinite && bdf_.linear_.reason != StopReason::not_finite;
   }
 
   ContactTrial trial() {
@@ -68,13 +66,13 @@ class Bdf::ContactSolve {
     for (const MovingPin& p : contacts_.moving_pins()) unscale(p.particle);
     bdf_.end_.v = bdf_.p_.v + bdf_.dv_;
     bdf_.end_.x = bdf_.k().x_bar + bdf_.k().c * bdf_.end_.v;
-    return {bdf_.end_.v, bdf_.end_.x, bdf_.r_, 2 * linear_.residual_impulse};
+    return {bdf_.end_.v, bdf_.end_.x, bdf_.r_, 2 * bdf_.linear_.residual_impulse};
   }
 
   void release() {}  // a particle that is let go moves in the next solve
 
   bool refine() {
-    if (linear_.residual <= wanted_ || tolerance_ <= wanted_) return false;
+    if (bdf_.linear_.residual <= wanted_ || tolerance_ <= wanted_) return false;
     tolerance_ = wanted_;
     return true;
   }
@@ -96,28 +94,24 @@ class Bdf::ContactSolve {
   Stiffness stiffness_;
   ContactStep& contacts_;
   StepReport& report_;
-  LinearReport linear_;
   double wanted_, tolerance_;
 };
 
 bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
   ContactStep contacts = begin(state, piece, report);  // what touches; c = gamma h; the first (x, v) and dv
-  LinearReport linear;
   for (NewtonLoop newton(options_); newton.next();) {
-    if (newton.exhausted()) return fail(report, "no step lowers the energy", linear.residual);
-    linearise(state, newton.stiffness(), contacts,
-              report);  // A = M + c D + c^2 K,  b = M (v_bar - v) + c (f - K y)
+    if (newton.exhausted()) return fail(report, "no step lowers the energy");
+    // A = M + c D + c^2 K,  b = M (v_bar - v) + c (f - K y)                            [BW98, eq. 6 and 18]
+    linearise(state, newton.stiffness(), contacts, report);
     if (newton.may_stop() && residual(contacts) <= residual_wanted()) break;
     if (!newton.first()) dv_.setZero();
+    // S (A dv - b) = 0 within the contacts, until they agree with dv                       [BW98, 5.1 to 5.3]
     ContactSolve solve(*this, state, newton.stiffness(), contacts, report);
-    const bool settled =
-        settle_contacts(contacts, options_.max_contact_solves, solve, report);  // S (A dv - b) = 0
-    linear = solve.linear();
-    if (!settled || !good(linear))
-      return fail(report, "linear solve: " + std::string(drape::name(linear.reason)), linear.residual);
+    if (!settle_contacts(contacts, options_.max_contact_solves, solve, report) || !good(linear_))
+      return fail(report, "linear solve: " + std::string(drape::name(linear_.reason)));
     newton.took(descend(contacts, newton.first()), report);  // v += dv, as far as Phi falls      [NW06, 3.1]
     p_.x = k().x_bar + k().c * p_.v;                         // x = x_bar + c v
-    if (!p_.x.allFinite()) return fail(report, "the new positions are not finite numbers", linear.residual);
+    if (!p_.x.allFinite()) return fail(report, "the new positions are not finite numbers");
   }
   if (k().order_2() && merit_.makes_energy(state, p_, contacts.work())) {
     ++report.rescues;
@@ -125,9 +119,8 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
   }
   // In a shorter step the cloth weighs less on bodies; where none is short enough the report says so.
   if (!contacts.bodies_agree() && !piece.shortest)
-    return fail(report, "the motion of a body that reacts and that of the cloth do not agree",
-                linear.residual);
-  finish(state, contacts, linear, report);
+    return fail(report, "the motion of a body that reacts and that of the cloth do not agree");
+  finish(state, contacts, report);
   return true;
 }
 
@@ -139,6 +132,7 @@ ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& repor
     friction_.reserve(static_cast<std::size_t>(system_.particles()));
     history_.forget(system_);
   }
+  linear_ = {};
   merit_.begin(piece.h);
   const Stopwatch watch(report.collide_ms);
   ContactStep contacts = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, piece.h);
@@ -214,11 +208,11 @@ bool Bdf::descend(ContactStep& contacts, bool first) {
   return merit_.descend(k(), friction(contacts), v_base_, dv_, p_.v);
 }
 
-void Bdf::finish(State& state, ContactStep& contacts, const LinearReport& linear, StepReport& report) {
+void Bdf::finish(State& state, ContactStep& contacts, StepReport& report) {
   end_ = p_;
   end_step(contacts, end_.x, end_.v, report);
-  report.residual = std::max(report.residual, linear.residual);
-  report.converged = report.converged && linear.reason == StopReason::converged;
+  report.residual = std::max(report.residual, linear_.residual);
+  report.converged = report.converged && linear_.reason == StopReason::converged;
   history_.remember(state, end_, contacts);
   state.x = end_.x;
   state.v = end_.v;
@@ -231,8 +225,8 @@ bool Bdf::good(const LinearReport& linear) const {
          (linear.reason == StopReason::iteration_limit && options_.max_linear_iterations > 0);
 }
 
-bool Bdf::fail(StepReport& report, const std::string& what, double linear_residual) {
-  report.residual = linear_residual;
+bool Bdf::fail(StepReport& report, const std::string& what) {
+  report.residual = linear_.residual;
   report.failure = {what, -1, std::string(system_.not_finite_force(p_.x, p_.v))};
   double worst = -1;
   for (int i = 0; i < system_.particles(); ++i) {

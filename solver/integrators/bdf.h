@@ -41,9 +41,9 @@ class Bdf final : public Integrator {
   double residual(ContactStep& contacts);  // N s
   double residual_wanted() const;          // N s
   bool descend(ContactStep& contacts, bool first);
-  void finish(State& state, ContactStep& contacts, const LinearReport& linear, StepReport& report);
+  void finish(State& state, ContactStep& contacts, StepReport& report);
   bool good(const LinearReport& linear) const;
-  bool fail(StepReport& report, const std::string& what, double linear_residual);
+  bool fail(StepReport& report, const std::string& what);
 
   const StepCoefficients& k() const { return history_.coefficients(); }
   const std::vector<ContactFriction>& friction(ContactStep& contacts);
@@ -55,9 +55,10 @@ class Bdf final : public Integrator {
   StepHistory history_;
   NewtonMatrix A_;
   Merit merit_;
-  Point p_;       // where Newton's iteration stands
-  VecX dv_;       // m/s: in, the guess of a solve; out, its solution
-  State before_;  // where a step that fails half-way returns to
+  Point p_;              // where Newton's iteration stands
+  VecX dv_;              // m/s: in, the guess of a solve; out, its solution
+  LinearReport linear_;  // of the last solve
+  State before_;         // where a step that fails half-way returns to
 
   // Scratch of a step.
   Point end_;

@@ -11,8 +11,9 @@ namespace drape {
 
 void HeldMotion::begin(const State& state, double h, StepReport& report) {
   const Stopwatch watch(report.collide_ms);
-  contacts_ = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h,
-                                      contact_ == ContactMode::constraint ? Look::here : Look::nowhere);
+  contacts_ =
+      constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h,
+                              contact_ == ContactMode::constraint ? Foresight::here : Foresight::none);
   system_.begin_step({state.time, h, state.x, state.v});
   contacts_->filter(state.v, held_);
   pull_.setZero(state.x.size());

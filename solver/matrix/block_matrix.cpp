@@ -45,6 +45,7 @@ void BlockMatrix::set_to_mass(const std::vector<double>& mass) {
 void BlockMatrix::set_diagonal_additions(std::span<const DiagonalBlock> additions) {
   for (const auto& [slot, block] : assembled_) at(slot) = block;
   assembled_.clear();
+  assembled_.reserve(static_cast<std::size_t>(rows()));  // at the first call, so that no later one allocates
   for (const DiagonalBlock& addition : additions) {
     const int slot = pattern_->diagonal(addition.row);
     assembled_.emplace_back(slot, at(slot));

@@ -23,7 +23,8 @@ class BlockOverlay {
   };
 
   // The blocks that these pairs of particles need and the pattern lacks, in any order, repeats allowed. True
-  // when they are others than before; the serial is another one then. Memory is kept for the next time.
+  // when they are others than before; the serial is another one then. Memory is kept for the next time, and
+  // `pairs` is scratch: it ends as the pairs of rows.
   bool assign(const BlockPattern& pattern, std::vector<ParticlePair>& pairs);
   void clear();
 
