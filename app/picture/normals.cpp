@@ -1,36 +1,15 @@
 #include "app/picture/normals.h"
 
 #include <Eigen/Geometry>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
-#include <unordered_map>
+
+#include "mesh/triangles/topology.h"
 
 namespace drape::drawing {
 namespace {
 
 constexpr int crowd = 1000;  // faces round a vertex
-
-struct PlaceHash {
-  std::size_t operator()(const std::array<double, 3>& place) const {
-    std::uint64_t hash = 0;
-    for (double x : place)
-      hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x9E3779B97F4A7C15U, hash ^= hash >> 29;
-    return hash;
-  }
-};
-
-// The first vertex at each vertex's place.
-std::vector<int> first_at_place(const std::vector<Vec3>& positions) {
-  std::unordered_map<std::array<double, 3>, int, PlaceHash> seen(positions.size());
-  std::vector<int> first;
-  first.reserve(positions.size());
-  for (const Vec3& p : positions)
-    first.push_back(
-        seen.try_emplace({p[0] + 0.0, p[1] + 0.0, p[2] + 0.0}, static_cast<int>(first.size())).first->second);
-  return first;
-}
 
 double angle(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
@@ -38,7 +17,7 @@ double angle(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm()
 
 std::vector<CornerNormals> corner_normals(const std::vector<Vec3>& positions,
                                           const std::vector<Triangle>& triangles, double crease_degrees) {
-  const std::vector<int> vertex = first_at_place(positions);
+  const std::vector<int> vertex = welded(positions);
   const std::size_t n = triangles.size();
   std::vector<Vec3> face(n);
   std::vector<std::array<double, 3>> weight(n);

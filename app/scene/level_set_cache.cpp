@@ -1,13 +1,13 @@
 #include "app/scene/level_set_cache.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <cstdio>
+#include <array>
 #include <fstream>
 #include <vector>
 
 #include "app/base/atomic_file.h"
 #include "mesh/base/errors.h"
+#include "mesh/base/hash.h"
 
 namespace drape {
 namespace {
@@ -16,31 +16,22 @@ namespace fs = std::filesystem;
 
 constexpr int version = 1;  // of what a kept file holds; another one for every change of it
 
-std::uint64_t fnv1a(std::uint64_t hash, const void* data, std::size_t count) {
-  const auto* const bytes = static_cast<const unsigned char*>(data);
-  for (std::size_t i = 0; i < count; ++i) hash = (hash ^ bytes[i]) * 1099511628211u;
-  return hash;
-}
-
-std::uint64_t hash_of_file(std::uint64_t hash, const fs::path& path) {
+void add_file(Fnv1a& hash, const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::vector<char> block(1 << 16);
   do {
     file.read(block.data(), static_cast<std::streamsize>(block.size()));
-    hash = fnv1a(hash, block.data(), static_cast<std::size_t>(file.gcount()));
+    hash.add(block.data(), static_cast<std::size_t>(file.gcount()));
   } while (file);
-  return hash;
 }
 
 fs::path kept_path(const LevelSetRequest& request, const LevelSetOptions& options) {
-  std::uint64_t hash = fnv1a(14695981039346656037u, &version, sizeof version);
-  for (const double number : {request.scale, options.voxel, options.band})
-    hash = fnv1a(hash, &number, sizeof number);
-  char text[24];
-  std::snprintf(text, sizeof text, "%016llx",
-                static_cast<unsigned long long>(hash_of_file(hash, request.mesh)));
+  Fnv1a hash;
+  hash.add(&version, sizeof version);
+  hash.add_all(std::array{request.scale, options.voxel, options.band});
+  add_file(hash, request.mesh);
   fs::path path = request.mesh;
-  return path.replace_filename(request.mesh.stem().string() + "." + text + ".vdb");
+  return path.replace_filename(request.mesh.stem().string() + "." + hash.text() + ".vdb");
 }
 
 void keep(const LevelSet& level_set, const fs::path& path, Names& messages) {

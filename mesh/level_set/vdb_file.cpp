@@ -4,6 +4,7 @@
 #include "mesh/level_set/vdb_file.h"
 
 #include "mesh/base/errors.h"
+#include "mesh/base/hash.h"
 
 #ifdef DRAPE_HAVE_OPENVDB
 #include <openvdb/io/Stream.h>
@@ -60,13 +61,7 @@ Index sides_in_bricks(const VoxelGrid& grid) { return {grid.side(0), grid.side(1
 // --- writing ----------------------------------------------------------------------------------------------
 
 std::string checksum(const VoxelGrid& grid) {
-  std::uint64_t hash = 14695981039346656037u;  // FNV-1a
-  for (const std::vector<float>* numbers : {&grid.far, &grid.nodes}) {
-    const auto* const bytes = reinterpret_cast<const unsigned char*>(numbers->data());
-    for (std::size_t i = 0; i < numbers->size() * sizeof(float); ++i)
-      hash = (hash ^ bytes[i]) * 1099511628211u;
-  }
-  return std::to_string(hash);
+  return std::to_string(Fnv1a().add_all(grid.far).add_all(grid.nodes).value());
 }
 
 void describe(Grid& surface, const VoxelGrid& grid) {

@@ -5,8 +5,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <compare>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 namespace drape {
@@ -249,8 +249,12 @@ std::vector<std::vector<int>> boundary_loops(const TriangleMesh& mesh) { return 
 std::vector<int> welded(const std::vector<Vec3>& positions) {
   std::vector<int> order(positions.size()), first(positions.size());
   std::iota(order.begin(), order.end(), 0);
-  const auto key = [&](int i) { return std::tuple(positions[i].x(), positions[i].y(), positions[i].z(), i); };
-  std::sort(order.begin(), order.end(), [&](int i, int j) { return key(i) < key(j); });
+  std::sort(order.begin(), order.end(), [&](int i, int j) {
+    for (int k = 0; k < 3; ++k)  // a weak order: a place that is not a number must not break the sorting
+      if (const auto between = std::weak_order(positions[i][k], positions[j][k]); between != 0)
+        return between < 0;
+    return i < j;
+  });
   for (std::size_t k = 0; k < order.size(); ++k) {
     const bool same = k > 0 && positions[order[k]] == positions[order[k - 1]];
     first[order[k]] = same ? first[order[k - 1]] : order[k];
