@@ -4,6 +4,7 @@
 
 #include "mesh/base/parallel.h"
 #include "mesh/distance/closest_on_triangle.h"
+#include "mesh/triangles/normals.h"
 
 namespace drape {
 namespace {
@@ -53,7 +54,7 @@ Lowest lowest_point(const Corners& t, const Distance& distance, double enough, c
       weights = likely;
     }
   }
-  const Vec3 upright = (t.b - t.a).cross(t.c - t.a).stableNormalized();
+  const Vec3 upright = twice_area_normal(t.a, t.b, t.c).stableNormalized();
   double step = size;
   for (int i = 0; i < most_steps && step > fine * size; ++i) {
     const Vec3 along = here.normal - upright.dot(here.normal) * upright;

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "mesh/triangles/polygon.h"
+#include "mesh/triangles/normals.h"
 #include "tests/folder.h"
 #include "tests/obj.h"
 #include "tests/places.h"

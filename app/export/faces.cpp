@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "mesh/obj/obj.h"
+#include "mesh/triangles/normals.h"
 #include "mesh/triangles/topology.h"
 
 namespace drape {
@@ -76,8 +77,6 @@ class TriangleCorners {
   int given_ = 0;  // triangles of this face so far
 };
 
-Vec3 area_vector(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
-
 // A number for each corner of each triangle: corners at one vertex have the same where one gets from one
 // triangle to the other over edges that are not hard.
 std::vector<int> smooth_parts(const TriangleMesh& mesh, double crease) {
@@ -96,7 +95,7 @@ std::vector<int> smooth_parts(const TriangleMesh& mesh, double crease) {
   const auto normal = [&mesh](int t) {
     const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(t)];
     const auto x = [&mesh](int v) { return mesh.positions[static_cast<std::size_t>(v)]; };
-    return area_vector(x(a), x(b), x(c));
+    return twice_area_normal(x(a), x(b), x(c));
   };
   for (const Hinge& hinge : hinges(mesh)) {
     const Vec3 one = normal(hinge.tc), other = normal(hinge.td);
@@ -180,10 +179,10 @@ std::vector<Vec3> normals_of(const Corners& corners, const std::vector<Vec3>& po
   const auto at = [](const auto& list, int i) -> const auto& { return list[static_cast<std::size_t>(i)]; };
   std::vector<Vec3> sums(static_cast<std::size_t>(corners.normals), Vec3::Zero());
   for (const Triangle& t : corners.triangles) {
-    const Vec3 area =
-        area_vector(at(positions, at(corners.origin, t[0])), at(positions, at(corners.origin, t[1])),
-                    at(positions, at(corners.origin, t[2])));
-    for (const int v : t) sums[static_cast<std::size_t>(at(corners.normal, v))] += area;
+    const Vec3 normal =
+        twice_area_normal(at(positions, at(corners.origin, t[0])), at(positions, at(corners.origin, t[1])),
+                          at(positions, at(corners.origin, t[2])));
+    for (const int v : t) sums[static_cast<std::size_t>(at(corners.normal, v))] += normal;
   }
   std::vector<Vec3> normals;
   for (const int number : corners.normal) {

@@ -4,14 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/triangles/normals.h"
 #include "mesh/triangles/topology.h"
 
 namespace drape::drawing {
 namespace {
 
 constexpr int crowd = 1000;  // faces round a vertex
-
-double angle(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 }  // namespace
 
@@ -24,9 +23,9 @@ std::vector<CornerNormals> corner_normals(const std::vector<Vec3>& positions,
   std::vector<int> start(positions.size() + 1, 0);
   for (std::size_t t = 0; t < n; ++t) {
     const auto corner = [&](std::size_t k) -> const Vec3& { return positions[triangles[t][k % 3]]; };
-    face[t] = (corner(1) - corner(0)).cross(corner(2) - corner(0)).stableNormalized();
+    face[t] = twice_area_normal(corner(0), corner(1), corner(2)).stableNormalized();
     for (std::size_t k = 0; k < 3; ++k) {
-      weight[t][k] = angle(corner(k + 1) - corner(k), corner(k + 2) - corner(k));
+      weight[t][k] = angle_between(corner(k + 1) - corner(k), corner(k + 2) - corner(k));
       ++start[vertex[triangles[t][k]] + 1];
     }
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/triangles/normals.h"
+
 namespace drape::drawing {
 namespace {
 
@@ -64,7 +66,7 @@ void Surface::meet(Seen& seen, const Vec3& direction, const TriangleTree::Hit& h
   const Piece& piece = pieces_[piece_of_[hit.triangle]];
   const CornerNormals& normals = normals_[hit.triangle];
   const Vec3 &a = positions_[t[0]], &b = positions_[t[1]], &c = positions_[t[2]];
-  const Vec3 twice_area = (b - a).cross(c - a);
+  const Vec3 twice_area = twice_area_normal(a, b, c);
   const bool front = twice_area.dot(direction) < 0;
   const double side = front ? 1 : -1;
   seen.part = piece_of_[hit.triangle];

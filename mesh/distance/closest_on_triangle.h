@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mesh/base/vectors.h"
+#include "mesh/triangles/normals.h"
 
 namespace drape {
 
@@ -43,7 +44,7 @@ inline std::pair<Vec3, int> closest_on_triangle(const Vec3& x, const Vec3& a, co
 inline Vec3 weights_on_triangle(const Vec3& point, int feature, const Vec3& a, const Vec3& b, const Vec3& c) {
   if (feature < on_edge) return Vec3::Unit(feature);
   if (feature == on_face) {
-    const Vec3 n = (b - a).cross(c - a), p = point - a;
+    const Vec3 n = twice_area_normal(a, b, c), p = point - a;
     const double area = n.squaredNorm(), v = n.dot(p.cross(c - a)) / area, w = n.dot((b - a).cross(p)) / area;
     return {1 - v - w, v, w};
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mesh/distance/closest_on_triangle.h"
+#include "mesh/triangles/normals.h"
 
 namespace drape {
 namespace {
@@ -91,7 +92,7 @@ double steepness(const StraightWay& x, const std::array<StraightWay, 3>& corners
   const Vec3 weights = weights_on_triangle(nearest, feature, a, b, c);
   Vec3 way = x.to - x.from;
   for (int k = 0; k < 3; ++k) way -= weights[k] * (corners[k].to - corners[k].from);
-  const Vec3 n = (b - a).cross(c - a);
+  const Vec3 n = twice_area_normal(a, b, c);
   return n.dot(way) / (n.norm() * way.norm());
 }
 

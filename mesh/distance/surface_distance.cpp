@@ -18,6 +18,7 @@
 #include "mesh/distance/surface_faces.h"
 #include "mesh/distance/surface_pose.h"
 #include "mesh/distance/triangle_tree.h"
+#include "mesh/triangles/normals.h"
 
 namespace drape {
 namespace {
@@ -49,7 +50,7 @@ struct Candidate {
 
 // Along a triangle's first side, across it within the triangle, and along its normal.
 Mat3 frame(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 side = b - a, normal = side.cross(c - a);
+  const Vec3 side = b - a, normal = twice_area_normal(a, b, c);
   const Vec3 along = side.norm() > 0 ? Vec3(side.normalized()) : Vec3(Vec3::UnitX());
   const Vec3 out = normal.norm() > 0 ? Vec3(normal.normalized()) : Vec3(along.unitOrthogonal());
   Mat3 axes;

@@ -7,6 +7,7 @@
 
 #include "mesh/base/errors.h"
 #include "mesh/distance/closest_on_triangle.h"
+#include "mesh/triangles/normals.h"
 #include "mesh/triangles/topology.h"
 
 namespace drape {
@@ -108,7 +109,7 @@ Vec3 centre_of(const SurfaceFaces& surface, const std::vector<Vec3>& positions) 
 
 bool has_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-  return (b - a).cross(c - a).norm() > flat * longest;
+  return twice_area_normal(a, b, c).norm() > flat * longest;
 }
 
 SurfaceFaces surface_faces(const TriangleMesh& mesh) {

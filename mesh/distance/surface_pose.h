@@ -6,12 +6,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "mesh/distance/closest_on_triangle.h"
 #include "mesh/distance/crossing.h"
 #include "mesh/distance/surface_faces.h"
+#include "mesh/triangles/normals.h"
 
 namespace drape {
 
@@ -48,13 +48,13 @@ Vec3 SurfacePose<Places>::plain_normal(int f) const {
     f = surface_.faces[f].across[longest_side(f)];
     if (f < 0 || flat(f)) return Vec3::Zero();
   }
-  return (corner(f, 1) - corner(f, 0)).cross(corner(f, 2) - corner(f, 0)).normalized();
+  return twice_area_normal(corner(f, 0), corner(f, 1), corner(f, 2)).normalized();
 }
 
 template <class Places>
 Vec3 SurfacePose<Places>::angle_weighted(int f, int k) const {
   const Vec3 p = corner(f, next(k)) - corner(f, k), q = corner(f, next(next(k))) - corner(f, k);
-  return std::atan2(p.cross(q).norm(), p.dot(q)) * plain_normal(f);
+  return angle_between(p, q) * plain_normal(f);
 }
 
 // Normal of the surface beyond a side of a face. Past the long side of a face without an area lie two.

@@ -9,6 +9,7 @@
 #include "mesh/base/parallel.h"
 #include "mesh/distance/surface_distance.h"
 #include "mesh/lattice/solid.h"
+#include "mesh/triangles/normals.h"
 #include "mesh/triangles/topology.h"
 
 namespace drape {
@@ -102,7 +103,7 @@ bool overlap(const std::array<Vec3, 3>& t, const Vec3& half) {
     const double reach = half.dot(axis.cwiseAbs());
     return std::min({a, b, c}) >= reach || std::max({a, b, c}) <= -reach;
   };
-  const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  const Vec3 normal = twice_area_normal(t[0], t[1], t[2]);
   // A triangle that lies in a face of the box touches its rim only.
   if (const double from = std::abs(normal.dot(t[0])), reach = half.dot(normal.cwiseAbs()); from > reach)
     return false;

@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "mesh/obj/obj.h"
-#include "mesh/triangles/polygon.h"
+#include "mesh/triangles/normals.h"
 
 namespace drape {
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mesh/triangles/normals.h"
+
 namespace drape {
 
 namespace {
@@ -50,15 +52,6 @@ bool drop_repeated(std::vector<int>& corners) {
 
 }  // namespace
 
-Vec3 newell_normal(const std::vector<Vec3>& positions, const int* corners, int count) {
-  Vec3 sum = Vec3::Zero();
-  const Vec3& origin = positions[corners[0]];  // any would do; a near one keeps the digits
-  for (int i = 1; i + 1 < count; ++i) {
-    sum += (positions[corners[i]] - origin).cross(positions[corners[i + 1]] - origin);
-  }
-  return sum / 2;
-}
-
 PolygonCutter::Outcome PolygonCutter::cut(const std::vector<int>& corners, std::vector<Triangle>& triangles) {
   corners_ = corners;
   Outcome outcome;
@@ -78,7 +71,7 @@ void PolygonCutter::cut_quad(std::vector<Triangle>& triangles) {
   const Vec3 &xa = positions_[a], &xb = positions_[b], &xc = positions_[c], &xd = positions_[d];
   const Vec3 normal = newell_normal(positions_, corners_.data(), 4);
   const auto up = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
-    return (q - p).cross(r - p).dot(normal);
+    return twice_area_normal(p, q, r).dot(normal);
   };
   const bool ac_inside = up(xa, xb, xc) > 0 && up(xa, xc, xd) > 0;
   const bool bd_inside = up(xa, xb, xd) > 0 && up(xb, xc, xd) > 0;

@@ -1,8 +1,8 @@
 // Cutting polygons into triangles.
 //   quad     along the shorter diagonal that lies inside; where both are as long (to 1e-3), along the one
 //            whose ends carry more diagonals: a grid of rectangles becomes a union jack, alike both ways
-//   larger   ear clipping in the plane of the Newell normal  N = 1/2 sum_i x_i x x_(i+1)   [m^2],
-//            best-shaped ear first (area over the sum of squared edges)
+//   larger   ear clipping in the plane of Newell's normal (mesh/triangles/normals.h), best-shaped ear first
+//            (area over the sum of squared edges)
 // n corners give n - 2 triangles, wound like the polygon; concave, non-planar and self-touching polygons are
 // welcome. A corner equal to the one before it is passed over, and so is a spike (1 2 1), which has no area:
 // they give no triangle. No triangle names a vertex twice.
@@ -38,8 +38,5 @@ class PolygonCutter {
   std::vector<double> u_, w_;        // its corners in its own plane
   std::vector<int> before_, after_;  // corners that are still there, as a ring
 };
-
-// 1/2 sum_i x_i x x_(i+1): normal to the polygon, as long as its area.  [m^2]
-Vec3 newell_normal(const std::vector<Vec3>& positions, const int* corners, int count);
 
 }  // namespace drape

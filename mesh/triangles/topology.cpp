@@ -9,6 +9,8 @@
 #include <numeric>
 #include <utility>
 
+#include "mesh/triangles/normals.h"
+
 namespace drape {
 
 namespace {
@@ -285,8 +287,7 @@ std::vector<Hole> holes(const TriangleMesh& mesh) {
 }
 
 double triangle_area(const TriangleMesh& mesh, const Triangle& t) {
-  const Vec3& x = mesh.positions[t[0]];
-  return (mesh.positions[t[1]] - x).cross(mesh.positions[t[2]] - x).norm() / 2;
+  return twice_area_normal(mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]).norm() / 2;
 }
 
 std::vector<double> vertex_areas(const TriangleMesh& mesh) { return vertex_areas(mesh, mesh); }

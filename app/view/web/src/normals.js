@@ -1,6 +1,7 @@
 // Smooth normals, and where a surface is to have none: at sharp edges.
 
-// Sums of the faces' normals, weighted by area, at every vertex; of unit length.
+// Sums of the faces' normals, weighted by area, at every vertex; of unit length. The page sums them itself for the frame that it shows,
+// by the formula of mesh/triangles/normals.h, because a recording holds positions only.
 export function smooth_normals(normals, positions, triangles) {
   normals.fill(0);
   for (let t = 0; t < triangles.length; t += 3) {
