@@ -1,5 +1,6 @@
 #include "constraints/pins.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <sstream>
 
@@ -19,20 +20,19 @@ std::vector<int> chosen(const PinVertices& rule, const TriangleMesh& mesh) {
 
 std::vector<int> chosen(const PinBox& rule, const TriangleMesh& mesh) {
   std::vector<int> inside;
-  Vec3 lower = Vec3::Constant(1e300), upper = -lower;
+  const Eigen::AlignedBox3d box(rule.lower, rule.upper);
+  Eigen::AlignedBox3d cloth;
   for (int i = 0; i < mesh.vertex_count(); ++i) {
     const Vec3& x = mesh.positions[static_cast<std::size_t>(i)];
-    lower = lower.cwiseMin(x);
-    upper = upper.cwiseMax(x);
-    if ((x.array() >= rule.lower.array()).all() && (x.array() <= rule.upper.array()).all())
-      inside.push_back(i);
+    cloth.extend(x);
+    if (box.contains(x)) inside.push_back(i);
   }
   if (inside.empty()) {
     std::ostringstream message;
     const Eigen::IOFormat row(6, Eigen::DontAlignCols, ", ", ", ", "", "", "[", "]");
-    message << "pins: the box " << rule.lower.transpose().format(row) << " to "
-            << rule.upper.transpose().format(row) << " m holds no vertex; the cloth reaches from "
-            << lower.transpose().format(row) << " to " << upper.transpose().format(row) << " m";
+    message << "pins: the box " << box.min().transpose().format(row) << " to "
+            << box.max().transpose().format(row) << " m holds no vertex; the cloth reaches from "
+            << cloth.min().transpose().format(row) << " to " << cloth.max().transpose().format(row) << " m";
     throw InputError(message.str());
   }
   return inside;

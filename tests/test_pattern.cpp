@@ -138,7 +138,7 @@ TEST_CASE("an OBJ of a pattern has panels, flat coordinates and curves", "[patte
 }
 
 TEST_CASE("an edge is brought in only where nothing is in its way", "[pattern]") {
-  Delaunay mesh({0, 0}, {4, 4});
+  Delaunay mesh({Vec2(0, 0), Vec2(4, 4)});
   const auto add = [&](double x, double y) { return mesh.add({x, y}, mesh.locate({x, y}, 0, false)); };
   const int a = add(0, 0), b = add(4, 0), middle = add(2, 0), up = add(1, 3), down = add(2.5, -3);
   CHECK_FALSE(mesh.force_edge(a, a, 0));

@@ -14,7 +14,7 @@ namespace drape {
 namespace {
 
 std::string sides(const MeshReport& report) {
-  const Vec3 size = report.upper - report.lower;
+  const Vec3 size = report.box().sizes();
   return rounded(size[0], 4) + " x " + rounded(size[1], 4) + " x " + rounded(size[2], 4) + " m";
 }
 
@@ -116,7 +116,7 @@ void print_paths(const std::vector<PinEntry>& pins, const Cloth& cloth, const St
 // m, where it was drawn. The box of a level set is that of its grid, which was scaled but not placed.
 Vec3 middle_of(const ObstacleEntry& entry, const Obstacle& obstacle, const Body& body) {
   if (entry.mesh.empty()) return middle(entry);
-  const Vec3 centre = (body.report.lower + body.report.upper) / 2;
+  const Vec3 centre = body.report.box().center();
   if (!std::holds_alternative<LevelSetBody>(obstacle.shape)) return centre;
   return entry.placement.rotation * centre + entry.placement.translate;
 }

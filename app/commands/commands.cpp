@@ -118,8 +118,7 @@ int make_level_set(const LevelSetWords& words) {
   const Placement scaled{.scale = read(words.scale, "--scale", dimension::number, 1)};
   const TriangleMesh mesh = placed(read_obj(input), scaled, words.mesh);
   const MeshReport report = examine(mesh);
-  if (report.triangles > 0)
-    check_size(report.lower, report.upper, words.mesh);  // before its areas are judged
+  if (report.triangles > 0) check_size(report.box(), words.mesh);  // before its areas are judged
   Names messages;
   add_messages(report, words.mesh, messages);
   (void)AtomicFile(output);  // not kept: now, and not when all is computed

@@ -84,9 +84,9 @@ class GltfWriter {
 
   int add_positions(const Shape& shape, const std::vector<Vec3>& x) {
     const int accessor = buffer_.add(GltfUse::vertices, shape.corners.size(), "VEC3");
-    const FloatRange range = float_range(x);
-    buffer_.set_range(accessor, {range.low[0], range.low[1], range.low[2]},
-                      {range.high[0], range.high[1], range.high[2]});
+    const Eigen::AlignedBox3f box = float_range(x);
+    buffer_.set_range(accessor, {box.min()[0], box.min()[1], box.min()[2]},
+                      {box.max()[0], box.max()[1], box.max()[2]});
     return accessor;
   }
 

@@ -37,14 +37,11 @@ void GltfBuffer::set_range(int accessor, const std::vector<double>& low, const s
   members.emplace_back("max", high);
 }
 
-FloatRange float_range(const std::vector<Vec3>& vectors) {
-  Eigen::Vector3f low = Eigen::Vector3f::Zero(), high = low;
-  if (!vectors.empty()) low = high = vectors.front().cast<float>();
-  for (const Vec3& vector : vectors) {
-    low = low.cwiseMin(vector.cast<float>());
-    high = high.cwiseMax(vector.cast<float>());
-  }
-  return {low.cast<double>(), high.cast<double>()};
+Eigen::AlignedBox3f float_range(const std::vector<Vec3>& vectors) {
+  Eigen::AlignedBox3f box;
+  if (vectors.empty()) box.extend(Eigen::Vector3f(Eigen::Vector3f::Zero()));
+  for (const Vec3& vector : vectors) box.extend(Eigen::Vector3f(vector.cast<float>()));
+  return box;
 }
 
 std::string glb_start(const std::string& json, std::uint64_t size, const std::string& file) {

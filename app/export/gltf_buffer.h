@@ -2,6 +2,7 @@
 // but one frame is ever in memory.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -31,11 +32,8 @@ class GltfBuffer {
   std::uint64_t size_ = 0;
 };
 
-// The smallest and the largest of the numbers as they are written.
-struct FloatRange {
-  Vec3 low, high;
-};
-FloatRange float_range(const std::vector<Vec3>& vectors);
+// The box of the numbers as they are written; from 0 to 0 when there are none.
+Eigen::AlignedBox3f float_range(const std::vector<Vec3>& vectors);
 
 // Header and JSON of a file whose binary part of `size` bytes follows. Throws InputError when it is more than
 // the 4 GiB that a file can tell.

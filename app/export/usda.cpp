@@ -5,6 +5,7 @@
 
 #include "app/export/faces.h"
 #include "app/export/numbers.h"
+#include "mesh/triangles/extent.h"
 
 namespace drape {
 namespace {
@@ -38,12 +39,8 @@ std::string integers(const std::vector<int>& numbers) {
 
 std::string extent(const std::vector<Vec3>& positions) {
   if (positions.empty()) return "[]";
-  Vec3 low = positions.front(), high = low;
-  for (const Vec3& x : positions) {
-    low = low.cwiseMin(x);
-    high = high.cwiseMax(x);
-  }
-  return tuples(std::vector<Vec3>{low, high});
+  const Eigen::AlignedBox3d box = box_of(positions);
+  return tuples(std::vector<Vec3>{box.min(), box.max()});
 }
 
 class UsdaWriter {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "app/picture/legend.h"
 #include "app/picture/render.h"
 #include "app/picture/text.h"
 #include "mesh/base/errors.h"
+#include "mesh/triangles/extent.h"
 
 namespace drape::drawing {
 namespace {
@@ -15,32 +15,25 @@ namespace {
 constexpr double around = 0.35;  // of the cloth's size: how much of a body is shown with it
 constexpr double around_small = 1;
 constexpr double air = 0.04;  // of a panel, left free on every side
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
-struct Extent {
-  Vec3 low = Vec3::Constant(infinite), high = Vec3::Constant(-infinite);  // m
-  void add(const Vec3& p) { low = low.cwiseMin(p), high = high.cwiseMax(p); }
-  bool empty() const { return !(low.x() <= high.x()); }
-  double size() const { return empty() ? 0 : (high - low).norm(); }
-  bool holds(const Vec3& p, double reach) const {
-    return (p - low).minCoeff() >= -reach && (high - p).minCoeff() >= -reach;
-  }
-};
+double size_of(const Eigen::AlignedBox3d& box) { return box.isEmpty() ? 0 : box.diagonal().norm(); }
+
+bool holds(const Eigen::AlignedBox3d& box, const Vec3& p, double reach) {
+  return (p - box.min()).minCoeff() >= -reach && (box.max() - p).minCoeff() >= -reach;
+}
 
 // f(point) of what must be on the picture: the cloths, and what of bodies is near them. A body that is no
 // larger than the cloths may be farther away.
 template <class F>
 void for_framed(const Still& still, bool whole, const F& f) {
-  Extent cloths;
+  Eigen::AlignedBox3d cloths;
   for (const StillPart& part : still.parts)
-    if (!part.body)
-      for (const Vec3& p : part.positions) cloths.add(p);
+    if (!part.body) cloths.extend(box_of(part.positions));
+  const double size = size_of(cloths);
   for (const StillPart& part : still.parts) {
-    Extent own;
-    for (const Vec3& p : part.positions) own.add(p);
-    const double reach = (own.size() <= cloths.size() ? around_small : around) * cloths.size();
+    const double reach = (size_of(box_of(part.positions)) <= size ? around_small : around) * size;
     for (const Vec3& p : part.positions)
-      if (whole || cloths.empty() || !part.body || cloths.holds(p, reach)) f(p);
+      if (whole || cloths.isEmpty() || !part.body || holds(cloths, p, reach)) f(p);
   }
 }
 
@@ -90,32 +83,29 @@ Sheet::Place Sheet::place(std::size_t k) const {
 
 void Sheet::choose_columns(const std::vector<SheetPanel>& all) {
   const Camera axes = facing(options_.view);
-  Eigen::Array2d low = Eigen::Array2d::Constant(infinite), high = -low;
+  Eigen::AlignedBox2d box;
   for (const SheetPanel& panel : all)
-    for_framed(panel.subject->still(panel.frame, {}), options_.whole, [&](const Vec3& p) {
-      const Eigen::Array2d seen(p.dot(axes.right), p.dot(axes.up));
-      low = low.min(seen), high = high.max(seen);
-    });
-  const Eigen::Array2d size = (high - low).max(1e-9);
+    for_framed(panel.subject->still(panel.frame, {}), options_.whole,
+               [&](const Vec3& p) { box.extend(Eigen::Vector2d(p.dot(axes.right), p.dot(axes.up))); });
+  const Eigen::Array2d size = box.sizes().array().max(1e-9);
   double best = -1;
   int chosen = 1;
   for (columns_ = 1; columns_ <= static_cast<int>(together_); ++columns_) {
-    const PixelBox box = place(0).framed;
-    const double scale = std::min(box.width / size.x(), box.height / size.y());
+    const PixelBox framed = place(0).framed;
+    const double scale = std::min(framed.width / size.x(), framed.height / size.y());
     if (scale > best * (1 + 1e-9)) best = scale, chosen = columns_;
   }
   columns_ = chosen;
 }
 
 void Sheet::survey(const std::vector<SheetPanel>& all) {
-  low_ = Vec3::Constant(infinite), high_ = -low_;
   Framing framing(options_.view, place(0).framed);
   std::vector<float> values;
   for (const SheetPanel& panel : all) {
     const Still still = panel.subject->still(panel.frame, options_.field);
     for_framed(still, options_.whole, [&](const Vec3& p) {
       framing.add(p);
-      low_ = low_.cwiseMin(p), high_ = high_.cwiseMax(p);
+      box_.extend(p);
     });
     for (const StillPart& part : still.parts)
       for (double value : part.values) {
@@ -142,8 +132,8 @@ Image Sheet::draw(const std::vector<SheetPanel>& panels) const {
     Look look;
     if (options_.field) look.scale = scale_;
     look.edges = options_.edges;
-    look.size = std::max((high_ - low_).norm(), 1e-6);
-    look.middle = (low_ + high_) / 2;
+    look.size = std::max(size_of(box_), 1e-6);
+    look.middle = box_.center();
     render(panels[k].subject->still(panels[k].frame, options_.field), camera, look, image, here.panel);
     draw_text(image, static_cast<int>(here.panel.x + here.panel.width / 2),
               static_cast<int>(here.panel.y + here.panel.height + 1.25 * letters_), panels[k].label, letters_,

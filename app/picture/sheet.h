@@ -2,6 +2,7 @@
 // the picture. Under each its time, under all the legend of the colours.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "app/picture/camera.h"
@@ -46,8 +47,8 @@ class Sheet {
   bool labelled_;
   int columns_ = 1, letters_ = 0;  // size of the letters, pixels
   double legend_height_ = 0;
-  Camera camera_;    // of the first panel
-  Vec3 low_, high_;  // m, box of what is framed
+  Camera camera_;            // of the first panel
+  Eigen::AlignedBox3d box_;  // m, of what is framed
   Scale scale_;
   double largest_ = 0;
 };

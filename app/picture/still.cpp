@@ -5,6 +5,7 @@
 
 #include "app/base/interrupt.h"
 #include "mesh/obj/obj.h"
+#include "mesh/triangles/extent.h"
 
 namespace drape::drawing {
 namespace {
@@ -12,10 +13,9 @@ namespace {
 // A ball that moves is drawn with sectors of two tones, or nobody could see that it turns. A ball is what has
 // all vertices as far from its middle; of anything else nothing is returned.
 std::vector<Vec3> ball_from_middle(std::vector<Vec3> positions) {
-  Vec3 low = positions[0], high = positions[0];
-  for (const Vec3& p : positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  const Vec3 middle = (low + high) / 2;
-  const double radius = (high - low).maxCoeff() / 2;
+  const Eigen::AlignedBox3d box = box_of(positions);
+  const Vec3 middle = box.center();
+  const double radius = box.sizes().maxCoeff() / 2;
   for (Vec3& p : positions) {
     p -= middle;
     if (std::abs(p.norm() - radius) > 0.02 * radius) return {};

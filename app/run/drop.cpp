@@ -1,31 +1,18 @@
 #include "app/run/drop.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "app/base/table.h"
 #include "app/simulation/simulation.h"
 #include "mesh/obj/examine.h"
 #include "mesh/obj/obj.h"
+#include "mesh/triangles/extent.h"
 
 namespace drape {
 namespace {
 
-struct Extent {
-  Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
-  Vec3 centre() const { return 0.5 * (lower + upper); }
-};
-
 // Of the vertices that carry triangles: a stray one must not push the body away.
-Extent extent_of(const TriangleMesh& mesh) {
-  Extent extent;
-  for (const Triangle& t : mesh.triangles)
-    for (int v : t) {
-      extent.lower = extent.lower.cwiseMin(mesh.positions[static_cast<std::size_t>(v)]);
-      extent.upper = extent.upper.cwiseMax(mesh.positions[static_cast<std::size_t>(v)]);
-    }
-  return extent;
-}
+Eigen::AlignedBox3d extent_of(const TriangleMesh& mesh) { return box_of(mesh.positions, mesh.triangles); }
 
 Node number(double value) { return Node::of_number(value, "--onto"); }
 Node point(const Vec3& p) { return Node::of_list({number(p[0]), number(p[1]), number(p[2])}, "--onto"); }
@@ -170,7 +157,7 @@ class DropScene {
   void add_bodies() {
     constexpr double fall = 0.5;  // m, to the floor, when there is no body
     const TriangleMesh mesh = cloth_mesh();
-    const Extent cloth = extent_of(mesh);
+    const Eigen::AlignedBox3d cloth = extent_of(mesh);
     // Contact holds vertices; the straight edges between them must clear a curved body, the longer the edges
     // the farther.
     double margin = std::max(Obstacle().margin, examine(mesh).median_edge / 5);
@@ -180,7 +167,7 @@ class DropScene {
       Table(given, "--margin")
           .read("margin", margin, dimension::length, Range::any, "distance that the cloth keeps");
     }
-    const Vec3 under(cloth.centre()[0], cloth.lower[1], cloth.centre()[2]);
+    const Vec3 under(cloth.center()[0], cloth.min()[1], cloth.center()[2]);
     double bottom = under[1] - fall;
     Node list = Node::of_list({}, "drape drop");
     if (!options_.onto.empty()) list.items.push_back(body(under, margin, bottom));
@@ -214,7 +201,7 @@ class DropScene {
       if (options_.scale)
         placement.scale =
             quantity(parse_toml_value(*options_.scale, "--scale"), dimension::number, Range::positive);
-      bottom = extent_of(placed(read_obj(options_.onto), placement, options_.onto)).lower[1];
+      bottom = extent_of(placed(read_obj(options_.onto), placement, options_.onto)).min()[1];
     }
     return mesh;
   }

@@ -1,5 +1,6 @@
 #include "app/simulation/sewing.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -153,7 +154,7 @@ void place_panels(const ClothEntry& entry, TriangleMesh& mesh, Names& messages) 
   for (std::size_t p = 0; p < entry.panels.size(); ++p) {
     const PanelEntry& panel = entry.panels[p];
     const std::vector<int>& vertices = group_of(mesh, panel);
-    Vec3 lower = at(mesh.positions, vertices.front()), upper = lower;
+    Eigen::AlignedBox3d box;
     for (int v : vertices) {
       int& other = panel_of[static_cast<std::size_t>(v)];
       if (other >= 0)
@@ -162,13 +163,13 @@ void place_panels(const ClothEntry& entry, TriangleMesh& mesh, Names& messages) 
                          one_line(entry.panels[static_cast<std::size_t>(other)].group) +
                          "', too; panels that share vertices cannot be placed apart");
       other = static_cast<int>(p);
-      lower = lower.cwiseMin(at(mesh.positions, v)), upper = upper.cwiseMax(at(mesh.positions, v));
+      box.extend(at(mesh.positions, v));
     }
-    const Vec3 middle = 0.5 * (lower + upper);
+    const Vec3 middle = box.center();
     constexpr double turn = 6.283185307179586;
-    if (panel.wrap && upper.x() - lower.x() > turn * *panel.wrap * (1 + 1e-6))
+    if (panel.wrap && box.sizes().x() > turn * *panel.wrap * (1 + 1e-6))
       messages.push_back("warning: panel " + one_line(panel.group) + " is " +
-                         rounded(100 * (upper.x() - lower.x()), 4) +
+                         rounded(100 * box.sizes().x(), 4) +
                          " cm wide and goes more than once round a "
                          "cylinder of radius " +
                          rounded(100 * *panel.wrap, 4) + " cm: give a larger wrap");

@@ -56,7 +56,7 @@ double roundness(const Obstacle& obstacle, const Body& body) {
   if (std::holds_alternative<MeshBody>(obstacle.shape) ||
       std::holds_alternative<DeformingBody>(obstacle.shape) ||
       std::holds_alternative<LevelSetBody>(obstacle.shape))
-    return 0.5 * (body.report.upper - body.report.lower).minCoeff();
+    return 0.5 * body.report.box().sizes().minCoeff();
   return 0;
 }
 

@@ -1,5 +1,6 @@
 #include "mesh/distance/moving_boxes.h"
 
+#include <Eigen/Geometry>
 #include <utility>
 
 namespace drape {
@@ -18,10 +19,10 @@ MovingBoxes::MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>
 int MovingBoxes::grow(std::vector<std::pair<Vec3, int>>& middles, int begin, int end) {
   const auto halve = [&](int from, int to) {
     if (to - from < 2) return to;
-    Vec3 lo = middles[from].first, hi = lo;
-    for (int i = from; i < to; ++i) lo = lo.cwiseMin(middles[i].first), hi = hi.cwiseMax(middles[i].first);
+    Eigen::AlignedBox3d box;
+    for (int i = from; i < to; ++i) box.extend(middles[i].first);
     int axis;
-    (hi - lo).maxCoeff(&axis);
+    box.sizes().maxCoeff(&axis);
     const int half = from + (to - from) / 2;
     std::nth_element(middles.begin() + from, middles.begin() + half, middles.begin() + to,
                      [axis](const auto& p, const auto& q) {
@@ -45,15 +46,14 @@ int MovingBoxes::grow(std::vector<std::pair<Vec3, int>>& middles, int begin, int
 
 void MovingBoxes::fit_leaf(Node& node, int child, const std::vector<Face>& faces,
                            const std::vector<Vec3>& start, const std::vector<Vec3>& end) const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   for (int s = 0; s < 2; ++s) {
     const std::vector<Vec3>& places = s == 0 ? start : end;
-    Vec3 lo = Vec3::Constant(infinity), hi = -lo;
+    Eigen::AlignedBox3d box;
     for (int i = node.first[child]; i < node.first[child] + node.count[child]; ++i)
-      for (int v : faces[order_[i]].v) lo = lo.cwiseMin(places[v]), hi = hi.cwiseMax(places[v]);
+      for (int v : faces[order_[i]].v) box.extend(places[v]);
     for (int k = 0; k < 3; ++k) {
-      node.lower[s][k][child] = static_cast<float>(lo[k] - origin_[k]);
-      node.upper[s][k][child] = static_cast<float>(hi[k] - origin_[k]);
+      node.lower[s][k][child] = static_cast<float>(box.min()[k] - origin_[k]);
+      node.upper[s][k][child] = static_cast<float>(box.max()[k] - origin_[k]);
     }
   }
 }
@@ -75,14 +75,11 @@ void MovingBoxes::fit_node(Node& node, int child) const {
 
 void MovingBoxes::refit(const std::vector<Face>& faces, const std::vector<Vec3>& start,
                         const std::vector<Vec3>& end) {
-  Vec3 lo = start[faces[0].v[0]], hi = lo;
+  Eigen::AlignedBox3d box;
   for (const Face& f : faces)
-    for (int v : f.v) {
-      lo = lo.cwiseMin(start[v]).cwiseMin(end[v]);
-      hi = hi.cwiseMax(start[v]).cwiseMax(end[v]);
-    }
-  origin_ = 0.5 * (lo + hi);
-  slack_ = static_cast<float>(1e-6 * (hi - lo).norm()) + std::numeric_limits<float>::min();
+    for (int v : f.v) box.extend(start[v]).extend(end[v]);
+  origin_ = box.center();
+  slack_ = static_cast<float>(1e-6 * box.diagonal().norm()) + std::numeric_limits<float>::min();
   for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node)
     for (int child = 0; child < 4; ++child) {
       if (node->count[child] > 0) fit_leaf(*node, child, faces, start, end);

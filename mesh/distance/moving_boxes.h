@@ -2,7 +2,8 @@
 // to 1.
 //   lower(s) = (1 - s) lower(0) + s lower(1),  and so the upper one: no corner leaves its box on the way
 // Four boxes a node; halved at the median where it is made, refitted to the places of every step afterwards.
-// Boxes are floats about the middle of the surface. What rounding can do is less than `slack`, by which a
+// Boxes are floats about the middle of the surface, the four of a node side by side, so that a search measures
+// four at once: no Eigen::AlignedBox, which holds one. What rounding can do is less than `slack`, by which a
 // search looks farther: no triangle that counts is left out, and which others are shown decides nothing.
 // Internal to the library (not installed).
 #pragma once

@@ -110,11 +110,9 @@ SurfaceDistance::Tree::Tree(const TriangleMesh& given) : mesh(given), surface(su
 }
 
 void SurfaceDistance::Tree::measure() {
-  Vec3 lo = mesh.positions[surface.faces[0].v[0]], hi = lo;
-  for (int f = 0; f < surface.with_area; ++f)
-    for (int v : surface.faces[f].v) lo = lo.cwiseMin(mesh.positions[v]), hi = hi.cwiseMax(mesh.positions[v]);
-  centre = 0.5 * (lo + hi);
-  size = (hi - lo).norm();
+  const Eigen::AlignedBox3d box = box_of(surface, mesh.positions);
+  centre = box.center();
+  size = box.diagonal().norm();
 }
 
 void SurfaceDistance::Tree::grow() {

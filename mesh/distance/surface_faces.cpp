@@ -97,15 +97,14 @@ bool orient(std::vector<Face>& faces, const std::vector<Vec3>& positions, const 
   return true;
 }
 
-// The middle of the box of the triangles that have an area.
-Vec3 centre_of(const SurfaceFaces& surface, const std::vector<Vec3>& positions) {
-  Vec3 lo = positions[surface.faces[0].v[0]], hi = lo;
-  for (int f = 0; f < surface.with_area; ++f)
-    for (int v : surface.faces[f].v) lo = lo.cwiseMin(positions[v]), hi = hi.cwiseMax(positions[v]);
-  return 0.5 * (lo + hi);
-}
-
 }  // namespace
+
+Eigen::AlignedBox3d box_of(const SurfaceFaces& surface, const std::vector<Vec3>& positions) {
+  Eigen::AlignedBox3d box;
+  for (int f = 0; f < surface.with_area; ++f)
+    for (int v : surface.faces[f].v) box.extend(positions[v]);
+  return box;
+}
 
 bool has_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
@@ -121,7 +120,7 @@ SurfaceFaces surface_faces(const TriangleMesh& mesh) {
   });
   surface.with_area = static_cast<int>(flat_ones - faces.begin());
   if (surface.with_area == 0) throw InputError("the surface has no triangle with an area");
-  const Vec3 centre = centre_of(surface, mesh.positions);
+  const Vec3 centre = box_of(surface, mesh.positions).center();
   for (bool weld_them : {false, true}) {
     if (surface.closed) break;
     if (weld_them)

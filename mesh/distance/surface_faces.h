@@ -6,6 +6,7 @@
 // Internal to the library (not installed).
 #pragma once
 
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "mesh/triangles/triangle_mesh.h"
@@ -26,6 +27,9 @@ struct SurfaceFaces {
 
 // Throws InputError when no triangle has an area.
 SurfaceFaces surface_faces(const TriangleMesh& mesh);
+
+// Of the triangles that have an area. [m]
+Eigen::AlignedBox3d box_of(const SurfaceFaces& surface, const std::vector<Vec3>& positions);
 
 // Whether a triangle of these corners has an area beyond rounding.
 bool has_area(const Vec3& a, const Vec3& b, const Vec3& c);

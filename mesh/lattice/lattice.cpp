@@ -125,20 +125,19 @@ void fill_along_surface(Lattice& lattice, const TriangleMesh& surface) {
   const Vec3 half = (0.5 - slack) * lattice.spacing;
   for (int counted : counted_triangles(surface)) {
     std::array<Vec3, 3> t;
-    Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
+    Eigen::AlignedBox3d box;
     for (std::size_t k = 0; k < 3; ++k) {
       t[k] =
           surface
               .positions[static_cast<std::size_t>(surface.triangles[static_cast<std::size_t>(counted)][k])] -
           lattice.origin;
-      lower = lower.cwiseMin(t[k]);
-      upper = upper.cwiseMax(t[k]);
+      box.extend(t[k]);
     }
     Cell first, end;
     for (std::size_t a = 0; a < 3; ++a) {
       const auto k = static_cast<Eigen::Index>(a);
-      first[a] = cell_along(lower[k] / lattice.spacing[k], lattice.cells[a]);
-      end[a] = cell_along(upper[k] / lattice.spacing[k], lattice.cells[a]) + 1;
+      first[a] = cell_along(box.min()[k] / lattice.spacing[k], lattice.cells[a]);
+      end[a] = cell_along(box.max()[k] / lattice.spacing[k], lattice.cells[a]) + 1;
     }
     for_each_in(first, end, [&](const Cell& c) {
       char& filled = lattice.filled[number(c, lattice.cells)];
@@ -160,20 +159,18 @@ void fill_inside(Lattice& lattice, const SurfaceDistance& surface) {
 
 // The box of cells round a surface, which lies in its middle.
 void surround(Lattice& lattice, const TriangleMesh& surface, double spacing) {
-  Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
+  Eigen::AlignedBox3d box;
   for (int counted : counted_triangles(surface))
-    for (int v : surface.triangles[static_cast<std::size_t>(counted)]) {
-      lower = lower.cwiseMin(surface.positions[static_cast<std::size_t>(v)]);
-      upper = upper.cwiseMax(surface.positions[static_cast<std::size_t>(v)]);
-    }
+    for (int v : surface.triangles[static_cast<std::size_t>(counted)])
+      box.extend(surface.positions[static_cast<std::size_t>(v)]);
   lattice.spacing.setConstant(spacing);
   for (std::size_t a = 0; a < 3; ++a) {
     const auto k = static_cast<Eigen::Index>(a);
-    const double whole = std::max(1.0, std::ceil((upper[k] - lower[k]) / spacing - slack));
+    const double whole = std::max(1.0, std::ceil(box.sizes()[k] / spacing - slack));
     if (!(whole < 1e9))
       throw InputError("a lattice of more than 1e9 cells along an axis; take a wider spacing");
     lattice.cells[a] = static_cast<int>(whole);
-    lattice.origin[k] = 0.5 * (lower[k] + upper[k] - spacing * whole);
+    lattice.origin[k] = 0.5 * (box.min()[k] + box.max()[k] - spacing * whole);
   }
 }
 

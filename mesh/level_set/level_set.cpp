@@ -9,6 +9,7 @@
 #include "mesh/level_set/vdb_file.h"
 #include "mesh/level_set/voxel_grid.h"
 #include "mesh/obj/examine.h"
+#include "mesh/triangles/extent.h"
 #include "mesh/triangles/topology.h"
 
 namespace drape {
@@ -58,8 +59,8 @@ std::string described(const Hole& hole) {
 
 }  // namespace
 
-void check_size(const Vec3& lower, const Vec3& upper, const std::string& name) {
-  const double size = (upper - lower).maxCoeff();
+void check_size(const Eigen::AlignedBox3d& box, const std::string& name) {
+  const double size = box.sizes().maxCoeff();
   if (size >= least_size && size <= largest_size) return;
   throw InputError(name + ": the body is " + number(size) + " m long; a level set is made of " +
                    number(least_size) + " m to " + number(largest_size) + " m: change the scale");
@@ -67,7 +68,7 @@ void check_size(const Vec3& lower, const Vec3& upper, const std::string& name) {
 
 double default_voxel(const TriangleMesh& mesh) {
   const MeshReport report = examine(mesh);
-  const double size = (report.upper - report.lower).norm();
+  const double size = report.box().diagonal().norm();
   return std::clamp(0.75 * report.median_edge, size / 500, size / 100);
 }
 
@@ -75,23 +76,18 @@ LevelSet LevelSet::from_mesh(const TriangleMesh& mesh, const LevelSetOptions& op
                              const std::string& name) {
   const SurfaceDistance surface(mesh);
   if (!surface.closed()) refuse_open(mesh, name);
-  Vec3 lower = mesh.positions[static_cast<std::size_t>(mesh.triangles.front()[0])], upper = lower;
-  for (const Triangle& t : mesh.triangles)
-    for (const int v : t) {
-      lower = lower.cwiseMin(mesh.positions[v]);
-      upper = upper.cwiseMax(mesh.positions[v]);
-    }
-  check_size(lower, upper, name);
+  const Eigen::AlignedBox3d box = box_of(mesh.positions, mesh.triangles);
+  check_size(box, name);
   const double voxel = options.voxel > 0 ? options.voxel : default_voxel(mesh);
   const double band = std::max(options.band, least_band * voxel);
   try {
-    if (!(voxel < (upper - lower).maxCoeff())) refuse_voxel(voxel, upper - lower);
-    auto grid = std::make_shared<VoxelGrid>(empty_grid(voxel, band, lower, upper));
+    if (!(voxel < box.sizes().maxCoeff())) refuse_voxel(voxel, box.sizes());
+    auto grid = std::make_shared<VoxelGrid>(empty_grid(voxel, band, box));
     find_near_bricks(*grid, [&](const Vec3& x) { return surface.closest(x).distance; });
     fill_bricks(*grid,
                 [&](const Index& i) { return surface.closest(voxel * Vec3(i[0], i[1], i[2])).distance; });
     grid->error = measure_error(*grid, surface);
-    if (grid->error->vanished >= 1) refuse_voxel(voxel, upper - lower);
+    if (grid->error->vanished >= 1) refuse_voxel(voxel, box.sizes());
     return LevelSet(std::move(grid));
   } catch (const InputError& error) {
     throw InputError(name + ": " + error.what());
@@ -100,7 +96,7 @@ LevelSet LevelSet::from_mesh(const TriangleMesh& mesh, const LevelSetOptions& op
 
 LevelSet LevelSet::read(const std::filesystem::path& path, double scale) {
   VdbFile file = read_vdb(path, scale);
-  check_size(file.grid.lower, file.grid.upper, path.string());
+  check_size(file.grid.box, path.string());
   return LevelSet(std::make_shared<const VoxelGrid>(std::move(file.grid)))
       .moved(Mat3::Identity(), file.origin);
 }
@@ -125,8 +121,8 @@ SurfacePoint LevelSet::closest(const Vec3& x) const {
 
 double LevelSet::voxel() const { return grid_->voxel; }
 double LevelSet::band() const { return grid_->band; }
-Vec3 LevelSet::lower() const { return grid_->lower; }
-Vec3 LevelSet::upper() const { return grid_->upper; }
+Vec3 LevelSet::lower() const { return grid_->box.min(); }
+Vec3 LevelSet::upper() const { return grid_->box.max(); }
 std::optional<LevelSetError> LevelSet::error() const { return grid_->error; }
 
 long LevelSet::voxels() const { return static_cast<long>(grid_->near_count) * VoxelGrid::in_brick; }

@@ -12,6 +12,7 @@
 // Files are OpenVDB's (.vdb); without OpenVDB they are refused, grids of meshes are not.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -75,7 +76,7 @@ bool has_openvdb();  // whether this build reads and writes .vdb files
 // Of a body, the longest side of its box [m]: what lies outside is a wrong unit, and too much for floats.
 inline constexpr double least_size = 1e-6, largest_size = 1e6;
 // Throws InputError unless the body with this box is of such a size.
-void check_size(const Vec3& lower, const Vec3& upper, const std::string& name);
+void check_size(const Eigen::AlignedBox3d& box, const std::string& name);
 
 // Three quarters of the median edge, between 1/500 and 1/100 of the size (the box's diagonal). [m]
 double default_voxel(const TriangleMesh& mesh);

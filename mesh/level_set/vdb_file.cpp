@@ -5,6 +5,7 @@
 
 #include "mesh/base/errors.h"
 #include "mesh/base/hash.h"
+#include "mesh/triangles/extent.h"
 
 #ifdef DRAPE_HAVE_OPENVDB
 #include <openvdb/io/Stream.h>
@@ -69,8 +70,8 @@ void describe(Grid& surface, const VoxelGrid& grid) {
   surface.insertMeta("drape_format", vdb::Int32Metadata(format));
   surface.insertMeta("drape_voxel", vdb::DoubleMetadata(grid.voxel));
   surface.insertMeta("drape_band", vdb::DoubleMetadata(grid.band));
-  surface.insertMeta("drape_lower", vdb::Vec3DMetadata(vec(grid.lower)));
-  surface.insertMeta("drape_upper", vdb::Vec3DMetadata(vec(grid.upper)));
+  surface.insertMeta("drape_lower", vdb::Vec3DMetadata(vec(grid.box.min())));
+  surface.insertMeta("drape_upper", vdb::Vec3DMetadata(vec(grid.box.max())));
   if (!grid.error) return;
   surface.insertMeta("drape_error_largest", vdb::DoubleMetadata(grid.error->largest));
   surface.insertMeta("drape_error_rms", vdb::DoubleMetadata(grid.error->rms));
@@ -149,9 +150,9 @@ LevelSetError error_of(const Grid& surface) {
 
 // A file of ours: nothing is computed, so that it answers with the same bits as the grid that was written.
 VoxelGrid as_written(const Grid& surface, const Grid& far, const vdb::BoolGrid& near) {
-  VoxelGrid grid = empty_grid(meta<double>(surface, "drape_voxel"), meta<double>(surface, "drape_band"),
-                              vec(meta<vdb::Vec3d>(surface, "drape_lower")),
-                              vec(meta<vdb::Vec3d>(surface, "drape_upper")));
+  VoxelGrid grid = empty_grid(
+      meta<double>(surface, "drape_voxel"), meta<double>(surface, "drape_band"),
+      {vec(meta<vdb::Vec3d>(surface, "drape_lower")), vec(meta<vdb::Vec3d>(surface, "drape_upper"))});
   const vdb::CoordBBox box = far.evalActiveVoxelBoundingBox();
   if (box.min() != vdb::Coord(0, 0, 0) ||
       box.max() != vdb::Coord(grid.cells[0] - 1, grid.cells[1] - 1, grid.cells[2] - 1))
@@ -191,9 +192,7 @@ VoxelGrid completed(Grid& surface, double voxel) {
   const TriangleMesh zero = zero_surface(surface);
   if (zero.triangles.empty()) throw InputError("its level set has no surface");
   const SurfaceDistance exact(zero);
-  Vec3 lower = zero.positions.front(), upper = lower;
-  for (const Vec3& x : zero.positions) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
-  VoxelGrid grid = empty_grid(voxel, 3 * voxel, lower, upper);
+  VoxelGrid grid = empty_grid(voxel, 3 * voxel, box_of(zero.positions));
   const auto signed_distance = [&](const Vec3& x, const vdb::Coord& node) {
     return std::copysign(std::abs(exact.closest(x).distance), surface.tree().getValue(node));
   };
@@ -243,8 +242,7 @@ void multiply(VoxelGrid& grid, double scale) {
   if (scale == 1) return;
   grid.voxel *= scale;
   grid.band *= scale;
-  grid.lower *= scale;
-  grid.upper *= scale;
+  grid.box = {grid.box.min() * scale, grid.box.max() * scale};
   for (float& d : grid.far) d = static_cast<float>(d * scale);
   for (float& d : grid.nodes) d = static_cast<float>(d * scale);
   for (float& d : grid.coefficients) d = static_cast<float>(d * scale);

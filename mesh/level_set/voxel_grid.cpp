@@ -171,7 +171,7 @@ SurfacePoint VoxelGrid::far_away(const Vec3& x) const {
   for (int k = 0; k < 3; ++k)
     y[k] = std::clamp(x[k], voxel * (first[k] - 0.5), voxel * (first[k] + cells[k] * cell - 0.5));
   const double d = bound(cell_of(y), y);
-  return {std::sqrt((x - y).squaredNorm() + d * d), unit(x - x.cwiseMax(lower).cwiseMin(upper))};
+  return {std::sqrt((x - y).squaredNorm() + d * d), unit(x - x.cwiseMax(box.min()).cwiseMin(box.max()))};
 }
 
 }  // namespace drape

@@ -27,9 +27,9 @@ struct VoxelGrid {
   static constexpr int cell = 2 * brick;
   static constexpr std::int32_t none = -1;
 
-  double voxel = 0, band = 0;                       // m
-  Vec3 lower = Vec3::Zero(), upper = Vec3::Zero();  // m, box of the surface
-  Index first{};                                    // node at the lower corner
+  double voxel = 0, band = 0;  // m
+  Eigen::AlignedBox3d box;     // m, of the surface
+  Index first{};               // node at the lower corner
   Index cells{};
   std::vector<float> far;            // m, of every cell
   std::vector<std::int32_t> bricks;  // number of a brick, or none; the near ones come first
@@ -65,7 +65,7 @@ using Distance = std::function<double(const Vec3&)>;       // signed [m]
 using NodeDistance = std::function<double(const Index&)>;  // of a node [m]
 
 // An empty grid about a surface. Throws InputError when it would be too large.
-VoxelGrid empty_grid(double voxel, double band, const Vec3& lower, const Vec3& upper);
+VoxelGrid empty_grid(double voxel, double band, const Eigen::AlignedBox3d& box);
 // Fills `far` and marks the near bricks (with 0).
 void find_near_bricks(VoxelGrid& grid, const Distance& distance);
 // Numbers the bricks and fills them, in parallel.

@@ -47,18 +47,17 @@ void for_bricks(int count, const F& f) {
 
 }  // namespace
 
-VoxelGrid empty_grid(double voxel, double band, const Vec3& lower, const Vec3& upper) {
+VoxelGrid empty_grid(double voxel, double band, const Eigen::AlignedBox3d& box) {
   VoxelGrid grid;
   grid.voxel = voxel;
   grid.band = band;
-  grid.lower = lower;
-  grid.upper = upper;
+  grid.box = box;
   double count = 1;
   for (int k = 0; k < 3; ++k) {
     const double reach =
         band + (2 * VoxelGrid::brick + VoxelGrid::brick) * voxel;  // near bricks, a cell beyond
-    const double low = std::floor((lower[k] - reach) / (voxel * VoxelGrid::cell)),
-                 high = std::ceil((upper[k] + reach) / (voxel * VoxelGrid::cell));
+    const double low = std::floor((box.min()[k] - reach) / (voxel * VoxelGrid::cell)),
+                 high = std::ceil((box.max()[k] + reach) / (voxel * VoxelGrid::cell));
     count *= high - low;
     if (!(std::abs(low) < 1e8 && std::abs(high) < 1e8 && count < 1e15)) too_large(voxel, 100);
     grid.first[k] = static_cast<int>(low) * VoxelGrid::cell;

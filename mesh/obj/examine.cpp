@@ -113,18 +113,16 @@ bool Examiner::can_be_measured() {
 
 void Examiner::measure_extent() {
   carries_.assign(mesh_.positions.size(), 0);
-  bool first = true;
+  Eigen::AlignedBox3d box;
   for (const int i : counted_) {
     report_.area += triangle_area(mesh_, mesh_.triangles[i]);
     for (const int v : mesh_.triangles[i]) {
       carries_[v] = 1;
-      const Vec3& x = mesh_.positions[v];
-      report_.lower = first ? x : report_.lower.cwiseMin(x);
-      report_.upper = first ? x : report_.upper.cwiseMax(x);
-      first = false;
+      box.extend(mesh_.positions[v]);
     }
   }
-  size_ = (report_.upper - report_.lower).maxCoeff();
+  if (!box.isEmpty()) report_.lower = box.min(), report_.upper = box.max();
+  size_ = report_.box().sizes().maxCoeff();
   const std::vector<int> piece = connected_pieces(mesh_);
   std::vector<char> seen(piece.size(), 0);
   for (std::size_t v = 0; v < piece.size(); ++v) {
@@ -298,7 +296,7 @@ void Examiner::isolated_vertices() {
 
 void Examiner::unit_question() {
   if (size_ <= 0 || (size_ >= kSmall && size_ <= kLarge)) return;
-  const Vec3 extent = report_.upper - report_.lower;
+  const Vec3 extent = report_.box().sizes();
   const char* const along = size_ == extent.y() ? " tall" : size_ == extent.x() ? " wide" : " deep";
   std::string what = "the mesh is " + number(size_) + " units" + along + " and a unit is taken as a metre";
   struct Unit {

@@ -4,6 +4,7 @@
 //   note      nothing to worry about
 #pragma once
 
+#include <Eigen/Geometry>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,7 @@ struct MeshReport {
   std::vector<Defect> defects;
 
   bool refused() const;
+  Eigen::AlignedBox3d box() const { return {lower, upper}; }
 };
 
 MeshReport examine(const TriangleMesh& mesh);

@@ -13,9 +13,9 @@ std::size_t z(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-Delaunay::Delaunay(const Vec2& low, const Vec2& high) {
-  const Vec2 middle = (low + high) / 2;
-  const double reach = 10 * (high - low).norm();
+Delaunay::Delaunay(const Eigen::AlignedBox2d& box) {
+  const Vec2 middle = box.center();
+  const double reach = 10 * box.diagonal().norm();
   for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
     points_.push_back(middle + reach * Vec2(x, y));
   faces_ = {{{0, 1, 2}, {-1, 1, -1}, {-1, -1, -1}}, {{0, 2, 3}, {-1, -1, 0}, {-1, -1, -1}}};

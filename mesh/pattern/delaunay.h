@@ -5,6 +5,7 @@
 // edge is brought in by flipping what crosses it [Sloan 1993]. Internal to the library (not installed).
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <deque>
 #include <utility>
@@ -27,8 +28,8 @@ class Delaunay {
   };
   static constexpr int kBoxCorners = 4;  // vertices 0 to 3
 
-  // Around these points, well away from them.
-  Delaunay(const Vec2& low, const Vec2& high);
+  // Around the points in this box, well away from them.
+  explicit Delaunay(const Eigen::AlignedBox2d& box);
 
   const std::vector<Face>& faces() const { return faces_; }
   const std::vector<Vec2>& points() const { return points_; }

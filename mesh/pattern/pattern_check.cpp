@@ -29,21 +29,21 @@ void check_chain(const Chain& chain, bool loop) {
     throw InputError(chain.where + ": the outline has no area, or crosses itself so that nothing is left");
 }
 
-struct Box {
-  Vec2 low, high;
+struct PieceBox {
+  Eigen::AlignedBox2d box;
   int number;
 };
 
 // Calls f(i, j) for every two boxes that meet.
 template <class F>
-void for_each_meeting(std::vector<Box> boxes, const F& f) {
-  std::sort(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) {
-    return a.low.x() != b.low.x() ? a.low.x() < b.low.x() : a.number < b.number;
+void for_each_meeting(std::vector<PieceBox> boxes, const F& f) {
+  const auto left = [](const PieceBox& piece) { return piece.box.min().x(); };
+  std::sort(boxes.begin(), boxes.end(), [&](const PieceBox& a, const PieceBox& b) {
+    return left(a) != left(b) ? left(a) < left(b) : a.number < b.number;
   });
   for (std::size_t i = 0; i < boxes.size(); ++i)
-    for (std::size_t j = i + 1; j < boxes.size() && boxes[j].low.x() <= boxes[i].high.x(); ++j)
-      if (boxes[j].low.y() <= boxes[i].high.y() && boxes[i].low.y() <= boxes[j].high.y())
-        f(boxes[i].number, boxes[j].number);
+    for (std::size_t j = i + 1; j < boxes.size() && left(boxes[j]) <= boxes[i].box.max().x(); ++j)
+      if (boxes[i].box.intersects(boxes[j].box)) f(boxes[i].number, boxes[j].number);
 }
 
 bool between(const Vec2& a, const Vec2& b, const Vec2& x) { return (a - x).dot(b - x) <= 0; }
@@ -63,10 +63,10 @@ class PieceChecker {
       : pattern_(pattern), sides_(sides), tolerance_(tolerance) {}
 
   void check() const {
-    std::vector<Box> boxes;
+    std::vector<PieceBox> boxes;
     for (std::size_t i = 0; i < sides_.pieces.size(); ++i) {
       const Vec2 &a = start(static_cast<int>(i)), &b = end(static_cast<int>(i));
-      boxes.push_back({a.cwiseMin(b), a.cwiseMax(b), static_cast<int>(i)});
+      boxes.push_back({Eigen::AlignedBox2d(a).extend(b), static_cast<int>(i)});
     }
     for_each_meeting(std::move(boxes), [&](int i, int j) {
       if (panel(i) == panel(j)) {
@@ -129,9 +129,7 @@ class PieceChecker {
   void check_inside(int p, int q) const {
     const Boundary& other = boundary(q);
     const auto look = [&](const Vec2& x) {
-      if ((x.array() > other.low.array()).all() && (x.array() < other.high.array()).all() && other.holds(x) &&
-          other.distance(x) > tolerance_)
-        overlap(p, q, x);
+      if (other.box.contains(x) && other.holds(x) && other.distance(x) > tolerance_) overlap(p, q, x);
     };
     for (const auto& [a, b] : boundary(p).pieces) look(a), look((a + b) / 2);
     look(boundary(p).inner_point());  // where the one has its sides on the other's
@@ -139,7 +137,7 @@ class PieceChecker {
 
   struct Boundary {
     std::vector<std::pair<Vec2, Vec2>> pieces;
-    Vec2 low = Vec2::Constant(1e300), high = Vec2::Constant(-1e300);
+    Eigen::AlignedBox2d box;
 
     bool holds(const Vec2& x) const {
       bool inside = false;
@@ -150,7 +148,7 @@ class PieceChecker {
     }
     // In the middle of the widest part of the line across at half height.
     Vec2 inner_point() const {
-      const double y = (low.y() + high.y()) / 2;
+      const double y = box.center().y();
       std::vector<double> crossings;
       for (const auto& [a, b] : pieces)
         if ((a.y() > y) != (b.y() > y))
@@ -179,7 +177,7 @@ class PieceChecker {
         Boundary& of = boundaries_[z(panel(k))];
         if (!run(k).boundary) continue;
         of.pieces.emplace_back(start(k), end(k));
-        of.low = of.low.cwiseMin(start(k)), of.high = of.high.cwiseMax(start(k));
+        of.box.extend(start(k));
       }
     }
     return boundaries_[z(p)];

@@ -8,6 +8,7 @@
 
 #include "mesh/base/errors.h"
 #include "mesh/pattern/sharp_corners.h"
+#include "mesh/triangles/extent.h"
 
 namespace drape {
 namespace {
@@ -92,9 +93,7 @@ class Refinement {
 
   void start_panel(int panel) {
     const std::vector<Vec2>& points = sides_.points[z(panel)];
-    Vec2 low = points[0], high = points[0];
-    for (const Vec2& x : points) low = low.cwiseMin(x), high = high.cwiseMax(x);
-    refined_.panels.emplace_back(low, high);
+    refined_.panels.emplace_back(box_of(points));
     Delaunay& mesh = refined_.panels.back();
     int near = 0;
     for (const Vec2& x : points) near = mesh.face_at(mesh.add(x, mesh.locate(x, near, false)));

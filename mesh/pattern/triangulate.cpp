@@ -1,4 +1,5 @@
 // From a pattern to a mesh with its document and a report. See pattern.h; how: sides.h, refine.h.
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -71,13 +72,12 @@ class Assembler {
  private:
   // Near vertices get near numbers: sorted along the curve of Morton (bits of x and y in turn).
   std::vector<int> ordered(const Delaunay& mesh) const {
-    Vec2 low = mesh.points()[kBox], high = low;
-    for (std::size_t i = kBox; i < mesh.points().size(); ++i)
-      low = low.cwiseMin(mesh.points()[i]), high = high.cwiseMax(mesh.points()[i]);
-    const double scale = 1048575 / (high - low).maxCoeff();
+    Eigen::AlignedBox2d box;
+    for (std::size_t i = kBox; i < mesh.points().size(); ++i) box.extend(mesh.points()[i]);
+    const double scale = 1048575 / box.sizes().maxCoeff();
     std::vector<std::pair<std::uint64_t, int>> keys;
     for (std::size_t i = kBox; i < mesh.points().size(); ++i) {
-      const Vec2 x = (mesh.points()[i] - low) * scale;
+      const Vec2 x = (mesh.points()[i] - box.min()) * scale;
       std::uint64_t key = 0;
       const auto u = static_cast<std::uint64_t>(x.x()), v = static_cast<std::uint64_t>(x.y());
       for (int bit = 0; bit < 20; ++bit)

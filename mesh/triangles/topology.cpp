@@ -272,14 +272,14 @@ std::vector<Hole> holes(const TriangleMesh& mesh) {
   std::vector<Hole> all;
   for (const std::vector<int>& loop : boundary_loops(whole)) {
     Hole hole{static_cast<int>(loop.size()), 0, 0, Vec3::Zero()};
-    Vec3 lower = mesh.positions[loop.front()], upper = lower;
+    Eigen::AlignedBox3d box;
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const Vec3& x = mesh.positions[loop[i]];
       hole.circumference += (mesh.positions[loop[(i + 1) % loop.size()]] - x).norm();
       hole.centre += x / static_cast<double>(loop.size());
-      lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
+      box.extend(x);
     }
-    hole.width = (upper - lower).norm();
+    hole.width = box.diagonal().norm();
     all.push_back(hole);
   }
   std::stable_sort(all.begin(), all.end(), [](const Hole& a, const Hole& b) { return a.width > b.width; });
