@@ -1,4 +1,4 @@
-// The vectors of the whole project, in double precision.
+// The vector and matrix types of the whole project, in double precision.
 #pragma once
 
 #include <Eigen/Core>

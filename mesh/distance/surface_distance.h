@@ -1,17 +1,20 @@
-// Signed distance from a point to a triangle surface that stands or that moves within a step.
-//   closed     negative inside; sign by the angle-weighted pseudo-normal of the closest feature
+// Signed distance from a point to a triangle surface, which is at rest or moves during a step.
+//   closed     the distance is negative inside; its sign comes from the angle-weighted pseudo-normal of the
+//              closest feature (vertex, edge or face)
 //              [Baerentzen & Aanaes 2005, Signed distance computation using the angle weighted pseudonormal]
-//   otherwise  a thick surface: never negative, the normal points from the surface to the point
+//   otherwise  the surface counts as a thick sheet: the distance is never negative, and the normal points
+//              from the surface to the point
 //
-// Closed: every edge has two triangles and the surface two sides. Each connected piece is wound outwards on
-// its own, so that the inner wall of a hollow body counts as a second body.
+// A surface is closed when every edge has exactly two triangles and the surface has two sides. Each connected
+// piece is wound outwards on its own, so the inner wall of a hollow body counts as a second body.
 //
 // After move(start, end) every vertex goes straight from its start to its end while s [-] goes from 0 to 1,
-// and all questions are about the surface at an s. Which triangles are neighbours and which side is outside
-// is the mesh's, as it was constructed.
+// and every question is about the surface at a given s. Which triangles are neighbours and which side is
+// outside does not change: the mesh at construction decides it.
 //
-// Distances are computed in double precision by us, and ties go to the lowest triangle number, so the answer
-// does not depend on the tree (embree's for what stands, ours for what moves) or on the processor.
+// The search trees (Embree's for a surface at rest, our own for a moving one) only propose triangles. The
+// distances are computed here in double precision, and a tie goes to the lowest triangle number, so the
+// answer depends neither on the tree nor on the processor.
 #pragma once
 
 #include <memory>
@@ -24,57 +27,66 @@ namespace drape {
 
 struct SurfacePoint {
   double distance;  // m, negative inside
-  Vec3 normal;      // unit, gradient of the distance: outwards
+  Vec3 normal;      // unit vector, the gradient of the distance: it points outwards
 };
 
-// What the vertices that carry triangles do in a step, all in m and 0 when the surface stands.
+// How far the vertices that belong to a triangle move during a step, all in m. All values are 0
+// for a surface at rest.
 struct SurfaceMotion {
-  Vec3 mean = Vec3::Zero();  // displacement
-  double about_mean = 0;     // the most that the displacement of one differs from the mean
-  double largest = 0;        // the most that one moves
+  Vec3 mean = Vec3::Zero();  // mean displacement
+  double about_mean = 0;     // largest difference between the displacement of a vertex and the mean
+  double largest = 0;        // largest displacement of a vertex
 };
 
 class SurfaceDistance {
  public:
-  explicit SurfaceDistance(const TriangleMesh& mesh);  // throws InputError when no triangle has an area
+  // Throws InputError when no triangle has an area.
+  explicit SurfaceDistance(const TriangleMesh& mesh);
   ~SurfaceDistance();
   SurfaceDistance(const SurfaceDistance&) = delete;
   SurfaceDistance& operator=(const SurfaceDistance&) = delete;
 
-  // The step: the places of all the mesh's vertices [m]. Throws InputError when there are not as many. Refits
-  // the tree; allocates nothing after the first call.
+  // Begins a step, given the positions [m] of all vertices of the mesh at its start and at its end. Refits
+  // the tree; allocates nothing after the first call. Throws InputError when the number of positions is not
+  // that of the vertices.
   void move(const std::vector<Vec3>& start, const std::vector<Vec3>& end);
-  void move(const MeshFrames& frames, double t0, double t1);  // from where it is at t0 to t1 [s]
+  // The same, for a step from t0 to t1 [s] of an animated body.
+  void move(const MeshFrames& frames, double t0, double t1);
   const SurfaceMotion& motion() const;
   double largest_displacement() const { return motion().largest; }
 
-  std::vector<Vec3> vertices(double s) const;  // of the mesh, m
+  std::vector<Vec3> vertices(double s) const;  // positions of the mesh's vertices at s, m
 
-  // All of these are safe to call from several threads.
+  // All the functions below may be called from several threads at once.
   SurfacePoint closest(const Vec3& x, double s = 0) const;
-  // displacement: of the surface's point closest to x, in the whole step [m].
+  // The same; `displacement` receives how far the surface point closest to x moves during the whole step [m].
   SurfacePoint closest(const Vec3& x, double s, Vec3& displacement) const;
 
-  // The first s in [from, 1] at which the straight way from x0 (s = 0) to x1 (s = 1) goes through a triangle,
-  // from outside in where the surface is closed. Roots of cubics [mesh/distance/crossing.h]: none is passed over, but
-  // what goes along the surface does not go through.
+  // The first s in [from, 1] at which the straight way from x0 (at s = 0) to x1 (at s = 1) goes through
+  // a triangle; where the surface is closed, only a way from outside to inside counts. The crossings
+  // are roots of cubics (mesh/distance/crossing.h), so none is missed. A way that slides along the
+  // surface does not cross it.
   std::optional<double> first_crossing(const Vec3& x0, const Vec3& x1, double from = 0) const;
 
-  // No triangle comes as near as `margin` [m] to what goes straight from x0 (s = 0) to x1 (s = 1): by where
-  // each is at s = 0 and how far the two move against each other. False may be a false alarm.
+  // True when no triangle comes as near as `margin` [m] to a point that goes straight from x0 (at s = 0) to
+  // x1 (at s = 1). The test uses the distance at s = 0 and the relative displacement during the step, so it
+  // may say false although the point does stay clear.
   bool stays_clear(const Vec3& x0, const Vec3& x1, double margin) const;
 
-  // A point that the surface carries with it, beside its closest triangle.
+  // A point attached to the surface, described relative to its closest triangle.
   struct Anchor {
-    Triangle triangle;  // vertices
-    Vec3 weights;       // of these: the point of the surface
-    Vec3 offset;        // m, from there, along the triangle's first side, across it, and along its normal
+    Triangle triangle;  // its three vertices
+    Vec3 weights;       // barycentric weights of the closest point of the triangle
+    // From that point to the attached one [m]: along the first side of the triangle, across that side within
+    // the triangle, and along the normal.
+    Vec3 offset;
   };
   Anchor anchor(const Vec3& x, double s = 0) const;
   Vec3 place(const Anchor& anchor, double s) const;
 
   bool closed() const;
-  bool inside_out() const;  // closed, but wound with normals inwards (it is turned round on construction)
+  // True when the closed mesh was wound with its normals inwards; it is turned round on construction.
+  bool inside_out() const;
   const TriangleMesh& mesh() const;
 
  private:

@@ -1,7 +1,8 @@
-// Where the vertices of a mesh are, given particles: what is seen, carried by what is computed.
-//   x_v = sum_k w_k x_(p_k),  sum_k w_k = 1
-// A cloth's vertex is one particle; several vertices may be the same one (a sewn seam), and a vertex may lie
-// between particles (the surface of a lattice).                    x [m], w without a unit.
+// Vertex positions of a mesh, computed from particle positions: the mesh is what is drawn and written, the
+// particles are what is simulated.
+//   x_v = sum_k w_k x_(p_k),  sum_k w_k = 1        x [m], w [-]
+// A vertex of a cloth is one particle. Several vertices may be the same particle (a sewn seam), and a vertex
+// may lie between particles (the surface of a lattice).
 #pragma once
 
 #include <cstddef>
@@ -20,7 +21,7 @@ class Embedding {
   };
 
   Embedding() = default;
-  // Vertex v is the particle first + v.
+  // Each vertex v is the particle first + v.
   static Embedding each(int first, int vertices);
 
   void add_vertex(int particle) { add_vertex({{particle, 1.0}}); }
@@ -31,12 +32,13 @@ class Embedding {
     const std::size_t begin = start_[static_cast<std::size_t>(vertex)];
     return {shares_.data() + begin, start_[static_cast<std::size_t>(vertex) + 1] - begin};
   }
-  // The particle that the vertex is; -1: it lies between several.
+  // The particle that the vertex is, or -1 when the vertex lies between several particles.
   int particle(int vertex) const;
-  // The first vertex that is this particle, or moves with it; -1: none does.
+  // The first vertex that is this particle or has a share in it, or -1 when there is none.
   int vertex(int particle) const;
-  // Particle i is number[i] from now on.
+  // Renames the particles: particle i becomes number[i].
   void renumber(const std::vector<int>& number);
+  // Positions of the vertices [m], for the positions x of the particles (3n, m).
   std::vector<Vec3> positions(const VecX& x) const;
 
  private:

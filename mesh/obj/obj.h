@@ -1,7 +1,9 @@
-// Reading and writing Wavefront OBJ files without losing what the solver does not use.
-//   Vertex order is kept exactly; polygons are cut into triangles for the simulation and written back whole;
-//   uv, normals, groups, objects, materials, smoothing, lines, points and comments survive a round trip.
-// Errors: InputError "FILE:LINE: what was found, what to do", one line; it counts from 1, as the file does.
+// Reads and writes Wavefront OBJ files without losing what the solver does not use.
+//   The order of the vertices is kept exactly. Polygons are cut into triangles for the simulation and written
+//   back whole. Texture coordinates, normals, groups, objects, materials, smoothing, lines, points and
+//   comments survive a round trip.
+// Errors are InputError, one line: "FILE:LINE: what was found, what to do". Lines count from 1,
+// vertices too, as in the file.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +17,7 @@
 
 namespace drape {
 
-// A list of short texts in one block of memory: what a std::string per vertex would cost 32 bytes each for.
+// A list of short texts in one block of memory. A std::string for each would cost 32 bytes more per text.
 class TextList {
  public:
   std::size_t size() const { return ends_.size(); }
@@ -37,58 +39,61 @@ class TextList {
 
 struct ObjCorner {
   int v;        // vertex, from 0
-  int vt = -1;  // texture coordinate, -1: none
-  int vn = -1;  // normal, -1: none
+  int vt = -1;  // texture coordinate, from 0; -1 when there is none
+  int vn = -1;  // normal, from 0; -1 when there is none
   bool operator==(const ObjCorner&) const = default;
 };
 
-// A line that is kept as it stands ('g', 'o', 'usemtl', 'mtllib', 's', comments, resolved 'l' and 'p', ...),
-// and where it stood.
+// A line that is kept as it is ('g', 'o', 'usemtl', 'mtllib', 's', comments and others), and where it stood
+// in the file. In 'l' and 'p' lines relative numbers have been replaced by absolute ones.
 struct ObjStatement {
-  std::size_t before_face;  // the number of faces before it
+  std::size_t before_face;  // the number of faces that stand before it
   std::string text;
   bool before_vertices = false;  // it stood before the first vertex
   bool operator==(const ObjStatement&) const = default;
 };
 
 struct ObjDocument {
-  TextList vertex_extras;                // text after x y z (w, colour, comment) of each vertex, or empty
-  TextList texcoords;                    // text after "vt "
-  std::vector<Vec3> normals;             // as read
-  std::vector<ObjCorner> corners;        // of all faces, one after the other
-  std::vector<std::size_t> face_start;   // faces + 1 entries into corners
+  // For each vertex, the text after x y z (w, a colour, a comment). The list is empty when no vertex has one.
+  TextList vertex_extras;
+  TextList texcoords;                    // the text after "vt " of each texture coordinate
+  std::vector<Vec3> normals;             // as they were read
+  std::vector<ObjCorner> corners;        // of all faces, one face after the other
+  std::vector<std::size_t> face_start;   // number of faces + 1 entries: where each face begins in `corners`
   std::vector<ObjStatement> statements;  // in file order
-  std::vector<std::string> warnings;     // what was passed over: one for each kind, with its first line
+  std::vector<std::string> warnings;     // what was ignored: one message for each kind, with its first line
 
   std::size_t face_count() const { return face_start.empty() ? 0 : face_start.size() - 1; }
 };
 
-// Throws InputError (missing, a directory, binary, empty, no vertices, no faces, nan or inf, faces beyond the
-// vertices).
+// Throws InputError when the file is missing, a directory, binary or empty, when it has no vertices or no
+// faces, when a number is not finite, or when a face refers to a vertex that is not there.
 TriangleMesh read_obj(const std::filesystem::path& path);
 
 // The same from memory; `name` stands in error messages.
 TriangleMesh parse_obj(std::string_view text, const std::string& name);
 
-// A line of vertices with the name of the 'g' (its first word) or else of the 'o' before it.
+// A chain of vertices from 'l' lines. Its name is that of the 'g' line before it (the first word), or
+// else of the 'o' line.
 struct Polyline {
-  std::string name;           // empty: neither was named
+  std::string name;           // empty when there was neither
   std::vector<int> vertices;  // in order; a closed line ends with its first vertex again
 };
-// The 'l' lines of the mesh's document, in the file's order; one that goes on where the one before it ended,
-// under the same name, is part of it. What broken lines named was left out when the file was read.
+// The 'l' lines of the mesh's document, in the order of the file. A line that begins where the line before it
+// ended, under the same name, continues that line. Lines that refer to vertices which are not there were left
+// out when the file was read.
 std::vector<Polyline> polylines(const TriangleMesh& mesh);
 
-// The mesh's document (or its triangles when it has none) with these positions [m], normals recomputed where
-// the file had them. Written to a temporary file beside `path`, then renamed. Throws InputError when it
-// cannot be written.
+// Writes the mesh's document (or only its triangles when it has none) with these positions [m]. Normals are
+// computed anew where the file had normals. The text goes into a temporary file beside `path`, which is then
+// renamed. Throws InputError when it cannot be written.
 void write_obj(const std::filesystem::path& path, const TriangleMesh& mesh,
                const std::vector<Vec3>& positions);
 
-// Normals: all corners at one vertex that share a vn entry share their new normal, the normalised sum of the
-// area-weighted normals of their faces, so that smooth stays smooth and hard stays hard. An entry that served
-// several vertices (exporters write one vn for a whole flat sheet) gets further entries, after the others,
-// where those vertices no longer agree.
+// The text of such a file. All corners at one vertex that share a vn entry share their new normal too, the
+// normalised sum of the area-weighted normals of their faces: so smooth edges stay smooth and hard edges stay
+// hard. An entry that served several vertices (some exporters write one vn for a whole flat sheet) is split
+// where those vertices no longer agree; the new entries come after the others.
 std::string format_obj(const TriangleMesh& mesh, const std::vector<Vec3>& positions);
 
 }  // namespace drape

@@ -1,8 +1,8 @@
-// Where the vertices of a deforming body are at a series of times: straight lines between the frames, so that
-// a vertex's velocity is the difference of two frames over the time between them. Before the first frame and
-// after the last one the body stands.
-//   positions  of each frame as float, 12 bytes a vertex (a frame of 27 k triangles takes 160 kB): to 6e-8 of
-//              their distance from the origin
+// The vertex positions of an animated body at a series of times. Between two frames every vertex goes
+// straight, so its velocity is the difference of the two frames divided by the time between them. Before the
+// first frame and after the last one the body is at rest.
+//   positions  are stored as float, 12 bytes per vertex (160 kB for a frame of 27 k triangles): accurate to
+//              6e-8 of their distance from the origin
 #pragma once
 
 #include <array>
@@ -14,8 +14,9 @@ namespace drape {
 
 class MeshFrames {
  public:
-  // Throws InputError when the time [s] is not after that of the frame before, the number of vertices is not
-  // that of the first frame, or a position [m] is not finite or beyond the range of float.
+  // Adds a frame. Throws InputError when the time [s] is not later than that of the frame before, when
+  // the number of vertices is not that of the first frame, or when a position [m] is not finite or is
+  // beyond the range of float.
   void add(double time, const std::vector<Vec3>& positions);
 
   int frame_count() const { return static_cast<int>(times_.size()); }
@@ -23,7 +24,8 @@ class MeshFrames {
   double first_time() const { return times_.front(); }  // s
   double last_time() const { return times_.back(); }    // s
 
-  // The places [m] at a time [s]; there must be a frame. Allocates nothing when `out` has the size already.
+  // The positions [m] at this time [s]. There must be a frame. Allocates nothing when `out`
+  // already has the right size.
   void positions_at(double time, std::vector<Vec3>& out) const;
 
  private:

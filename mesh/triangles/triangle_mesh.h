@@ -1,8 +1,9 @@
-// What a cloth or a body is made of: vertices and triangles, and the OBJ file they came from.
-//   positions  one per vertex, in the file's order        [m]
+// The geometry of a cloth or a body: vertices and triangles, and the OBJ file that they came from.
+//   positions  one per vertex, in the order of the file   [m]
 //   triangles  three vertex numbers each, from 0
-//   groups     named sets of vertices ('g' and 'o' of the OBJ file)
-// Knows no physics. Edges, diagonals, areas and the like are free functions (mesh/triangles/topology.h).
+//   groups     named sets of vertices ('g' and 'o' in the OBJ file)
+// The mesh knows no physics. Edges, diagonals, areas and the like are
+// free functions (mesh/triangles/topology.h).
 #pragma once
 
 #include <array>
@@ -21,7 +22,7 @@ struct VertexGroup {
   std::vector<int> vertices;  // ascending, each once
 };
 
-struct ObjDocument;  // mesh/obj/obj.h: polygons, uv, materials, as they stood in the file
+struct ObjDocument;  // mesh/obj/obj.h: polygons, texture coordinates, materials, as they stood in the file
 
 struct TriangleMesh {
   std::vector<Vec3> positions;                  // m
