@@ -1,5 +1,5 @@
-// Texts with a mistake in them: each is refused in one line that begins with the place and says what is
-// wrong.
+// Texts with a mistake in them: each is refused in one line that begins with
+// the place and says what is wrong.
 #pragma once
 
 #include <catch2/catch.hpp>

@@ -80,8 +80,8 @@ inline Mat3 some_rotation() {
   return Eigen::AngleAxisd(0.7, Vec3(1, 2, -0.5).normalized()).toRotationMatrix();
 }
 
-// A shape, points of its surface by parametrisation, and whether a point is inside by another way than the
-// distance.
+// A shape, points of its surface by parametrisation, and whether a point is inside
+// by another way than the distance.
 struct Case {
   Shape shape;
   std::function<Vec3(Random&)> on_surface;
@@ -149,8 +149,8 @@ inline Vec3 on_mesh(const TriangleMesh& m, Random& r) {
   return (1 - u - v) * m.positions[t[0]] + u * m.positions[t[1]] + v * m.positions[t[2]];
 }
 
-// Number of times the surface winds about x, from the solid angles of its triangles [van Oosterom & Strackee
-// 1983].
+// Number of times the surface winds about x, from the solid angles of its triangles
+// [van Oosterom & Strackee 1983].
 inline double winding(const TriangleMesh& m, const Vec3& x) {
   double angle = 0;
   for (const Triangle& t : m.triangles) {

@@ -52,8 +52,8 @@ inline VecX moved_rigidly(const VecX& x, const Mat3& R, const Vec3& t) {
   return y;
 }
 
-// A chain of `links` springs of the same rest length along `direction` from the origin, lumped masses (half
-// at the ends).
+// A chain of `links` springs of the same rest length along `direction` from the origin,
+// lumped masses (half at the ends).
 struct Chain {
   System system;
   State state;

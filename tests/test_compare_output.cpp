@@ -1,5 +1,5 @@
-// What drape compare writes: tables that agree with each other, plots, the fitted growth, the script over
-// several runs.
+// What drape compare writes: tables that agree with each other, plots, the fitted growth,
+// the script over several runs.
 #include <catch2/catch.hpp>
 #include <set>
 #include <sstream>

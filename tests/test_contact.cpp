@@ -333,8 +333,8 @@ TEST_CASE("an obstacle that makes no sense is refused", "[contact]") {
 }
 
 TEST_CASE("a contact may change its mind, and comes to a decision within a step", "[contact]") {
-  // Solves that contradict it for ever: held, it rubs more than friction can bear; let loose, friction drives
-  // it.
+  // Solves that contradict it for ever: held, it rubs more than friction can bear;
+  // let loose, friction drives it.
   Constraints constraints;
   constraints.add(Obstacle{.shape = Plane{}, .friction = 0.3, .margin = 0.001});
   for (int step = 0; step < 2; ++step) {

@@ -224,8 +224,8 @@ TEST_CASE("real files are counted as their manifest counts them", "[examine][sha
     int triangles, pieces, boundary_loops, inconsistent, many, flat;
     double smallest_angle;  // degrees; -1: of polygons, which we cut otherwise
   };
-  // Where faces are repeated the manifest counts every copy, and we count them once; such files are not in
-  // this list.
+  // Where faces are repeated the manifest counts every copy, and we count them once;
+  // such files are not in this list.
   const std::vector<Count> counts = {
       {"dressed/mh_male_body.obj", 26756, 1, 0, 0, 0, 0, -1},
       {"dressed/mh_male_tee_jeans.obj", 3240, 2, 7, 0, 0, 0, -1},

@@ -60,8 +60,8 @@ TEST_CASE("stretching a sheet stores Y eps^2 / 2 per area in every direction", "
   system.add(noh_jung(mesh, {.stretch = 800, .bend = 0}));
   const double eps = 1e-4, area = total_area(mesh);
   for (double angle : {0.0, 0.4, M_PI / 6, M_PI / 2}) {
-    // Both principal strains positive, so that no edge goes slack: E = C11/2 (e1^2 + e2^2) + C12 e1 e2, nu =
-    // 1/3.
+    // Both principal strains positive, so that no edge goes slack:
+    // E = C11/2 (e1^2 + e2^2) + C12 e1 e2, nu = 1/3.
     VecX x = stacked(mesh.positions);
     const Vec3 a(std::cos(angle), 0, std::sin(angle)), b(-std::sin(angle), 0, std::cos(angle));
     for (Eigen::Index i = 0; i < x.size() / 3; ++i) {
@@ -103,8 +103,8 @@ TEST_CASE("the default clamp leaves a fabric its rigidity on any mesh, Choi & Ko
   }
   const TriangleMesh fine = equilateral_sheet(12, 12, 0.0025);
   CHECK(limp(fine, {.stretch = 500, .bend = 1e-5, .buckling_clamp = 500}) > 5 * limp_curvature(1e-5, 0.15));
-  // Finer still, the default stops at stiffest_clamp: limper than it should be, but less so, and it can be
-  // told.
+  // Finer still, the default stops at stiffest_clamp: limper than it should be,
+  // but less so, and it can be told.
   CHECK(limp(fine, {.stretch = 500, .bend = 1e-5}) > 2 * limp_curvature(1e-5, 0.15));
   CHECK(limp(fine, {.stretch = 500, .bend = 1e-5}) <
         limp(fine, {.stretch = 500, .bend = 1e-5, .buckling_clamp = 500}) / 3);

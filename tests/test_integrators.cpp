@@ -206,8 +206,8 @@ TEST_CASE("a time step that is none and the state of another system are refused"
 }
 
 TEST_CASE("order 1 is Baraff & Witkin's step", "[integrators]") {
-  // (M + h D + h^2 K) dv = h (f - h K v), dense, K and D by differences of the force: taut springs, so that
-  // nothing is clamped.
+  // (M + h D + h^2 K) dv = h (f - h K v), dense, K and D by differences of the force: taut springs,
+  // so that nothing is clamped.
   Course m = drum();
   m.start.v = random_vector(m.start.x.size(), 0.1, 5);
   for (int i : m.constraints.pinned()) m.start.v.segment<3>(3 * i).setZero();

@@ -98,8 +98,8 @@ TEST_CASE("the explicit schemes are stable up to their limits on a chain, to 2 %
 }
 
 TEST_CASE("the explicit schemes are stable up to their limits on a lattice, to 2 %", "[integrators]") {
-  // validation.md 4.12: structural springs k and both diagonals d, omega^2 = 4 (k + d) / m in the endless
-  // lattice.
+  // validation.md 4.12: structural springs k and both diagonals d,
+  // omega^2 = 4 (k + d) / m in the endless lattice.
   const double k = 50, d = 20, m = 0.02;
   const int side = 24;
   std::vector<PairForce<TensionSpring>::Element> elements;

@@ -1,5 +1,5 @@
-// Constraints hold single particles in every integrator of the build: landing, friction, coming out of a
-// body.
+// Constraints hold single particles in every integrator of the build: landing,
+// friction, coming out of a body.
 #include "solver/integrators/held_motion.h"
 #include "tests/integrators.h"
 

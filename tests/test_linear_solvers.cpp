@@ -1,5 +1,5 @@
-// Laws that every linear solver obeys: the constraints hold, the answer is the dense one, the report is the
-// truth.
+// Laws that every linear solver obeys: the constraints hold, the answer is the dense one,
+// the report is the truth.
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 

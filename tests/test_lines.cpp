@@ -57,8 +57,8 @@ TEST_CASE("a box pins what lies on its sides", "[contact]") {
 }
 
 TEST_CASE("what the solution would drive through a surface is caught within the equations", "[contact]") {
-  // Pulled down by a spring in one step: the prediction (no gravity) does not meet the plane, the solution
-  // does.
+  // Pulled down by a spring in one step: the prediction (no gravity) does not meet
+  // the plane, the solution does.
   System system({0.01, 0.01});
   std::vector<PairForce<TensionSpring>::Element> e;
   e.push_back({0, 1, {0.1, 100}});
@@ -180,8 +180,8 @@ TEST_CASE("a bad start does not loosen the tolerance", "[solvers]") {
 }
 
 TEST_CASE("a residual is relative to the scale where the right-hand side is round-off", "[solvers]") {
-  // The size that a residual is compared with is at least `scale`: a right-hand side of round-off is solved
-  // at once.
+  // The size that a residual is compared with is at least `scale`:
+  // a right-hand side of round-off is solved at once.
   Small p({{0, 1}}, 2);
   p.b *= 1e-9;
   for (const auto& info : linear_solvers()) {

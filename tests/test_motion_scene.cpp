@@ -35,8 +35,8 @@ void check_scenes(const Mistakes& mistakes, const std::filesystem::path& folder 
   check_mistakes(mistakes, [&](const std::string& text) { return read(text, folder); });
 }
 
-// Moments of what a shape encloses about its own axes through its centre, for a mass of 1, by cubes of side
-// h.
+// Moments of what a shape encloses about its own axes through its centre,
+// for a mass of 1, by cubes of side h.
 Vec3 moments_by_cubes(const Shape& shape, const Vec3& centre, const Mat3& axes, double reach, double h) {
   double volume = 0;
   Vec3 squares = Vec3::Zero();

@@ -1,5 +1,5 @@
-// Laws of the multigrid preconditioner: iterations on fine and stiff sheets, what it keeps, what it leaves
-// behind.
+// Laws of the multigrid preconditioner: iterations on fine and stiff sheets,
+// what it keeps, what it leaves behind.
 #include <catch2/catch.hpp>
 
 #include "mesh/base/threads.h"

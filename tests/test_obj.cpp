@@ -1,5 +1,5 @@
-// Laws of the OBJ reader: nasty input is read or refused with its line, polygons are cut into triangles that
-// cover them.
+// Laws of the OBJ reader: nasty input is read or refused with its line,
+// polygons are cut into triangles that cover them.
 #include <catch2/catch.hpp>
 #include <cstdio>
 

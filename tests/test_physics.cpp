@@ -1,5 +1,5 @@
-// Whole motions against closed forms and reference curves: oscillator, chain, strip, catenary, cantilever,
-// the hung sheet.
+// Whole motions against closed forms and reference curves: oscillator, chain, strip, catenary,
+// cantilever, the hung sheet.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
@@ -16,8 +16,8 @@ StepOptions tight() { return {.tolerance = 1e-10}; }
 
 // Largest error of a mass on a taut spring, one period, against the exact motion.
 double oscillator_error(int steps) {
-  // Along the spring; always in tension, so that the clamp never shows: x = L + a cos(w t), around rest under
-  // a constant pull.
+  // Along the spring; always in tension, so that the clamp never shows: x = L + a cos(w t),
+  // around rest under a constant pull.
   const double k = 40, m = 0.5, L = 1, pull = 3;
   System system({0.0, m});
   system.add(std::make_unique<PairForce<TensionSpring>>(

@@ -10,8 +10,8 @@ using namespace drape::test;
 
 namespace {
 
-// Block-jacobi that after some iterations acts as a negative definite matrix, until it is made safer, if it
-// can be.
+// Block-jacobi that after some iterations acts as a negative definite matrix,
+// until it is made safer, if it can be.
 class Failing final : public Preconditioner {
  public:
   struct Told {

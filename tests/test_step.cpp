@@ -30,8 +30,8 @@ TEST_CASE("free fall is exact, however loose or short the solve", "[step]") {
 }
 
 TEST_CASE("a truncated solve says so, and does not eat gravity", "[step]") {
-  // Hung by two corners; three iterations a step reach a few vertices around the pins only. The far edge must
-  // still fall freely.
+  // Hung by two corners; three iterations a step reach a few vertices around the pins only.
+  // The far edge must still fall freely.
   Sheet sheet(grid(60, 60, 1, 1), {.stretch = 1000});
   sheet.constraints.pin({0, 59});
   auto stepper = sheet.stepper({.max_linear_iterations = 3});
@@ -118,8 +118,8 @@ TEST_CASE("a step that cannot be done leaves the state as it was and says where"
 
 namespace {
 
-// Fails every solve until the time step has been halved often enough: told from the mass it sees on the
-// diagonal.
+// Fails every solve until the time step has been halved often enough:
+// told from the mass it sees on the diagonal.
 class Fussy final : public LinearSolver {
  public:
   explicit Fussy(double largest_scale) : largest_(largest_scale) {}

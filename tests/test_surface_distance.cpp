@@ -14,8 +14,8 @@ using namespace drape::test;
 
 namespace {
 
-// Distance to a segment and to a triangle by the plain definition: the foot on the plane if it is within,
-// else the sides.
+// Distance to a segment and to a triangle by the plain definition: the foot on the plane if it
+// is within, else the sides.
 double to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
   const double t = std::clamp((x - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
   return (x - a - t * (b - a)).norm();

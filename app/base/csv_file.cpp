@@ -20,8 +20,8 @@ class Parser {
   Parser& operator=(const Parser&) = delete;
   ~Parser() { csv_free(&parser_); }
 
-  // Each line on its own: the library counts no lines, and goes on for as many as a quotation mark stays
-  // open.
+  // Each line on its own: the library counts no lines, and goes on for as many as
+  // a quotation mark stays open.
   CsvRow row(std::string_view line, std::string where) {
     CsvRow row{std::move(where), {}};
     const bool read =

@@ -1,5 +1,5 @@
-// What the command line changes in a scene before it is read: PATH=VALUE, with the same checks and messages
-// as the file.
+// What the command line changes in a scene before it is read: PATH=VALUE,
+// with the same checks and messages as the file.
 //   simulation.tolerance   cloth.0.bend   cloth.sheet.bend   obstacle.0.friction.static
 // A list is entered by number, from 0, or by the name (or mesh, or shape) of the entry.
 #pragma once

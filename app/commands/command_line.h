@@ -1,5 +1,5 @@
-// The command line: reads it, runs the command, gives the exit code. The only door to the command line
-// library.
+// The command line: reads it, runs the command, gives the exit code.
+// The only door to the command line library.
 #pragma once
 
 namespace drape {

@@ -55,8 +55,8 @@ struct SolverRow {
   std::vector<double> history;  // relative residual of every iteration, from 0
 };
 
-// reference: it is what the others are compared with. nothing: the same to the last bit. not_known: it
-// failed.
+// reference: it is what the others are compared with. nothing:
+// the same to the last bit. not_known: it failed.
 enum class DiffersBy { reference, nothing, linear_algebra, time_integration, not_known };
 std::string_view name(DiffersBy cause);
 

@@ -1,5 +1,5 @@
-// The words of `drape compare` made into options. Every mistake is an InputError that names the option and
-// what is known.
+// The words of `drape compare` made into options. Every mistake is an InputError that names
+// the option and what is known.
 #pragma once
 
 #include "app/compare/comparison.h"

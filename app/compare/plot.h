@@ -1,5 +1,5 @@
-// A line plot as inline SVG: axes with ticks, linear or logarithmic, a legend, a title that screen readers
-// say.
+// A line plot as inline SVG: axes with ticks, linear or logarithmic, a legend,
+// a title that screen readers say.
 //   Lines, text and axes take the colour of the page, so it is legible on light and dark; every series has
 //   its own colour and its own marker, so it is legible without colours.
 #pragma once

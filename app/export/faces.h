@@ -1,5 +1,5 @@
-// The faces of a mesh as other formats want them: polygons where the file had polygons, uv by corner or by
-// vertex, normals.
+// The faces of a mesh as other formats want them: polygons where the file had polygons,
+// uv by corner or by vertex, normals.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@ Faces faces_of(const TriangleMesh& mesh);
 // uv of each vertex; empty when the faces have none, or a vertex has two. A vertex of no face has (0, 0).
 std::vector<Uv> uv_by_vertex(const Faces& faces, std::size_t vertices);
 
-// For formats with one uv and one normal a vertex: a vertex whose faces have several is doubled, after all
-// the others.
+// For formats with one uv and one normal a vertex: a vertex whose faces have several
+// is doubled, after all the others.
 struct Corners {
   std::vector<int> origin;  // vertex of the mesh that each one is; the first are the mesh's own
   std::vector<Uv> uv;       // of each; empty: none
@@ -39,8 +39,8 @@ struct Corners {
 // Edges of the mesh whose faces meet at more than `crease` [rad] are hard; pi: none is.
 Corners split_corners(const TriangleMesh& mesh, const Faces& faces, double crease);
 
-// Unit normals of each vertex of `corners`, weighted by area; positions are the mesh's. (0, 1, 0) where there
-// is no face.
+// Unit normals of each vertex of `corners`, weighted by area; positions are the mesh's. (0, 1,
+// 0) where there is no face.
 std::vector<Vec3> normals_of(const Corners& corners, const std::vector<Vec3>& positions);
 
 // Bodies may have hard edges, such as those of a box; cloths have none.

@@ -29,8 +29,8 @@ struct ExportSource {
 // that are the same in float32 are, too. Throws InputError when there is no frame.
 ExportSource export_source(const Recording& recording, int every);
 
-// Frames a second: of the middle one of their spacings, since the last frame may come early; 24 of a single
-// frame.
+// Frames a second: of the middle one of their spacings, since the last frame may come
+// early; 24 of a single frame.
 double usual_frame_rate(const ExportSource& source);
 
 }  // namespace drape

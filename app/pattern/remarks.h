@@ -11,8 +11,8 @@ namespace drape {
 std::string in_cm(double metres);    // "12.5 cm"
 std::string in_deg(double radians);  // "20.3 deg"
 
-// Notes and warnings about the triangles of a mesh: corners and triangles below the bound [rad]. `where`: the
-// pattern.
+// Notes and warnings about the triangles of a mesh: corners and triangles below the bound
+// [rad]. `where`: the pattern.
 Names remarks(const PatternMesh& made, double min_angle, const std::string& where);
 
 }  // namespace drape

@@ -60,8 +60,8 @@ Camera facing(const View& view) {
 }
 
 // Seen is what has |X - x| <= a (z - Z) for the eye (x, y, z) in the camera's axes, a the slope of the box's
-// side; so with R = max(X + a Z), L = max(-X + a Z): a z >= (R + L) / 2, and x = (R - L) / 2 is in the
-// middle.
+// side; so with R = max(X + a Z), L = max(-X + a Z): a z >= (R + L) / 2,
+// and x = (R - L) / 2 is in the middle.
 Framing::Framing(const View& view, const PixelBox& box) : camera_(facing(view)) {
   camera_.slope = std::tan(half_field * std::numbers::pi / 180) / (std::max(box.width, box.height) / 2);
   camera_.middle_x = box.x + box.width / 2;

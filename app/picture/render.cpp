@@ -23,8 +23,8 @@ constexpr double occlusion_reach = 0.3;  // of the scene's size
 constexpr double sample_x[2][2] = {{0.375, 0.875}, {0.125, 0.625}};  // [row][column]
 constexpr double sample_y[2][2] = {{0.125, 0.375}, {0.625, 0.875}};
 
-// How light falls on what shows colours of cloths, and on colours that a legend explains: flatter, to be
-// read.
+// How light falls on what shows colours of cloths, and on colours that a legend
+// explains: flatter, to be read.
 struct Lights {
   float key, sky, fill;
 };

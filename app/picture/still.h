@@ -39,8 +39,8 @@ class Subject {
   int frames() const { return recording_ ? recording_->frames() : 1; }
   double time(int frame) const { return recording_ ? recording_->time(frame) : 0; }  // s
 
-  // Throws InputError where the run has no such field, and Interrupted: all pictures ask for this, frame by
-  // frame.
+  // Throws InputError where the run has no such field, and Interrupted:
+  // all pictures ask for this, frame by frame.
   Still still(int frame, std::optional<Field> field) const;
 
  private:

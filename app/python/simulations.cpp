@@ -53,8 +53,8 @@ fs::path path_of(const py::object& given) {
   }
 }
 
-// A dict, or the path of a TOML file; paths in it are relative to `folder`, by default that of the file or
-// the current one.
+// A dict, or the path of a TOML file; paths in it are relative to `folder`,
+// by default that of the file or the current one.
 Scene scene_of(const py::object& given, const py::dict& settings, const std::optional<fs::path>& folder) {
   const bool data = py::isinstance<py::dict>(given);
   const fs::path path = data ? fs::path() : path_of(given);

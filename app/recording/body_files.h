@@ -24,8 +24,8 @@ enum class Frames { pc2, obj, none };
 // "frames/NAME_0001.obj" below the output folder; frames count from 1.
 std::filesystem::path frame_path(const std::filesystem::path& folder, const std::string& name, int frame);
 
-// The name of each body's files: its own as far as it can be one, numbered where it is taken, also by a
-// cloth.
+// The name of each body's files: its own as far as it can be one,
+// numbered where it is taken, also by a cloth.
 Names body_file_names(const Names& bodies, const Names& cloths);
 
 // What run.json says of the bodies.

@@ -1,5 +1,5 @@
-// The output folder of a run. Every file is written beside its name; finish() renames them all once all are
-// complete.
+// The output folder of a run. Every file is written beside its name;
+// finish() renames them all once all are complete.
 #pragma once
 
 #include <filesystem>
@@ -15,8 +15,8 @@
 
 namespace drape {
 
-// Throws InputError when the folder cannot be made or written, or one of these files of it: now, and not when
-// all is computed.
+// Throws InputError when the folder cannot be made or written, or one of these files of it: now,
+// and not when all is computed.
 void make_output_folder(const std::filesystem::path& folder, const std::vector<std::string>& files = {});
 
 class Output {

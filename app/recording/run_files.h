@@ -12,8 +12,8 @@ namespace drape {
 
 bool is_of_run(const std::filesystem::path& file, const std::filesystem::path& run);
 
-// Throws InputError "out/run.json: is a name of the run's own files; ...". For whatever is written beside
-// them.
+// Throws InputError "out/run.json: is a name of the run's own files; ...".
+// For whatever is written beside them.
 void spare_run(const std::filesystem::path& file, const std::filesystem::path& run);
 
 // "sheet_0007.ply": the seventh of a sequence; they count from 1.

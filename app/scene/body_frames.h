@@ -13,8 +13,8 @@ namespace drape {
 FramesEntry read_frames(Table& table, const std::filesystem::path& folder);
 
 // The files there are: of a pattern those in its folder, in the order of their numbers. Throws InputError
-// when there is none or a number between the first and the last has no file, and names the file that is
-// missing.
+// when there is none or a number between the first and the last has no file,
+// and names the file that is missing.
 std::vector<std::filesystem::path> frame_files(const FramesEntry& entry);
 
 // All frames. Throws InputError when one cannot be read or has not as many vertices as the rest mesh.

@@ -17,8 +17,8 @@ TriangleMesh load_mesh(const std::filesystem::path& path, const std::string& whe
 
 TriangleMesh placed(TriangleMesh mesh, const Placement& placement, const std::string& name);
 
-// The defects of a mesh as messages with its name: "warning: sheet.obj: ...". Throws InputError when it is
-// refused.
+// The defects of a mesh as messages with its name: "warning: sheet.obj: ...".
+// Throws InputError when it is refused.
 void add_messages(const MeshReport& report, const std::string& name, Names& messages);
 
 }  // namespace drape

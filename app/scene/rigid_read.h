@@ -6,8 +6,8 @@
 
 namespace drape {
 
-// Reads them into entry.rigid; the shape and the placement of the entry are read already. middle: of the
-// shape.
+// Reads them into entry.rigid; the shape and the placement of the entry are read
+// already. middle: of the shape.
 void read_rigid(Table& table, ObstacleEntry& entry, const Vec3& middle);
 
 }  // namespace drape

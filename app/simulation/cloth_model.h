@@ -6,8 +6,8 @@
 
 namespace drape {
 
-// kg, of the mesh's vertices. `rest` as in solver/forces/noh_jung.h. Throws InputError when the mesh is not one for
-// the model.
+// kg, of the mesh's vertices. `rest` as in solver/forces/noh_jung.h. Throws InputError when the mesh
+// is not one for the model.
 std::vector<double> cloth_masses(const ClothEntry& entry, const TriangleMesh& mesh, const TriangleMesh& rest);
 
 // Adds to the messages what the user should know. Throws InputError as above.

@@ -14,8 +14,8 @@ double largest_strain(const std::vector<Cloth>& cloths, const VecX& x);
 
 double max_speed(const VecX& v);  // m/s, of a particle
 
-// FNV-1a, 64 bits, over the bytes of x and then v, as 16 hexadecimal digits: the same when every bit is the
-// same.
+// FNV-1a, 64 bits, over the bytes of x and then v, as 16 hexadecimal digits:
+// the same when every bit is the same.
 std::string state_hash(const State& state);
 
 struct Distribution {

@@ -1,5 +1,5 @@
-// A scene made ready to run: meshes loaded and looked over, one system of all cloths, their pins and
-// obstacles.
+// A scene made ready to run: meshes loaded and looked over, one system of all cloths,
+// their pins and obstacles.
 #pragma once
 
 #include <functional>

@@ -24,8 +24,8 @@ void breathe() {
 }
 
 // Helpers that take chunks of a loop from the caller. The caller never waits for a helper that has not begun
-// a chunk: on a busy machine it does the work itself (with OpenMP's barriers the same loops were a hundred
-// times slower there).
+// a chunk: on a busy machine it does the work itself (with OpenMP's barriers the same loops were
+// a hundred times slower there).
 class Helpers {
  public:
   explicit Helpers(int count) {

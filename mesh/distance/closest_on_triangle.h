@@ -25,8 +25,8 @@ inline std::pair<Vec3, int> closest_on_triangle(const Vec3& x, const Vec3& a, co
   const Vec3 cx = x - c;
   const double ab_c = ab.dot(cx), ac_c = ac.dot(cx);
   if (ac_c >= 0 && ab_c <= ac_c) return {c, at_vertex + 2};
-  // Areas beside the edges, as cross products: differences of products of the dots would lose a sliver's
-  // digits.
+  // Areas beside the edges, as cross products: differences of products of the dots
+  // would lose a sliver's digits.
   const Vec3 n = ab.cross(ac);
   const double beside_ab = n.dot(ab.cross(ax));
   if (beside_ab <= 0 && ab_a >= 0 && ab_b <= 0) return {a + ab_a / (ab_a - ab_b) * ab, on_edge};

@@ -1,5 +1,5 @@
-// A tree of boxes about triangles whose corners go straight from one place to another while s goes from 0
-// to 1.
+// A tree of boxes about triangles whose corners go straight from one place to another
+// while s goes from 0 to 1.
 //   lower(s) = (1 - s) lower(0) + s lower(1),  and so the upper one: no corner leaves its box on the way
 // Four boxes a node; halved at the median where it is made, refitted to the places of every step afterwards.
 // Boxes are floats about the middle of the surface, the four of a node side by side, so that a search measures

@@ -1,6 +1,6 @@
 // OpenVDB's part of the level sets: their files, and the zero surface of somebody else's grid. One thread:
-// its work here is a small part of making a grid, and the rest of the program does not share threads with
-// TBB.
+// its work here is a small part of making a grid, and the rest of the program does
+// not share threads with TBB.
 #include "mesh/level_set/vdb_file.h"
 
 #include "mesh/base/errors.h"

@@ -1,5 +1,5 @@
-// The grid of a level set: sparse bricks of distances near the surface, a coarse lattice everywhere.
-// Internal.
+// The grid of a level set: sparse bricks of distances near the surface,
+// a coarse lattice everywhere. Internal.
 //   node i     at voxel * i; a brick is 4 x 4 x 4 of them
 //   cell       2 x 2 x 2 bricks; `far` is the signed distance at its centre
 //   near brick one of which a point may be within `band` of the surface, or less than depth() inside: has its

@@ -255,8 +255,8 @@ void Examiner::coincident_vertices() {
   std::vector<char> has_earlier(mesh_.positions.size(), 0);
   for (std::size_t i = 0; i < line.size(); ++i) {
     const int v = line[i].second;
-    // Many vertices at one place: meeting the first that is already known to coincide would find them all
-    // again.
+    // Many vertices at one place: meeting the first that is already known to coincide
+    // would find them all again.
     for (std::size_t j = i + 1;
          j < line.size() && !has_earlier[v] && line[j].first - line[i].first <= tolerance; ++j) {
       const int w = line[j].second;

@@ -174,8 +174,8 @@ long long ObjReader::read_index(std::string_view digits, std::string_view word, 
   return value;
 }
 
-// Numbers from 0, -1 where there is none; `ahead` is set when something refers beyond what has been read so
-// far.
+// Numbers from 0, -1 where there is none; `ahead` is set when something refers beyond
+// what has been read so far.
 ObjCorner ObjReader::read_corner(std::string_view word, bool& ahead) {
   ObjCorner corner{-1};
   int* const slots[3] = {&corner.v, &corner.vt, &corner.vn};
@@ -243,8 +243,8 @@ void ObjReader::read_face(std::string_view rest) {
   document_.face_start.push_back(corners.size());
 }
 
-// 'curv' and 'surf' name vertices; counted from the end they would mean others after writing, where all
-// vertices come first.
+// 'curv' and 'surf' name vertices; counted from the end they would mean others after writing,
+// where all vertices come first.
 bool ObjReader::is_relative_curve(std::string_view keyword, std::string_view rest) const {
   int parameters = keyword == "curv" ? 2 : keyword == "surf" ? 4 : -1;
   if (parameters < 0) return false;

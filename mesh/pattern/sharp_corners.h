@@ -17,8 +17,8 @@ double leg_fraction(const Run& run, int leg, bool at_end);  // of a run, at an e
 // Fills in the clusters, the legs' sharp ends, and the corners below the bound.
 void find_sharp_corners(const Pattern& pattern, double min_angle, Sides& sides);
 
-// The length of the collar at each cluster [m]: the same at all its legs, and at the same fractions of curves
-// that are sewn.
+// The length of the collar at each cluster [m]: the same at all its legs,
+// and at the same fractions of curves that are sewn.
 std::vector<double> collars(const Sides& sides, double edge);
 
 // The corner (a vertex of the panel) at an end of a leg.

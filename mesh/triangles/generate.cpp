@@ -59,8 +59,8 @@ TriangleMesh icosahedron() {
   return mesh;
 }
 
-// Every triangle into four; the new vertices, one per edge, come after the old ones in the order of the
-// edges.
+// Every triangle into four; the new vertices, one per edge,
+// come after the old ones in the order of the edges.
 TriangleMesh subdivide(const TriangleMesh& coarse) {
   const std::vector<Edge> all = edges(coarse);
   TriangleMesh fine;

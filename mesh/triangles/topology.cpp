@@ -1,6 +1,6 @@
 // Topology by sorting: the three sides of every triangle are put into buckets by their lower vertex and each
-// small bucket is sorted by the upper one. Linear time, no hashing, the same lists whatever the order of the
-// triangles.
+// small bucket is sorted by the upper one. Linear time, no hashing,
+// the same lists whatever the order of the triangles.
 #include "mesh/triangles/topology.h"
 
 #include <Eigen/Geometry>
@@ -30,8 +30,8 @@ struct Sides {
   std::vector<Side> sides;         // of each bucket by (b, opposite)
 };
 
-// Puts items 0 .. count-1 into buckets by key(item); place(item, slot) stores each. Returns the start of
-// every bucket.
+// Puts items 0 .. count-1 into buckets by key(item); place(item, slot) stores each.
+// Returns the start of every bucket.
 template <class Key, class Place>
 std::vector<std::size_t> fill_buckets(int buckets, std::size_t count, const Key& key, const Place& place) {
   std::vector<std::size_t> start(static_cast<std::size_t>(buckets) + 1, 0);

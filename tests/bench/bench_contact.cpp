@@ -3,8 +3,8 @@
 //   and far from it (or to the OBJ file that is named);
 //   a step of a sheet of 10 k vertices that falls on it: detection and constraints against the linear solve.
 //   drape_bench_contact [BODY.obj [VOXEL in m]]
-// Every figure is the median of several repeats, in which one thread and two take turns; points from a fixed
-// seed.
+// Every figure is the median of several repeats, in which one thread and two take turns;
+// points from a fixed seed.
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -95,8 +95,8 @@ void bench_body(const TriangleMesh& mesh, const std::string& name, double voxel)
   set_threads(most);
 }
 
-// 1.5 m x 1.5 m, 10 k vertices, 0.2 kg/m^2, stretch 1000 N/m, falls on the ball from 3 cm above and drapes
-// over it.
+// 1.5 m x 1.5 m, 10 k vertices, 0.2 kg/m^2, stretch 1000 N/m, falls on the ball from 3 cm
+// above and drapes over it.
 struct FallingSheet {
   TriangleMesh mesh;
   System system;
