@@ -1,4 +1,5 @@
-// A file that appears only when it is complete: written beside its name, then renamed.
+// A file that appears only when it is complete: it is written under another name in the same
+// folder and then renamed.
 #pragma once
 
 #include <cstdio>
@@ -7,8 +8,8 @@
 
 namespace drape {
 
-// Writing throws InputError "out/sheet.pc2: cannot write: No space left on device; ...". The destructor
-// removes what was not kept.
+// The functions that write throw InputError "out/sheet.pc2: cannot write: No space left on device; ...". The
+// destructor removes a file that keep() was not called for.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path);
@@ -18,9 +19,9 @@ class AtomicFile {
 
   void write(const void* bytes, std::size_t count);
   void write(std::string_view text) { write(text.data(), text.size()); }
-  void seek(long position);  // from the start
-  void close();              // all bytes have left this program; throws when they have not
-  void keep();               // closes and renames
+  void seek(long position);  // bytes from the start
+  void close();              // throws when not all bytes could be handed to the system
+  void keep();               // closes the file and gives it its name
 
   const std::filesystem::path& path() const { return path_; }
 

@@ -1,4 +1,4 @@
-// Lines of CSV from the members of a JSON object, whose keys are the header. [RFC 4180]
+// Lines of CSV from the members of a JSON object. The keys make the header. [RFC 4180]
 #pragma once
 
 #include <string>
@@ -8,6 +8,7 @@
 namespace drape {
 
 std::string csv_header(const Json::Members& members);
-std::string csv_line(const Json::Members& members);  // true is 1, null is empty; quoted where it must be
+// True is written as 1, null as an empty cell; quoted where necessary.
+std::string csv_line(const Json::Members& members);
 
 }  // namespace drape

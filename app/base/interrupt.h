@@ -1,19 +1,24 @@
-// Ctrl-C and SIGTERM ask a run to end after its step; a second one ends the program at once.
+// Ctrl-C and SIGTERM ask a run to end after the step that it is computing; the third such signal
+// ends the program at once.
 #pragma once
 
 #include <exception>
 
 namespace drape {
 
+// Installs the handler of both signals.
 void catch_interrupts();
+// True after the first such signal.
 bool interrupted();
 
-// For work that is nothing when it is not done: looked for between its frames, caught by its command.
+// Thrown by work whose unfinished result is of no use. The work calls end_if_interrupted() between its
+// frames, and the command catches the exception.
 struct Interrupted : std::exception {
   const char* what() const noexcept override { return "interrupted"; }
 };
-void end_if_interrupted();  // throws Interrupted
+void end_if_interrupted();  // throws Interrupted after the first such signal
 
-void ignore_broken_outputs();  // SIGPIPE and SIGXFSZ: a write that fails says so instead
+// Ignores SIGPIPE and SIGXFSZ, so that a write that fails reports its error instead of ending the program.
+void ignore_broken_outputs();
 
 }  // namespace drape

@@ -1,5 +1,5 @@
-// JSON as plain data, and its text. The only door to the JSON library.
-//   A number that is not finite is written as null: JSON has no other word for it.
+// JSON as plain data, and its text. The only file that includes the JSON library is json.cpp.
+//   A number that is not finite is written as null, because JSON cannot express it.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace drape {
 
 struct Json {
   using List = std::vector<Json>;
-  using Members = std::vector<std::pair<std::string, Json>>;  // in the order they are written
+  using Members = std::vector<std::pair<std::string, Json>>;  // in the order in which they are written
   std::variant<std::monostate, bool, long, double, std::string, List, Members> value;
 
   Json() = default;
@@ -31,14 +31,15 @@ struct Json {
 
   bool is(bool b) const { return std::holds_alternative<bool>(value) && std::get<bool>(value) == b; }
   bool is_null() const { return std::holds_alternative<std::monostate>(value); }
-  // What a reader finds: null or an empty list where it is of another kind or absent.
+  // These read without checks: a member that is absent is null, and a value that is not a list has no items.
   const Json& operator[](std::string_view member) const;
   const List& items() const;
-  std::string text() const;               // empty when it is no text
-  double number(double otherwise) const;  // of an integer, too
+  std::string text() const;  // empty when the value is not a text
+  // `otherwise` when the value is not a number; integers are numbers too.
+  double number(double otherwise) const;
 };
 
-// Indented by two; bytes that are not UTF-8 are replaced.
+// Indented by two blanks, with a line end. Bytes that are not UTF-8 are replaced.
 std::string json_text(const Json& json);
 std::string compact_json_text(const Json& json);  // in one line
 

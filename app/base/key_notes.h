@@ -1,5 +1,5 @@
-// What the readers say of their keys, noted while they read: `drape keys` and docs/scene.md are made of it,
-// so that there is no second list of keys.
+// What the readers of scene and other files say about their keys, collected while they read. `drape keys` and
+// docs/scene.md are made from these notes, so there is no second list of keys.
 #pragma once
 
 #include <string>
@@ -11,33 +11,34 @@
 
 namespace drape {
 
-// Stands beside the key where it is read.
+// The explanation of a key, given where the key is read.
 struct About {
   About(const char* text_, const char* otherwise_ = nullptr) : text(text_), otherwise(otherwise_) {}
 
-  const char* text;       // what the key means
-  const char* otherwise;  // what holds without it, in words; null: the value before it is read
+  const char* text;  // what the key means
+  // What holds when the key is absent, in words; null when it is the value that the variable has before.
+  const char* otherwise;
 };
 
 struct KeyNote {
   std::string key;
   std::string kind;       // "a time > 0", "true or false"
-  std::string unit;       // SI; empty: none
-  std::string otherwise;  // what holds without it; empty of a key that is required
+  std::string unit;       // SI unit; empty when the key has none
+  std::string otherwise;  // what holds when the key is absent; empty for a required key
   std::string text;
 };
 
-// The keys of one table, in the order in which they are read. A table of which there are several kinds has
-// one section for each, and one for what all have.
+// The keys of one table, in the order in which they are read. A table that comes in several kinds has one
+// section for each kind, and one for the keys that all kinds have.
 struct KeySection {
-  std::string table;  // "cloth", "rotate"; empty: the file itself
-  std::string kind;   // "shape = \"sphere\""
+  std::string table;  // "cloth", "rotate"; empty for the top level of the file
+  std::string kind;   // "shape = \"sphere\""; empty for the keys of all kinds
   std::vector<KeyNote> keys;
 };
 
 class KeyNotes {
  public:
-  // Once for each key of a section: what is read again is the same key.
+  // Adds a key to its section. A key that the section already has is not added again.
   void add(const std::string& table, const std::string& kind, KeyNote note);
 
   const std::vector<KeySection>& sections() const& { return sections_; }

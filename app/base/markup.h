@@ -1,4 +1,4 @@
-// Text within HTML, SVG and XML.
+// Makes a text safe to stand within HTML, SVG or XML.
 #pragma once
 
 #include <string>
@@ -6,6 +6,6 @@
 
 namespace drape {
 
-std::string escaped(std::string_view text);  // & < > "
+std::string escaped(std::string_view text);  // replaces & < > "
 
 }  // namespace drape

@@ -1,7 +1,8 @@
-// Arrays in NumPy's file format: numpy.load reads them, also with mmap_mode.       [NEP 1, version 1.0]
+// Arrays in NumPy's file format, which numpy.load reads, also with mmap_mode.       [NEP 1, version 1.0]
 //   "\x93NUMPY", 1, 0, uint16 length, {'descr': '<f4', 'fortran_order': False, 'shape': (frames, n, 3), }
 //   blanks and a line end up to 128 bytes, then the numbers in C order, little endian.
-// float32 ('<f4') or bytes ('|u1'); the first axis counts frames, which are added or read one at a time.
+// The numbers are float32 ('<f4') or bytes ('|u1'). The first axis counts frames; they are written
+// and read one at a time.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@ namespace drape {
 class NpyWriter {
  public:
   enum class Kind { float32, byte };
-  // frame_shape: {n} or {n, 3}, of one frame.
+  // frame_shape is the shape of one frame: {n} or {n, 3}.
   NpyWriter(std::filesystem::path path, Kind kind, std::vector<int> frame_shape);
 
   void add(const std::vector<float>& frame);
@@ -34,14 +35,14 @@ class NpyWriter {
   std::vector<unsigned char> bytes_;
 };
 
-// Throws InputError when the file is none of these, or was cut short.
+// Throws InputError when the file is not such an array, or was cut short.
 class NpyReader {
  public:
   explicit NpyReader(const std::filesystem::path& path);
 
   int frames() const { return frames_; }
   const std::vector<int>& frame_shape() const { return frame_shape_; }
-  std::vector<float> frame(int k);  // bytes as numbers, too
+  std::vector<float> frame(int k);  // the numbers of frame k, from 0; bytes come as numbers too
 
  private:
   [[noreturn]] void fail(const std::string& what) const;
@@ -51,7 +52,8 @@ class NpyReader {
   bool bytes_ = false;
   int frames_ = 0;
   std::vector<int> frame_shape_;
-  std::size_t count_ = 1, start_ = 0;  // numbers in a frame; bytes before the first
+  // How many numbers a frame has; how many bytes stand before the first one.
+  std::size_t count_ = 1, start_ = 0;
 };
 
 }  // namespace drape

@@ -1,4 +1,4 @@
-// Point cache for Blender's Mesh Cache modifier, all little endian:
+// A point cache for Blender's Mesh Cache modifier, all little endian:
 //   char[12] "POINTCACHE2\0", int32 version 1, int32 points, float32 start frame 0, float32 sample rate 1,
 //   int32 samples, then for each sample the float32 x y z of every point [m].
 #pragma once
@@ -19,10 +19,11 @@ class Pc2Writer {
  public:
   Pc2Writer(std::filesystem::path path, int points);
 
-  void add(const std::vector<Vec3>& positions);  // a sample [m]
+  void add(const std::vector<Vec3>& positions);  // adds a sample: the positions of all points, m
   void close();                                  // writes the number of samples into the header
   void keep() { file_.keep(); }
-  AtomicFile take_file() { return std::move(file_); }  // closed, to be kept with others
+  // Hands over the closed file, to be kept together with others.
+  AtomicFile take_file() { return std::move(file_); }
   const std::filesystem::path& path() const { return file_.path(); }
 
  private:
@@ -31,19 +32,20 @@ class Pc2Writer {
   std::vector<unsigned char> bytes_;
 };
 
-// Reads one sample after the other, or any. Throws InputError when the file is no point cache, ends early or
-// holds a number that is not finite.
+// Reads a point cache one sample after the other, or from any sample on. Throws InputError when the file is
+// not a point cache, ends early or holds a number that is not finite.
 class Pc2Reader {
  public:
-  enum class Damaged { refused, read };  // read: the whole samples that are there
+  enum class Damaged { refused, read };  // read: the complete samples of a damaged file are read
   explicit Pc2Reader(const std::filesystem::path& path, Damaged damaged = Damaged::refused);
 
   int points() const { return points_; }
   int samples() const { return samples_; }
-  double spacing() const { return spacing_; }            // frames from one sample to the next
-  void read(std::vector<Vec3>& positions);               // m; there must be a sample left
-  void seek(int sample);                                 // the next one to be read
-  const std::string& damage() const { return damage_; }  // what is not as its header tells; empty: nothing
+  double spacing() const { return spacing_; }  // frames between one sample and the next
+  void read(std::vector<Vec3>& positions);     // the next sample, m; there must be one
+  void seek(int sample);                       // makes this sample the next one to be read
+  // How the file differs from what its header says; empty when it does not.
+  const std::string& damage() const { return damage_; }
 
  private:
   [[noreturn]] void fail(const std::string& what) const;

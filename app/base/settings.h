@@ -1,7 +1,7 @@
-// What the command line changes in a scene before it is read: PATH=VALUE,
-// with the same checks and messages as the file.
+// A setting changes a scene from the command line before the scene is read: PATH=VALUE. It gets the same
+// checks and messages as the file.
 //   simulation.tolerance   cloth.0.bend   cloth.sheet.bend   obstacle.0.friction.static
-// A list is entered by number, from 0, or by the name (or mesh, or shape) of the entry.
+// An entry of a list is named by its number, from 0, or by its name, its mesh or its shape.
 #pragma once
 
 #include <string>
@@ -13,14 +13,15 @@ namespace drape {
 
 struct Setting {
   std::string path;
-  std::string value;  // as TOML writes it; a text needs no quotes
-  std::string where;  // "--set cloth.0.bend", "--duration": stands in messages
+  std::string value;  // in TOML; a text needs no quotes
+  std::string where;  // for messages: "--set cloth.0.bend", "--duration"
 };
 
 Setting parse_setting(const std::string& text);  // "PATH=VALUE"; throws InputError
 
-void apply(const Setting& setting, Node& root);  // throws InputError when the path leads nowhere
-void apply(const std::string& path, Node value,
-           Node& root);  // the same, from data; value.where stands in messages
+// Throws InputError when the path leads nowhere.
+void apply(const Setting& setting, Node& root);
+// The same, with the value as data; value.where stands in messages.
+void apply(const std::string& path, Node value, Node& root);
 
 }  // namespace drape

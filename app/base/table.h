@@ -1,6 +1,6 @@
-// Reads one table of a scene or fabric file: a value keeps its default when its key is absent; a wrong type,
+// Reads one table of a scene or fabric file. A value keeps its default when its key is absent. A wrong type,
 // unit, sign or name is an InputError "scene.toml:12: bend = "10 N/m": expected a bending rigidity such as
-// "10 uN.m"". finish() finds the keys that nobody asked for. Every key is explained where it is read.
+// "10 uN.m"". finish() refuses keys that nobody asked for. Every key is explained where it is read.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ enum class Range { any, not_negative, positive };
 
 class Table {
  public:
-  // notes: where to note what is said of the keys, when somebody wants to know.
+  // notes: receives what is said of the keys; null when nobody wants to know.
   Table(const Node& node, std::string title, KeyNotes* notes = nullptr, std::string name = {})
       : node_(&node), title_(std::move(title)), notes_(notes), name_(std::move(name)) {}
 
@@ -38,14 +38,14 @@ class Table {
   void read(const std::string& key, std::string& value, const Names& known, const About& about);
   void read(const std::string& key, std::vector<int>& values, const About& about);
   void read(const std::string& key, Names& values, const About& about);
-  // One of the parts of this build, those of `drape list`.
+  // The name of a part of this build, one of those that `drape list` prints.
   void read_part(const std::string& key, std::string& value, const Names& parts, const About& about);
 
-  // A table, or each of an array of tables (a table alone is an array of one). Absent: none.
+  // The tables under a key: one, or each of an array of tables; none when the key is absent.
   std::vector<Table> tables(const std::string& key, const About& about);
-  // Any kind; null when absent. kind: what may stand there, in words.
+  // The value of a key, of any kind; null when it is absent. `kind` says in words what may stand there.
   const Node* take(const std::string& key, const char* kind, const About& about);
-  Table inner(const std::string& key) const;  // the table that a key is, which was taken
+  Table inner(const std::string& key) const;  // the table under a key that has been taken
 
   void require(const std::string& key);  // throws when it is absent
   template <class Value, class... How>
@@ -53,9 +53,9 @@ class Table {
     require(key);
     read(key, value, how...);
   }
-  void finish() const;  // throws on a key that was not asked for
+  void finish() const;  // throws when the table has a key that was not asked for
 
-  // What is read from here on is of tables of this kind only; empty: of all.
+  // What is read from here on belongs to tables of this kind only; empty: to all tables.
   void only_of(std::string kind) { kind_ = std::move(kind); }
 
   const std::string& where() const { return node_->where; }
@@ -71,11 +71,11 @@ class Table {
   const Node* node_;
   std::string title_;  // "[simulation]"
   KeyNotes* notes_;
-  std::string name_, kind_;  // of the table and of what is read now, for the notes
+  std::string name_, kind_;  // of the table, and of what is read at present; for the notes
   Names asked_, required_;
 };
 
-// A number in SI units or a text with a unit, in a range.
+// A number in SI units or a text with a unit, within the range. Throws InputError.
 double quantity(const Node& node, const Dimension& dimension, Range range);
 Vec3 vector(const Node& node, const Dimension& dimension);
 

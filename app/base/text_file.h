@@ -1,4 +1,4 @@
-// A whole text file in memory.
+// Reads a whole text file into memory.
 #pragma once
 
 #include <filesystem>
@@ -6,8 +6,8 @@
 
 namespace drape {
 
-// `kind` stands in messages: "TOML". Throws InputError "FILE: no such file" when it is missing, a directory,
-// empty, binary or cannot be read.
+// Throws InputError "FILE: no such file" and the like when the file is missing, a directory, empty, binary,
+// or cannot be read. `kind` stands in messages: "TOML".
 std::string read_text(const std::filesystem::path& path, const std::string& kind);
 
 }  // namespace drape

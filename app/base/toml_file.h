@@ -1,4 +1,5 @@
-// A TOML file as plain data, every value with the place it came from. The only door to the TOML library.
+// A TOML file as plain data, every value with its place. The only file that includes the TOML
+// library is toml_file.cpp.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +17,11 @@ struct Node {
   Kind kind = Kind::table;
   bool boolean = false;
   std::int64_t integer = 0;
-  double number = 0;                    // of an integer, too
-  std::string text;                     // dates and times are texts
+  double number = 0;                    // also set for an integer
+  std::string text;                     // a date or a time is a text too
   std::vector<Node> items;              // of an array
   std::map<std::string, Node> members;  // of a table
-  std::string where;                    // "scene.toml:12", or the option it came from
+  std::string where;                    // "scene.toml:12", or the command-line option that set it
 
   static Node of_text(std::string text, std::string where);
   static Node of_number(double number, std::string where);
@@ -28,13 +29,14 @@ struct Node {
   static Node of_table(std::string where);
 };
 
-std::string written(const Node& node);  // as TOML writes it, shortened when it is long
+std::string written(const Node& node);  // as it stands in TOML, shortened when it is long
 
-// Throw InputError "scene.toml:3: is not TOML: ...".
+// Both throw InputError "scene.toml:3: is not TOML: ...".
 Node read_toml(const std::filesystem::path& path);
 Node parse_toml(std::string_view text, const std::string& name);
 
-// What may stand on the right of an equals sign; anything else is a text: 5 -> integer, 5 uN.m -> text.
+// The value that would stand on the right of an equals sign. What is not TOML is taken as a text: 5 ->
+// integer, 5 uN.m -> text.
 Node parse_toml_value(std::string_view text, const std::string& where);
 
 }  // namespace drape

@@ -1,7 +1,7 @@
 // Quantities: "12 uN.m" -> 1.2e-5 in SI units, with a check that it is the kind of quantity that is wanted.
 //   text   a number, then a unit as udunits writes it (N.m, N m, N*m, g/m^2, g/m2, gf.cm^2/cm, um, deg);
-//          without a unit it is in SI units. Besides udunits' own: deg, gsm (g/m^2), oz (of mass), fps
-//          (frames per second).
+//          a number without a unit is in SI units. Beyond udunits these are known: deg, gsm (g/m^2), oz (of
+//          mass), fps (frames per second).
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 namespace drape {
 
 struct Dimension {
-  std::string_view unit;     // SI
+  std::string_view unit;     // SI unit
   std::string_view noun;     // "a bending rigidity"
   std::string_view example;  // "10 uN.m"
 };
@@ -36,8 +36,8 @@ inline constexpr Dimension damping{"N.s/m", "a damping", "0.01 N.s/m"};
 inline constexpr Dimension number{"1", "a number", "0.3"};
 }  // namespace dimension
 
-// In SI units. Throws InputError "expected a bending rigidity such as "10 uN.m"", with the reason in front
-// when it is another one than the kind of quantity.
+// The quantity in SI units. Throws InputError "expected a bending rigidity such as "10 uN.m""; when the text
+// is some other quantity, the message begins with the reason.
 double parse_quantity(std::string_view text, const Dimension& dimension);
 
 std::string expected(const Dimension& dimension);  // "expected a bending rigidity such as "10 uN.m""

@@ -1,4 +1,4 @@
-// Small things for messages: lists of names, the nearest known name, counts.
+// Helpers for messages: lists of names, the nearest known name, counts, numbers.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@ namespace drape {
 
 using Names = std::vector<std::string>;
 
-std::string listed(const Names& names);  // "a, b, c"; "(none)"
+std::string listed(const Names& names);  // "a, b, c"; "(none)" for an empty list
 
-// The known name with the fewest changed letters, when it is near enough to be a slip of the pen; else empty.
+// The known name with the fewest changed letters, if it is near enough to be a misspelling; else empty.
 std::string nearest(std::string_view word, const Names& known);
 
 // "did you mean 'bend'? known are: ..." in one line.
@@ -19,7 +19,7 @@ std::string suggestion(std::string_view word, const Names& known);
 
 std::string counted(long count, std::string_view noun);  // "1 vertex", "3 vertices", "2 cloths"
 
-std::string shortest(double value);             // as few digits as give the same number again
+std::string shortest(double value);             // the fewest digits that read back as the same number
 std::string rounded(double value, int digits);  // %.{digits}g
 std::string one_line(std::string text);         // line ends and other control characters become blanks
 
