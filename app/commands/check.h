@@ -1,4 +1,4 @@
-// `drape check`: what is in a scene or a mesh, in words; changes nothing.
+// `drape check`: describes a scene or a mesh in words, and changes nothing.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,10 @@
 
 namespace drape {
 
+// Prints the description of a scene, a pattern or a mesh file. Returns 0; throws InputError.
 int check_file(const std::filesystem::path& file);
 
+// Prints counts, size and defects of a mesh; `name` stands in front.
 void print_report(const std::string& name, const MeshReport& report);
 
 }  // namespace drape

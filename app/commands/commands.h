@@ -1,5 +1,5 @@
-// The commands. Each gives the exit code: 0 done, 1 the computation failed, 130 interrupted; bad input is
-// thrown as InputError.
+// The commands of the program. Each returns the exit code: 0 done, 1 the computation failed, 130 interrupted.
+// Bad input is thrown as InputError.
 #pragma once
 
 #include <filesystem>
@@ -14,11 +14,11 @@ namespace drape {
 int simulate(const std::filesystem::path& scene, const CommonOptions& options);
 int drop(const DropOptions& what, const CommonOptions& options, const std::string& label);
 struct LevelSetWords {
-  std::string mesh, out, voxel, scale;  // as the command line gives them; empty: not given
+  std::string mesh, out, voxel, scale;  // as on the command line; empty when not given
 };
 int make_level_set(const LevelSetWords& words);
 
-// which: "fabrics", "linear solvers"; empty: all.
+// Prints the parts of this build. which: "fabrics", "linear solvers" and so on; empty for all.
 int list_parts(const std::string& which, bool markdown);
 
 }  // namespace drape

@@ -1,5 +1,6 @@
-// `drape keys`: every key that a scene, a fabric or a pattern file may have, with what it means, as the
-// readers say it. Each reads a small file that has one of every kind of table, and notes what it asks for.
+// `drape keys`: every key that a scene, a fabric or a pattern file may have, with its meaning, as the readers
+// explain it. Each of the three functions reads a small file that has every kind of table, and collects
+// what the readers ask for.
 #pragma once
 
 #include <string>
@@ -13,10 +14,12 @@ KeyNotes scene_keys();
 KeyNotes fabric_keys();
 KeyNotes pattern_keys();
 
-std::string_view scene_of_every_kind();  // TOML; the files it names need not exist
+std::string_view scene_of_every_kind();  // TOML; the files that it names need not exist
 
 struct KeysWords {
-  std::string table;      // "cloth"; or "scene", "fabric", "pattern": all of such a file; empty: everything
+  // A table such as "cloth"; or "scene", "fabric" or "pattern" for all tables of such a file;
+  // empty for everything.
+  std::string table;
   bool markdown = false;  // as tables for docs/
 };
 int print_keys(const KeysWords& words);  // throws InputError when there is no such table

@@ -1,4 +1,4 @@
-// `drape triangulate`: a sewing pattern to a mesh, with a report.
+// `drape triangulate`: makes a mesh from a sewing pattern, and reports on it.
 #pragma once
 
 #include <string>
@@ -6,10 +6,11 @@
 namespace drape {
 
 struct TriangulateWords {
-  std::string pattern, out, edge, min_angle, tolerance;  // as the command line gives them; empty: not given
+  std::string pattern, out, edge, min_angle, tolerance;  // as on the command line; empty when not given
   bool quiet = false;
 };
 
+// Returns the exit code; throws InputError.
 int triangulate_file(const TriangulateWords& words);
 
 }  // namespace drape

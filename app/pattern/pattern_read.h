@@ -1,4 +1,4 @@
-// Sewing patterns from files: SVG drawings and TOML. What may stand in them: docs/patterns.md.
+// Reads sewing patterns from files: SVG drawings and TOML. docs/patterns.md says what may stand in them.
 #pragma once
 
 #include <filesystem>
@@ -11,19 +11,20 @@
 
 namespace drape {
 
-// By what is in the file, not by its name: a text that begins with '<' is a drawing. `notes`: what was passed
-// over. Throws InputError.
+// A file is read as a drawing when its text begins with '<' or its name ends in ".svg", else as TOML. `notes`
+// receives what was ignored. Throws InputError.
 Pattern read_pattern(const std::filesystem::path& path, Names& notes);
 
 Pattern parse_svg_pattern(std::string_view text, const std::string& name, Names& notes);
-// key_notes: where to note what is said of the keys.
+// key_notes: receives what is said of the keys; may be null.
 Pattern parse_toml_pattern(std::string_view text, const std::string& name, KeyNotes* key_notes = nullptr);
 
 // A seam as "front.left=back.right", or "front.left:back.right" for curves that run the same way.
 Seam parse_seam(std::string_view text, const std::string& where);
 
-// Joins the ends of a loop that are closer than rounding, closes it with a straight line if asked, and gives
-// its segments the names; `given` may be empty.
+// finish_loop joins the two ends of a loop when they differ by rounding only; if they do not meet and
+// `close` is set, it adds a straight line. name_segments gives the segments their names; `given` may be
+// empty. Throws InputError.
 void finish_loop(Chain& chain, bool close);
 void name_segments(Chain& chain, const Names& given, bool loop);
 

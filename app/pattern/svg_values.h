@@ -1,4 +1,5 @@
-// The small languages inside an SVG drawing: path data, transforms, numbers. The only door to svgpp.
+// The small languages inside an SVG drawing: path data and transforms. The only file that includes
+// svgpp is svg_values.cpp.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,13 +10,13 @@
 
 namespace drape {
 
-// One subpath of a 'd' attribute, in its own coordinates. A segment of no length is left out.
+// One subpath of a 'd' attribute, in its own coordinates. Segments without a length are left out.
 struct SvgPath {
   std::vector<Segment> segments;
-  bool closed = false;  // by 'z'
+  bool closed = false;  // true when 'z' closes it
 };
 
-// Throws InputError, without the place.
+// Both throw InputError; its message does not name the place.
 std::vector<SvgPath> parse_svg_path(const std::string& d);
 Eigen::Matrix<double, 2, 3> parse_svg_transform(const std::string& text);
 

@@ -1,6 +1,6 @@
-// Named fabrics: data/fabrics/NAME.toml, each with its source and with what was assumed.
-// The data folder is $DRAPE_DATA, or else one that was set, or ../share/drape beside the program, or the one
-// it was built with.
+// Named fabrics: data/fabrics/NAME.toml. Each file names its source and says which values were assumed.
+// The data folder is the first of these: $DRAPE_DATA, the folder given to set_data_folder(), ../share/drape
+// beside the program if it has fabrics, the data folder of the source tree that the program was built from.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace drape {
 struct NamedFabric {
   std::string name;
   std::string description, source;
-  Names assumed;  // keys that nobody measured
+  Names assumed;  // keys with values that nobody measured
   Fabric fabric;
 };
 
@@ -22,7 +22,7 @@ void set_data_folder(const std::filesystem::path& folder);
 Names fabric_names();                                                         // sorted
 NamedFabric load_fabric(const std::string& name, KeyNotes* notes = nullptr);  // throws InputError
 
-// Reads the fabric keys that the table has over `fabric`.
+// Reads those fabric keys that the table has into `fabric`; the other values stay.
 void read_fabric(Table& table, Fabric& fabric);
 
 }  // namespace drape

@@ -1,4 +1,4 @@
-// The key `motion` of an obstacle or a pin; docs/scene.md lists its keys.
+// Reads the key `motion` of an obstacle or a pin; docs/scene.md lists the keys within it.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,11 @@
 
 namespace drape {
 
-// Nothing when the table has no such key. `default_centre` [m]: what it turns about where no other is given.
-// `source` becomes how it was given.
+// Empty when the table has no such key. default_centre [m] is the centre of rotation when the motion gives
+// none. `source` receives how the motion was given.
 std::optional<Motion> read_motion(Table& table, const std::filesystem::path& folder,
                                   const Vec3& default_centre, MotionSource& source);
 
-Vec3 read_spin(Table& table);  // `spin = { axis, rate }` [rad/s], zero when absent
+Vec3 read_spin(Table& table);  // the key `spin = { axis, rate }` as a vector, rad/s; zero when absent
 
 }  // namespace drape

@@ -1,7 +1,7 @@
-// The poses of a body as a CSV file: a header line, then a line for every time.
+// Reads the poses of a body from a CSV file: a header line, then a line for each time.
 //   time, x, y, z       [s], [m]; a name may be followed by its unit: "time [ms]", "x [mm]", "rx [deg]"
-//   qw, qx, qy, qz      optional: the rotation as a unit quaternion, from one line to the next the short way
-//   rx, ry, rz          or as a rotation vector, axis times angle [rad], which counts whole turns
+//   qw, qx, qy, qz      optional: the rotation as a unit quaternion; between two lines it turns the short way
+//   rx, ry, rz          or as a rotation vector, axis times angle [rad], which keeps count of whole turns
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace drape {
 
-// Throws InputError "poses.csv:12: ...".
+// Both throw InputError "poses.csv:12: ...".
 std::vector<Keyframe> read_poses(const std::filesystem::path& path);
 std::vector<Keyframe> poses_of(const std::vector<CsvRow>& rows, const std::string& name);
 

@@ -1,4 +1,4 @@
-// The keys of an obstacle that moves by what acts on it: mass, inertia, velocity, spin.
+// Reads the keys of an obstacle that moves under the forces on it: mass, inertia, velocity, spin.
 #pragma once
 
 #include "app/base/table.h"
@@ -6,8 +6,8 @@
 
 namespace drape {
 
-// Reads them into entry.rigid; the shape and the placement of the entry are read
-// already. middle: of the shape.
+// Sets entry.rigid when the table has a mass. The shape and the placement of the entry must have been read
+// already. `middle` is the middle of the shape [m].
 void read_rigid(Table& table, ObstacleEntry& entry, const Vec3& middle);
 
 }  // namespace drape

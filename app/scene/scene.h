@@ -1,5 +1,5 @@
-// A scene as it was asked for: what to drape, over what, for how long. Plain data in SI units; docs/scene.md
-// lists the keys. Nothing is loaded yet: app/simulation/simulation.h makes it run.
+// A scene as it was asked for: what is draped, over what, for how long. It is plain data in SI units;
+// docs/scene.md lists the keys. No mesh is loaded yet: app/simulation/simulation.h does that.
 #pragma once
 
 #include <filesystem>
@@ -18,90 +18,96 @@
 
 namespace drape {
 
-// x -> rotation (scale x) + translate
+// x -> rotation (scale x) + translate.
 struct Placement {
   double scale = 1;
   Mat3 rotation = Mat3::Identity();
   Vec3 translate = Vec3::Zero();  // m
 };
 
-// How a motion was given, for what is said of it.
+// How a motion was given, for messages about it.
 struct MotionSource {
-  std::string kind;             // "keyframes", "poses", "velocity and spin"; empty: there is none
-  double start = 0;             // s
-  std::filesystem::path poses;  // the CSV file that it was read from, if it was
+  std::string kind;             // "keyframes", "poses", "velocity and spin"; empty when there is no motion
+  double start = 0;             // s, when the motion begins
+  std::filesystem::path poses;  // the CSV file of the poses; else empty
 };
 
 struct PinEntry {
   PinRule rule;
   std::string where;             // "scene.toml:21"
-  std::string follow;            // the obstacle that it is fastened to; empty: none
-  std::optional<Motion> motion;  // or a path of its own
+  std::string follow;            // name of the obstacle that the pin is fastened to; empty when there is none
+  std::optional<Motion> motion;  // the pin's own motion, if it has one
   MotionSource source;
 };
 
-// Where a panel of a pattern starts: the middle of its box is brought to the origin, what lies flat in the
-// plane z = 0 is wrapped round the y axis, and it is placed.
+// Where a panel of a pattern starts. The middle of its box is moved to the origin; the panel, flat in the
+// plane z = 0, is wrapped round the y axis if asked; then it is placed.
 struct PanelEntry {
-  std::string group;           // of the OBJ file
-  std::optional<double> wrap;  // m, the radius of the cylinder
-  Placement placement;         // without a scale
+  std::string group;           // name of the panel's group in the OBJ file
+  std::optional<double> wrap;  // m, radius of the cylinder; none: flat
+  Placement placement;         // its scale is 1
   std::string where;
 };
 
-// Two curves that are sewn together: pulled from where they are to each other, vertex by vertex.
+// Two curves that are sewn together: the vertices of each pair are pulled to each other
+// from where they start.
 struct SeamEntry {
-  Names curves;                     // two lines of the OBJ file; none: every seam that the file declares
-  bool same_direction = false;      // the first vertices of both belong together; else the first and the last
-  double close = 1;                 // s
-  std::optional<double> stiffness;  // N/m, of a stitch; none: chosen
-  bool merge = true;                // once closed the particles of a pair become one
+  Names curves;  // two lines of the OBJ file; empty: every seam that the file declares
+  // True when the first vertices of both curves belong together; else the first of one and
+  // the last of the other.
+  bool same_direction = false;
+  double close = 1;                 // s, how long closing takes
+  std::optional<double> stiffness;  // N/m, of each stitch; none: the k_s of the cloth
+  bool merge = true;  // whether the particles of a pair become one particle once they have closed
   std::string where;
 };
 
 struct ClothEntry {
-  std::string name;            // of the output files
-  std::filesystem::path mesh;  // OBJ, or a pattern (SVG, TOML)
-  TriangulateOptions pattern;  // how a pattern is made a mesh
-  Placement placement;         // of the rest shape and of the start
-  bool rest_is_flat = false;   // the texture coordinates are the rest shape
-  double uv_scale = 1;         // m
+  std::string name;            // of the cloth and of its output files
+  std::filesystem::path mesh;  // OBJ file, or a pattern (SVG, TOML)
+  TriangulateOptions pattern;  // how a pattern is triangulated
+  Placement placement;         // applied to the rest shape and to the start
+  bool rest_is_flat = false;   // whether the texture coordinates are the rest shape
+  double uv_scale = 1;         // m, length of one unit of the texture coordinates
   std::vector<PanelEntry> panels;
   std::vector<SeamEntry> seams;
   std::string model = "noh-jung";
-  std::string fabric_name;  // empty: none was named
+  std::string fabric_name;  // empty when the scene names none
   Fabric fabric;
   std::vector<PinEntry> pins;
   std::string where;
 };
 
-// A lattice of particles and springs: a box of them, or the inside of a mesh.
+// A soft body: a lattice of particles and springs that is a box or fills a mesh.
 struct SoftEntry {
-  std::string name;                          // of the output files
-  std::filesystem::path mesh;                // OBJ, closed; empty: a box
-  std::array<int, 3> particles = {0, 0, 0};  // of a box, along x, y and z
-  Vec3 spacing = Vec3::Zero();               // m; of a mesh the same along all
-  Placement placement;                       // of mesh and lattice together
+  std::string name;                          // of the body and of its output files
+  std::filesystem::path mesh;                // closed OBJ file; empty for a box
+  std::array<int, 3> particles = {0, 0, 0};  // number along x, y and z, of a box
+  Vec3 spacing = Vec3::Zero();               // m; equal along x, y and z where a mesh is filled
+  Placement placement;                       // of the mesh and the lattice together
   SoftMaterial material;
   std::vector<PinEntry> pins;
   std::string where;
 };
 
-// A body that moves by what acts on it.
+// A rigid body that moves under the forces on it.
 struct RigidBodyEntry {
-  double mass = 0;               // kg
-  std::optional<Vec3> inertia;   // kg m^2, about the axes through its centre of mass; a mesh's: by the mesh
-  Vec3 centre = Vec3::Zero();    // m, of mass, at first; a mesh's: by the mesh
-  Mat3 axes = Mat3::Identity();  // as it stands at first: a box's edges, a capsule's a b and two across
-  Vec3 velocity = Vec3::Zero();  // m/s, of the centre of mass, at first
-  Vec3 spin = Vec3::Zero();      // rad/s
+  double mass = 0;  // kg
+  // kg m^2, about the axes through the centre of mass. None: those of the mesh's solid.
+  std::optional<Vec3> inertia;
+  Vec3 centre = Vec3::Zero();  // m, centre of mass at the start; a mesh's comes from its solid
+  // Axes of the inertia at the start, as columns: a box's edges; for a capsule, the
+  // direction a b and two across.
+  Mat3 axes = Mat3::Identity();
+  Vec3 velocity = Vec3::Zero();  // m/s, of the centre of mass at the start
+  Vec3 spin = Vec3::Zero();      // rad/s, at the start
 };
 
-// Where a deforming body is in time: app/scene/body_frames.h reads it.
+// The frames of an animated body; app/scene/body_frames.h reads them.
 struct FramesEntry {
-  // OBJ files in order, one PC2 file, or one pattern; none: it stands.
+  // OBJ files in order, one PC2 file, or one pattern; empty when the body does not deform.
   std::vector<std::filesystem::path> files;
-  bool pattern = false;  // "walk/body_%04d.obj"
+  bool pattern = false;  // true when `files` is a pattern such as "walk/body_%04d.obj"
   double rate = 25;      // 1/s
   double start = 0;      // s, time of the first frame
   std::string where;
@@ -109,12 +115,12 @@ struct FramesEntry {
 
 struct ObstacleEntry {
   std::string name;
-  Obstacle obstacle;           // a mesh's shape is null until it is loaded
-  std::filesystem::path mesh;  // OBJ, of the shapes "mesh" and "level-set"; of the latter also .vdb
+  Obstacle obstacle;           // the shape of a mesh is null until it is loaded
+  std::filesystem::path mesh;  // OBJ file, for the shapes "mesh" and "level-set"; for a level set also .vdb
   Placement placement;         // of the mesh and its frames
-  FramesEntry frames;          // of a mesh
-  double voxel = 0;            // m, of the level set; 0: chosen
-  MotionSource source;         // of its motion
+  FramesEntry frames;          // of an animated mesh
+  double voxel = 0;            // m, of a level set; 0: chosen automatically
+  MotionSource source;         // where its motion comes from
   std::optional<RigidBodyEntry> rigid;
   std::string where;
 };
@@ -122,37 +128,37 @@ struct ObstacleEntry {
 struct SimulationOptions {
   double duration = 2;           // s
   double time_step = 0.01;       // s
-  double frame_rate = 25;        // 1/s; 0: only the last
+  double frame_rate = 25;        // 1/s; 0: only the last state is written
   Vec3 gravity = {0, -9.81, 0};  // m/s^2
   std::string integrator = "implicit-euler";
-  std::string linear_solver = "mpcg+block-ic0";  // README.md says why
+  std::string linear_solver = "mpcg+block-ic0";  // docs/solvers.md compares the solvers
   StepOptions step;
   ContactOptions contact;
-  int threads = 0;                 // 0: as many as there are processors
-  bool stop_when_settled = false;  // end as soon as nothing has moved for settle_time
-  double settle_speed = 1e-3;      // m/s, below which a cloth counts as settled
+  int threads = 0;                 // 0: the number of processors
+  bool stop_when_settled = false;  // ends the run as soon as nothing has moved for settle_time
+  double settle_speed = 1e-3;      // m/s; a cloth that is slower counts as settled
 };
 
 inline constexpr double settle_time = 0.2;  // s
 
 struct Scene {
-  std::string label;  // the scene's file as it was given, or the command line of a drop
+  std::string label;  // the scene's file as it was given, or the command line of `drape drop`
   SimulationOptions simulation;
   std::vector<ClothEntry> cloths;
   std::vector<SoftEntry> softs;
   std::vector<ObstacleEntry> obstacles;
 
-  // Of a cloth, or after them of a soft body.
+  // The pins of cloth k; numbers after the last cloth are soft bodies.
   const std::vector<PinEntry>& pins_of(std::size_t k) const {
     return k < cloths.size() ? cloths[k].pins : softs[k - cloths.size()].pins;
   }
 };
 
-// Reads and checks the whole scene, with the settings applied first. Throws InputError "scene.toml:12: ...".
+// Reads and checks the whole scene after applying the settings. Throws InputError "scene.toml:12: ...".
 Scene read_scene(const std::filesystem::path& path, const std::vector<Setting>& settings);
 
-// The same from data; paths in it are relative to `folder`.
-// notes: where to note what is said of the keys.
+// The same, with the scene as data. Paths in it are relative to `folder`. notes: receives what is said of
+// the keys; may be null.
 Scene read_scene(Node root, const std::vector<Setting>& settings, const std::filesystem::path& folder,
                  std::string label, KeyNotes* notes = nullptr);
 

@@ -1,4 +1,4 @@
-// The parts of a [[cloth]] table that make a garment of a flat pattern: panels and seams.
+// Reads the parts of a [[cloth]] table that make a garment of a flat pattern: panels and seams.
 #pragma once
 
 #include "app/base/table.h"

@@ -1,4 +1,4 @@
-// The [[soft]] tables of a scene file; docs/scene.md lists the keys.
+// Reads the [[soft]] tables of a scene file; docs/scene.md lists their keys.
 #pragma once
 
 #include "app/base/table.h"
@@ -6,7 +6,7 @@
 
 namespace drape {
 
-// All but its name and its pins, which are as a cloth's.
+// Reads all keys but the name and the pins, which are read as a cloth's.
 SoftEntry read_soft(Table& table, const std::filesystem::path& folder);
 
 }  // namespace drape
