@@ -1,8 +1,9 @@
-// What the vertices of a cloth carry besides their places, frame by frame, as arrays of NumPy:
+// What the vertices of a cloth have besides their positions, frame by frame, as arrays of NumPy:
 //   fields/NAME.velocity.npy   float32 (frames, n, 3)   m/s
 //   fields/NAME.strain.npy     float32 (frames, n)      l / L - 1 of the most stretched edge at the vertex
 //   fields/NAME.contact.npy    uint8   (frames, n)      0 free, 1 slides, 2 sticks
-// A vertex between several particles has the strain and the contact of the one that carries most of it.
+// A vertex that lies between several particles has the strain and the contact of the particle
+// with the largest weight.
 #pragma once
 
 #include "app/base/npy.h"

@@ -1,5 +1,5 @@
-// The output folder of a run. Every file is written beside its name;
-// finish() renames them all once all are complete.
+// Writes the output folder of a run. Every file is written under another name; finish() gives all of them
+// their names once all are complete. Only frames as OBJ files appear one by one.
 #pragma once
 
 #include <filesystem>
@@ -15,21 +15,22 @@
 
 namespace drape {
 
-// Throws InputError when the folder cannot be made or written, or one of these files of it: now,
-// and not when all is computed.
+// Makes the folder and tries to write into it. Throws InputError when that fails, or when one of `files`
+// could not be written there: at once, not when everything has been computed.
 void make_output_folder(const std::filesystem::path& folder, const std::vector<std::string>& files = {});
 
 class Output {
  public:
-  // Makes the folder and tries it. Throws InputError when it cannot be written, or the scene is made from
-  // a file of it.
+  // Makes the folder and tries it. Throws InputError when it cannot be written, or when the run would
+  // overwrite a file that the scene is made from.
   Output(std::filesystem::path folder, const Scene& scene, const Simulation& simulation, Frames frames);
 
-  void frame(const State& state);  // pc2: a sample; obj: a file, from number 1; and its fields
+  // Adds a frame with its fields: a sample of the PC2 files, or OBJ files numbered from 1.
+  void frame(const State& state);
   void step(const StepRow& row) { steps_->add(row); }
-  void finish(const State& state, RunRecord& record);  // adds to it what was written
+  void finish(const State& state, RunRecord& record);  // adds to the record what was written
 
-  // What finish() left, and how much of it: "25 frames", or nothing.
+  // A file or folder that finish() left, and how much there is in it: "25 frames", or empty.
   struct Written {
     std::filesystem::path path;
     std::string amount;

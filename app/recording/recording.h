@@ -1,7 +1,8 @@
-// The output folder of a run, read back: what was draped, over what, frame by frame. Viewer, pictures and
-// exports all start here.
-//   A run without frames has one, its last state. Frames count from 0, vertices are the file's.
-//   What is missing or damaged is told as data (missing()); what is left is there to be looked at.
+// Reads the output folder of a run: what was draped, over what, frame by frame. The viewer, the pictures and
+// the exports all start here.
+//   A run without frames has a single one, its last state. Frames count from 0; vertices have the order of
+//   the input file.
+//   What is missing or damaged is reported as data (missing()), and the rest can still be shown.
 #pragma once
 
 #include <filesystem>
@@ -19,18 +20,18 @@ namespace drape {
 
 struct RecordedShape {
   std::string name;    // of its files, NAME.obj
-  bool body = false;   // what is draped over; else a cloth or a soft body
-  bool moves = false;  // else it stands at mesh.positions in every frame
-  TriangleMesh mesh;   // faces, uv, groups as in the input; positions at the end of the run [m]
+  bool body = false;   // true for a body that is draped over, false for a cloth or a soft body
+  bool moves = false;  // false when it stays at mesh.positions in every frame
+  TriangleMesh mesh;   // faces, uv, groups as in the input; positions [m] at the end of the run
 };
 
-// A body without end; it may move.
+// A plane, which has no end; it may move.
 struct RecordedPlane {
   std::string name;
-  Vec3 point, normal;  // m, unit
+  Vec3 point, normal;  // m; unit vector
 };
 
-// steps.csv: rows[step][column]; what is not a number there is nan.
+// steps.csv as rows[step][column]; an entry that is not a number is NaN.
 struct RecordedSteps {
   Names columns;
   std::vector<std::vector<double>> rows;
@@ -38,13 +39,13 @@ struct RecordedSteps {
 
 class Recording {
  public:
-  // Reads run.json, steps.csv and the shapes; frames are read from their files when they are asked for.
+  // Reads run.json, steps.csv and the shapes. The frames are read from their files when they are asked for.
   // Throws InputError when there is no such folder, or nothing in it that can be shown.
   explicit Recording(std::filesystem::path folder);
 
-  // Throws InputError with the first of missing(): for what must not go on with half a result.
+  // Throws InputError with the first line of missing(), for work that must not go on with half a result.
   void require_whole() const;
-  const Names& missing() const { return missing_; }  // a line each, with the file; empty: all is there
+  const Names& missing() const { return missing_; }  // a line for each file; empty: all is there
 
   const std::filesystem::path& folder() const { return folder_; }
   const Json& run() const { return run_; }  // run.json; null when it is missing
@@ -52,25 +53,26 @@ class Recording {
 
   int frames() const { return static_cast<int>(times_.size()); }
   double time(int frame) const { return times_[static_cast<std::size_t>(frame)]; }  // s
-  double frame_rate() const;  // 1/s, the mean; 0 of a single frame
+  double frame_rate() const;  // 1/s, mean over the run; 0 when there is a single frame
 
   const std::vector<RecordedShape>& shapes() const { return shapes_; }  // cloths, soft bodies, then bodies
   std::vector<RecordedPlane> planes(int frame) const;
 
   std::vector<Vec3> positions(std::size_t shape, int frame) const;  // m
-  // Of each vertex of a cloth or soft body; empty where the run did not record it, and of bodies.
+  // For each vertex of a cloth or soft body; empty when the run did not record it, and for bodies.
   std::vector<Vec3> velocities(std::size_t shape, int frame) const;  // m/s
-  std::vector<double> strains(std::size_t shape, int frame) const;   // l / L - 1 of its most stretched edge
+  // l / L - 1 of the most stretched edge at each vertex.
+  std::vector<double> strains(std::size_t shape, int frame) const;
   std::vector<Touch> touches(std::size_t shape, int frame) const;
 
  private:
-  // Where the places of a shape or a plane are.
+  // Where the positions of a shape come from.
   struct Source {
-    std::filesystem::path cache;  // a PC2 file; or empty
-    bool files = false;           // frames/NAME_0001.obj
-    std::vector<Pose> poses;      // of each frame; empty: it is not moved as a whole
-    Pose last;                    // where it is drawn
-    Names fields;                 // that are there and whole
+    std::filesystem::path cache;  // a PC2 file; else empty
+    bool files = false;           // true when they are frames/NAME_0001.obj
+    std::vector<Pose> poses;      // of each frame; empty when it is not moved as a whole
+    Pose last;                    // the pose that the mesh is in
+    Names fields;                 // names of the fields that are there and complete
   };
 
   void read_run();
@@ -82,7 +84,8 @@ class Recording {
   void find_shapes();
   void find_frames(std::size_t shape);
   void use_cache(std::size_t shape, const std::filesystem::path& cache);
-  bool wrote(std::string_view frames) const;  // this kind, as far as run.json tells
+  // Whether the run wrote frames of this kind, as far as run.json tells.
+  bool wrote(std::string_view frames) const;
   void find_field(std::size_t shape, const char* name);
   void settle_frames();
   std::map<std::string, std::vector<Pose>> read_poses();
@@ -93,14 +96,14 @@ class Recording {
   std::filesystem::path folder_;
   Names missing_;
   Json run_;
-  bool times_told_ = false;  // by run.json
+  bool times_told_ = false;  // whether run.json has the times
   RecordedSteps steps_;
   std::vector<double> times_;
   std::vector<RecordedShape> shapes_;
-  std::vector<Source> sources_;        // of shapes_
-  std::vector<RecordedPlane> planes_;  // as they were drawn
+  std::vector<Source> sources_;        // one for each of shapes_
+  std::vector<RecordedPlane> planes_;  // as they are drawn in the scene
   std::vector<std::vector<Pose>> plane_poses_;
-  std::vector<int> frame_counts_;  // of shapes_; 0: it stands
+  std::vector<int> frame_counts_;  // one for each of shapes_; 0: it does not move
 };
 
 }  // namespace drape

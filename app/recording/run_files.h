@@ -1,6 +1,6 @@
-// Which files of an output folder are the run's own, and how those of a sequence are named.
-//   run.json, steps.csv, bodies.csv, NAME.obj, NAME.pc2, and all in bodies/, fields/ and frames/: nothing
-//   that is made of a run may take their places, or stand where a reader of the run would take it for one of
+// The names of the files that belong to the run itself, and the names of the files of a sequence.
+//   run.json, steps.csv, bodies.csv, NAME.obj, NAME.pc2, and all in bodies/, fields/ and frames/ belong to
+//   the run. Nothing that is made from a run may replace them, or have a name that a reader takes for one of
 //   them.
 #pragma once
 
@@ -10,13 +10,14 @@
 
 namespace drape {
 
+// True when the file would have such a name in the output folder `run`.
 bool is_of_run(const std::filesystem::path& file, const std::filesystem::path& run);
 
-// Throws InputError "out/run.json: is a name of the run's own files; ...".
-// For whatever is written beside them.
+// Throws InputError "out/run.json: is a name of the run's own files; ..." in that case. Whatever writes files
+// made from a run calls it.
 void spare_run(const std::filesystem::path& file, const std::filesystem::path& run);
 
-// "sheet_0007.ply": the seventh of a sequence; they count from 1.
+// The file name "sheet_0007.ply" of the seventh in a sequence; numbers count from 1.
 std::string numbered(std::string_view name, std::size_t number, std::string_view ending);
 
 }  // namespace drape

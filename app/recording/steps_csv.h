@@ -1,4 +1,5 @@
-// One row a step, the columns of interface.md and then some. Numbers in SI units, times of the clock in ms.
+// Writes steps.csv, one row for each step. docs/output.md explains the columns. SI units;
+// measured durations in ms.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +11,8 @@
 namespace drape {
 
 struct StepRow {
-  long step = 0;    // from 1
-  double time = 0;  // s, at its end
+  long step = 0;    // counts from 1
+  double time = 0;  // s, at the end of the step
   StepReport report;
   double kinetic_energy = 0, elastic_energy = 0, gravity_energy = 0;  // J
   double max_speed = 0;                                               // m/s

@@ -1,4 +1,4 @@
-// Whether a vertex touches a body at the end of a step, as recordings have it.
+// Whether a vertex touches a body at the end of a step, as it is recorded.
 #pragma once
 
 #include <cstdint>

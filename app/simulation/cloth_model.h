@@ -1,4 +1,4 @@
-// What a cloth of a scene is made of: masses and connections, by its model, fabric and rest shape.
+// The masses and connections of a cloth in a scene, from its model, its fabric and its rest shape.
 #pragma once
 
 #include "app/scene/scene.h"
@@ -6,11 +6,12 @@
 
 namespace drape {
 
-// kg, of the mesh's vertices. `rest` as in solver/forces/noh_jung.h. Throws InputError when the mesh
-// is not one for the model.
+// Masses of the mesh's vertices, kg. `rest` is the rest shape as in solver/forces/noh_jung.h. Throws
+// InputError when the model cannot be used on this mesh.
 std::vector<double> cloth_masses(const ClothEntry& entry, const TriangleMesh& mesh, const TriangleMesh& rest);
 
-// Adds to the messages what the user should know. Throws InputError as above.
+// The connections of the cloth. Adds to `messages` what the user should know. Throws
+// InputError in the same case.
 Connections cloth_connections(const ClothEntry& entry, const TriangleMesh& mesh, const TriangleMesh& rest,
                               Names& messages);
 

@@ -1,4 +1,4 @@
-// What a run reports of a state, beside what the step itself says.
+// Quantities of a state that a run reports beside the report of the step.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,18 @@
 
 namespace drape {
 
-// Largest relative stretch of an edge: max (l - L) / L; 0 when none is stretched.
+// The largest relative stretch of an edge, max (l - L) / L; 0 when no edge is stretched.
 double largest_strain(const std::vector<Cloth>& cloths, const VecX& x);
 
-double max_speed(const VecX& v);  // m/s, of a particle
+double max_speed(const VecX& v);  // m/s, of the fastest particle
 
-// FNV-1a, 64 bits, over the bytes of x and then v, as 16 hexadecimal digits:
-// the same when every bit is the same.
+// FNV-1a hash (64 bits) of the bytes of x and then v, as 16 hexadecimal digits. Equal bits give equal hashes.
 std::string state_hash(const State& state);
 
+// p95 is the 95th percentile. Percentiles are values that occur (nearest rank).
 struct Distribution {
   double median = 0, p95 = 0, max = 0, mean = 0;
 };
-Distribution distribution(std::vector<double> values);  // zeros when there are none
+Distribution distribution(std::vector<double> values);  // all zero when there are no values
 
 }  // namespace drape

@@ -1,6 +1,6 @@
-// How far a motion goes, for `drape check`: sampled, from where it stands at the start.
-//   way   max |x(t) - x(start)| of one point that is carried [m]
-//   turn  max angle of R(t) R(start)^T, whole turns counted as a body makes them [rad]
+// How far a motion goes from where it begins, for `drape check`. The motion is sampled.
+//   way   max |x(t) - x(start)| of one point that is carried along [m]
+//   turn  max angle of R(t) R(start)^T; whole turns add up [rad]
 #pragma once
 
 #include <string>
@@ -13,11 +13,11 @@ struct MotionExtent {
   double way = 0, turn = 0;
 };
 
-// X: the point, where it was drawn [m]. From start to end, which are finite [s].
+// X is the point as it is drawn in the scene [m]. start and end are finite [s].
 MotionExtent motion_extent(const Motion& motion, const Vec3& X, double start, double end);
 
-// "moved by keyframes, 0.4 to 1.56 s: by up to 0.3 m, turned by up to 90 deg". A motion without an end is
-// followed to the end of the run [s].
+// "moved by keyframes, 0.4 to 1.56 s: by up to 0.3 m, turned by up to 90 deg". A motion that never ends is
+// followed for `duration` [s], to the end of the run.
 std::string described(const Motion& motion, const MotionSource& source, const Vec3& X, double duration);
 
 }  // namespace drape

@@ -1,4 +1,4 @@
-// What looks like a mistake in a scene that can be run all the same.
+// Warnings about what looks like a mistake in a scene that can be run all the same.
 #pragma once
 
 #include "app/simulation/simulation.h"

@@ -1,4 +1,4 @@
-// `drape stability`: the largest stable step of each integrator in a scene, beside what theory says of it.
+// `drape stability`: the largest stable step of each integrator in a scene, beside the limit in theory.
 #pragma once
 
 #include "app/run/common_options.h"
@@ -6,12 +6,12 @@
 
 namespace drape {
 
-// As the command line gives them; empty: not given.
+// As on the command line; empty when not given.
 struct StabilityWords {
   std::string time, integrators, shake, growth, precision, longest, shortest;
 };
 
-// Exit code: 0 done; 130 interrupted, and nothing is written. Throws InputError.
+// Returns the exit code: 0 done; 130 interrupted, with nothing written. Throws InputError.
 int stability(const std::filesystem::path& scene, const StabilityWords& words, const CommonOptions& common);
 
 struct StabilityTable {
@@ -21,7 +21,7 @@ struct StabilityTable {
   std::vector<StabilityRow> rows;
 };
 
-std::string stability_text(const StabilityTable& table);  // for people
+std::string stability_text(const StabilityTable& table);  // for people to read
 std::string stability_json(const StabilityTable& table);
 std::string stability_csv(const StabilityTable& table);
 
