@@ -1,4 +1,5 @@
-// Numbers as the bytes of a file, in its byte order, whatever the machine's.
+// Appends numbers to the bytes of a file, in the byte order of the file, whatever the byte
+// order of the machine.
 #pragma once
 
 #include <bit>

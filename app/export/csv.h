@@ -1,6 +1,6 @@
-// A table a cloth, a row for each vertex of each frame: frame (from 1, of the run), time [s], vertex (from
-// 0), x y z [m], vx vy vz [m/s], strain (0.01 = 1 %), contact (0 free, 1 slides, 2 sticks). What the run did
-// not record is empty.
+// Exports each cloth and soft body as a table, with a row for each vertex of each frame: frame (of the run,
+// from 1), time [s], vertex (from 0), x y z [m], vx vy vz [m/s], strain (0.01 = 1 %), contact (0 free, 1
+// slides, 2 sticks). Cells are empty where the run recorded nothing.
 #pragma once
 
 #include "app/export/files.h"

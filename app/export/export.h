@@ -1,4 +1,4 @@
-// `drape export`: an output folder in the formats of other programs.
+// `drape export`: writes an output folder in the formats of other programs.
 #pragma once
 
 #include <string>
@@ -8,11 +8,12 @@
 namespace drape {
 
 struct ExportWords {
-  std::string folder, to, out;  // a format of export_formats(); out empty: FOLDER/export
-  int every = 1;                // every so many frames
-  bool force = false;           // replace files that are there
+  // to: one of export_formats(). out: empty stands for FOLDER/export.
+  std::string folder, to, out;
+  int every = 1;       // only every so many frames
+  bool force = false;  // whether files that are there already are replaced
 };
-int export_folder(const ExportWords& words);  // exit code
+int export_folder(const ExportWords& words);  // returns the exit code
 
 Names export_formats();
 

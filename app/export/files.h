@@ -1,5 +1,5 @@
-// The files of one export: all of them appear, or none.
-//   Written beside their names as they are made, renamed when the last one is complete.
+// The files of one export: either all of them appear, or none.
+//   Each file is written under another name; all are renamed when the last one is complete.
 #pragma once
 
 #include <filesystem>
@@ -16,22 +16,23 @@ namespace drape {
 
 class ExportFiles {
  public:
-  // The names of all files that will be written into the folder, which is made when it is not there. Throws
-  // InputError "out/sheet.mdd: is there already; --force replaces it", or where two of them are the same.
+  // `names` are all the files that will be written into the folder. The folder is made when it is not there.
+  // Throws InputError "out/sheet.mdd: is there already; --force replaces it", or when two names are equal.
   // `run` is the folder that is read: what the run itself wrote there is never replaced.
   ExportFiles(std::filesystem::path folder, const Names& names, bool force, const std::filesystem::path& run);
-  ~ExportFiles();  // without keep(): the folder is as it was
+  // Without keep() it leaves the folder as it was.
+  ~ExportFiles();
   ExportFiles(const ExportFiles&) = delete;
   ExportFiles& operator=(const ExportFiles&) = delete;
 
-  // To be filled before the next one is asked for, or the export kept.
+  // The file to write into. It must be filled before the next one is opened or keep() is called.
   AtomicFile& open(const std::string& name);
   void write(const std::string& name, std::string_view bytes) { open(name).write(bytes); }
 
-  // The sequence is complete with these many: further ones, of a longer sequence before, are to go.
+  // Says that the sequence has this many files. Further files, of a longer sequence before, will be removed.
   void end_sequence(const std::string& name, std::size_t count, const std::string& ending);
 
-  void keep();  // where it throws, the folder is as it was, too
+  void keep();  // gives all files their names; when it throws, the folder is as it was
 
  private:
   void make_folder();
@@ -41,7 +42,7 @@ class ExportFiles {
   std::filesystem::path folder_, run_;
   std::set<std::string> names_;
   bool force_;
-  std::vector<std::filesystem::path> made_;  // folders, the outermost first
+  std::vector<std::filesystem::path> made_;  // new folders, the outermost first
   std::vector<AtomicFile> files_;
   std::vector<std::filesystem::path> stale_;
   std::vector<std::pair<std::filesystem::path, std::filesystem::path>>

@@ -1,9 +1,10 @@
-// glTF 2.0 in one binary file: all cloths and bodies, y up, metres, seconds.          [Khronos, glTF 2.0]
-//   What deforms: the first frame, a morph target (shape key) for each frame after it, and an animation of
-//   their weights, linear: between two frames every vertex goes straight. A body that moves as a whole: its
-//   node is moved and turned. Triangles, normals, uv.
-//   Vertices are in the mesh's order. One whose faces have different uv, or of a body one at a hard edge, is
-//   doubled, after all the others.
+// Exports all cloths and bodies as glTF 2.0 in one binary file; y up, metres, seconds.
+//   [Khronos, glTF 2.0]
+//   A shape that deforms has the positions of the first frame, a morph target (shape key) for each further
+//   frame, and an animation of their weights. The animation is linear: between two frames every vertex goes
+//   straight. A body that moves as a whole has a node that moves and turns. There are triangles, normals, uv.
+//   Vertices have the order of the mesh. A vertex whose faces have different uv, or that lies on a hard edge
+//   of a body, is doubled; the copies come after all the others.
 #pragma once
 
 #include "app/export/files.h"

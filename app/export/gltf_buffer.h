@@ -1,5 +1,5 @@
-// The bytes of a glTF file by their plan: what lies where is known before any of it is made, so that nothing
-// but one frame is ever in memory.
+// Plans the binary part of a glTF file. The place of every block is known before any block is made, so only
+// one frame at a time is in memory.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,15 +12,15 @@
 
 namespace drape {
 
-// What the JSON says of a block of numbers.
+// What a block of numbers is used for, as the JSON says it.
 enum class GltfUse { indices, vertices, animation };
 
 class GltfBuffer {
  public:
   // Adds a block of `count` elements and returns the number of its accessor. `kind` is SCALAR, VEC2, VEC3 or
-  // VEC4; all components have four bytes, float32 or (indices) uint32.
+  // VEC4. Every component has four bytes: float32, or uint32 for indices.
   int add(GltfUse use, std::size_t count, const std::string& kind);
-  // The range that is asked for of positions and times.
+  // Sets the range of the numbers, which glTF demands for positions and times.
   void set_range(int accessor, const std::vector<double>& low, const std::vector<double>& high);
 
   std::uint64_t size() const { return size_; }  // bytes
@@ -35,8 +35,8 @@ class GltfBuffer {
 // The box of the numbers as they are written; from 0 to 0 when there are none.
 Eigen::AlignedBox3f float_range(const std::vector<Vec3>& vectors);
 
-// Header and JSON of a file whose binary part of `size` bytes follows. Throws InputError when it is more than
-// the 4 GiB that a file can tell.
+// The header and the JSON of a file whose binary part has `size` bytes. Throws InputError when the file would
+// be larger than 4 GiB, the most that the header can express.
 std::string glb_start(const std::string& json, std::uint64_t size, const std::string& file);
 
 }  // namespace drape

@@ -1,4 +1,4 @@
-// Numbers as text, with as few digits as give the same float32 again: what the recording holds.
+// Numbers as text, with the fewest digits that read back as the same float32; recordings hold float32.
 #pragma once
 
 #include <charconv>

@@ -1,7 +1,7 @@
-// Stanford PLY, binary little endian, a file a frame.                              [Turk 1994]
+// Exports Stanford PLY, binary little endian, one file for each frame.                      [Turk 1994]
 //   element vertex: float x y z [m], and float s t where every vertex has one uv
-//   element face: list uchar int vertex_indices, the polygons of the input (uint where one has more than 255
-//   corners)
+//   element face: list uchar int vertex_indices, the polygons of the input (uint in place of uchar where one
+//   has more than 255 corners)
 #pragma once
 
 #include "app/export/faces.h"
@@ -10,7 +10,7 @@
 
 namespace drape {
 
-// uv: of each vertex, or empty.
+// uv: one for each vertex, or empty. time in s.
 std::string ply_bytes(const std::vector<Vec3>& positions, const std::vector<Uv>& uv, const Faces& faces,
                       double time);
 

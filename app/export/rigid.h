@@ -1,4 +1,4 @@
-// Does a body move as a whole?
+// Finds out whether a body moves as a whole.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,9 +14,9 @@ struct RigidPlace {
   Eigen::Quaterniond turn;
 };
 
-// Where the shape is in each frame: x = turn (X - centre of the first frame) + centre, X in the first frame.
-// Empty when this does not give every vertex to a millionth of the shape's size, so when it deforms. A
-// quaternion lies on the side of the one before it.
+// The place of the shape in each frame: x = turn (X - centre of the first frame) + centre, with X the
+// position in the first frame. Empty when this misses a vertex by more than a millionth of the shape's size,
+// that is, when the shape deforms. The sign of each quaternion is chosen so that it is near the one before.
 std::optional<std::vector<RigidPlace>> rigid_places(const ExportSource& source, std::size_t s);
 
 }  // namespace drape

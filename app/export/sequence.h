@@ -1,4 +1,5 @@
-// A file a frame for each shape that moves, NAME_0001 and on, and one file NAME for each that stands.
+// Writes one file for each frame of a shape that moves, NAME_0001 and so on, and one file NAME for
+// a shape that does not.
 #pragma once
 
 #include "app/export/files.h"
@@ -9,7 +10,7 @@ namespace drape {
 
 Names sequence_files(const ExportSource& source, const std::string& ending);
 
-// make(shape, frame of the source): the bytes of a file.
+// make(shape, frame of the source) returns the bytes of a file.
 template <class Make>
 void write_sequence(const ExportSource& source, const std::string& ending, ExportFiles& files,
                     const Make& make) {

@@ -1,4 +1,4 @@
-// What is exported: a recording, and which of its frames.
+// What is exported: a recording, and some of its frames.
 #pragma once
 
 #include <string>
@@ -10,27 +10,30 @@ namespace drape {
 
 struct ExportSource {
   const Recording& recording;
-  std::vector<int> frames;  // of the recording, ascending; at least one
-  std::string name;         // of a file that holds the whole scene
-  int skipped = 0;          // frames whose time is that of the frame before
+  std::vector<int> frames;  // frame numbers in the recording, ascending; at least one
+  std::string name;         // for a file that holds the whole scene
+  int skipped = 0;          // number of frames left out because they have the time of the frame before
 
   std::size_t frame_count() const { return frames.size(); }
   std::size_t shape_count() const { return recording.shapes().size(); }
   const RecordedShape& shape(std::size_t s) const { return recording.shapes()[s]; }
   double time(std::size_t k) const { return recording.time(frames[k]); }  // s
-  // m. Throws Interrupted: every format asks for this, frame by frame.
+  // Positions of shape s in frame k of this list, m. Throws Interrupted: every format
+  // calls this for each frame.
   std::vector<Vec3> positions(std::size_t s, std::size_t k) const;
-  // Cloths and soft bodies always do: there is no use in a sequence for some and not for others.
+  // Cloths and soft bodies always count as moving, because a sequence for some of them
+  // only would be of no use.
   bool moves(std::size_t s) const { return !shape(s).body || shape(s).moves; }
 };
 
-// Every so many frames, beginning with the first. A run of more frames than steps has several of one time, as
-// they were at the end of one step: the first of them is taken, since times must rise in most formats; times
-// that are the same in float32 are, too. Throws InputError when there is no frame.
+// Takes every so many frames, beginning with the first. When a run has more frames than steps, several
+// frames show the end of one step and have the same time; only the first of them is taken, since most
+// formats demand times that rise. Times that are equal in float32 count as the same. Throws InputError
+// when there is no frame.
 ExportSource export_source(const Recording& recording, int every);
 
-// Frames a second: of the middle one of their spacings, since the last frame may come
-// early; 24 of a single frame.
+// Frames per second, from the median of the spacings, since the last frame may come early;
+// 24 for a single frame.
 double usual_frame_rate(const ExportSource& source);
 
 }  // namespace drape

@@ -1,7 +1,8 @@
-// Universal Scene Description as text: a Mesh for each shape with polygons, uv of the corners, and by time
-// points, extent, normals and velocities.
-//   Metres, y up; one time code is a frame of the usual spacing, time = code / timeCodesPerSecond.
-//   A prim's name is the shape's as far as it can be one (letters, digits, _); displayName is the shape's.
+// Exports Universal Scene Description as text: a Mesh for each shape, with polygons, uv of the corners, and
+// samples in time of points, extent, normals and velocities.
+//   Metres, y up. One time code is one frame of the usual spacing: time = code / timeCodesPerSecond.
+//   The name of a prim is the shape's as far as a prim can have it (letters, digits, _); displayName is the
+//   shape's own.
 #pragma once
 
 #include "app/export/files.h"
@@ -9,7 +10,7 @@
 
 namespace drape {
 
-// Different ones for different shapes.
+// Names of prims, different for different shapes.
 Names usd_names(const Names& shapes);
 std::string usd_string(std::string_view text);  // in quotes, escaped
 

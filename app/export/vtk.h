@@ -1,6 +1,7 @@
-// VTK's XML polygons for ParaView: a .vtp file a frame and a .pvd file that gives each its time.
-//   Numbers are float32 and int32, little endian, raw behind the XML ("appended"). That is not XML that a
-//   library of XML could write; names are escaped here.
+// Exports VTK's XML polygons for ParaView: a .vtp file for each frame, and a .pvd file
+// that gives each its time.
+//   Numbers are float32 and int32, little endian, raw after the XML ("appended"). No XML library can write
+//   that, since it is not XML; names are escaped here.
 //   Point data of cloths: velocity [m/s], strain (0.01 = 1 %), contact (0 free, 1 slides, 2 sticks).
 #pragma once
 
@@ -12,14 +13,14 @@ namespace drape {
 
 struct VtpData {
   std::vector<Vec3> positions;   // m
-  std::vector<Vec3> velocities;  // of each vertex or empty, as all that follow
+  std::vector<Vec3> velocities;  // for each vertex; may be empty, and so may the others below
   std::vector<double> strains;
   std::vector<Touch> touches;
   std::vector<Uv> uv;
 };
 std::string vtp_bytes(const VtpData& data, const Faces& faces, double time);
 
-// NAME_0001.vtp and on, NAME.vtp of what stands, and one .pvd.
+// NAME_0001.vtp and so on, NAME.vtp for a shape that does not move, and one .pvd.
 Names vtk_files(const ExportSource& source);
 void write_vtk(const ExportSource& source, ExportFiles& files, Names& notes);
 

@@ -1,5 +1,5 @@
-// Colours of a picture: light is linear, pixels are sRGB (IEC 61966-2-1).
-//   cloths   Okabe & Ito 2008, told apart by everybody
+// The colours of a picture. Light is linear; pixels are sRGB (IEC 61966-2-1).
+//   cloths   Okabe & Ito 2008, colours that everybody can tell apart
 //   strain   from blue (shorter) over white to red (longer), ColorBrewer's RdBu; symmetric about 0
 //   speed    viridis, from 0
 //   contact  free, slides, sticks: grey, orange, blue
@@ -13,7 +13,7 @@
 
 namespace drape::drawing {
 
-using Light = Eigen::Array3f;  // linear red, green, blue
+using Light = Eigen::Array3f;  // linear red, green and blue
 
 Light light(const Pixel& pixel);
 Pixel pixel(const Light& light);  // clamped to what a screen can show
@@ -21,19 +21,20 @@ Pixel pixel(const Light& light);  // clamped to what a screen can show
 inline constexpr Pixel background = {255, 255, 255}, ink = {45, 45, 50};
 inline constexpr Pixel body_colour = {208, 206, 202}, body_mark = {150, 148, 146};
 
-Pixel cloth_colour(int cloth);  // from 0; repeats after seven
+Pixel cloth_colour(int cloth);  // cloth counts from 0; the colours repeat after seven
 
 enum class Field { strain, speed, contact };
 std::optional<Field> field_named(const std::string& name);
 
-// The values that the ends of a map stand for. Of contact the numbers of Touch.
+// The values at the two ends of a colour map. For contact they are the numbers of Touch.
 struct Scale {
   Field field = Field::strain;
   double low = 0, high = 1;
 };
-Pixel colour_of(const Scale& scale, double value);  // beyond the ends as at the ends; not a number: grey
+// A value beyond an end has the colour of that end; what is not a number is grey.
+Pixel colour_of(const Scale& scale, double value);
 
-// A step of 1, 2 or 5 times a power of ten with about `count` of them up to `range` > 0.
+// A step of 1, 2 or 5 times a power of ten, of which about `count` fit into `range` > 0.
 double round_step(double range, int count);
 
 }  // namespace drape::drawing

@@ -12,7 +12,7 @@ using Pixel = std::array<std::uint8_t, 3>;  // sRGB
 
 struct Image {
   int width = 0, height = 0;
-  std::vector<Pixel> pixels;  // rows from above
+  std::vector<Pixel> pixels;  // rows from the top
 
   Image(int w, int h, const Pixel& colour)
       : width(w), height(h), pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), colour) {}
@@ -24,7 +24,8 @@ struct Image {
   bool has(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
 };
 
-// The bytes of a PNG file, 8 bits a channel, marked as sRGB; with a table of colours where 256 are enough.
+// The bytes of a PNG file with 8 bits for each channel, marked as sRGB; with a palette where
+// 256 colours are enough.
 std::string png(const Image& image);
 
 }  // namespace drape::drawing

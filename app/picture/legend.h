@@ -1,4 +1,4 @@
-// What the colours of a picture mean: a bar with round ticks, or a square for each word.
+// The legend of a picture, which explains its colours: a bar with round ticks, or a square for each word.
 #pragma once
 
 #include <string>
@@ -8,9 +8,10 @@
 
 namespace drape::drawing {
 
-inline constexpr double legend_lines = 4.4;  // its height over the size of its letters
+inline constexpr double legend_lines = 4.4;  // height of the legend over the size of its letters
 
-// In the middle of the strip; size: of the letters, pixels. largest: the value of what is farthest out.
+// Draws it into the middle of the strip. size: of the letters, pixels. largest: the most
+// extreme value that occurs.
 void draw_legend(Image& image, const PixelBox& strip, const Scale& scale, double largest, int size);
 
 }  // namespace drape::drawing

@@ -1,6 +1,6 @@
-// Smooth normals that keep edges: at a corner the mean, weighted by their angles there, of those faces round
-// the vertex that lean away from the corner's own by less than an angle. Vertices at the same place are one,
-// so that a seam of the texture does not show.
+// Smooth normals that keep edges. The normal at a corner is the mean, weighted by their angles there,
+// of those faces round the vertex whose normals differ from the corner's own face by less than an angle.
+// Vertices at the same place count as one, so that a seam of the texture does not show.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace drape::drawing {
 
-using CornerNormals = std::array<Eigen::Vector3f, 3>;  // unit; of a triangle without area zero
+using CornerNormals = std::array<Eigen::Vector3f, 3>;  // unit vectors; zero for a triangle without area
 
 std::vector<CornerNormals> corner_normals(const std::vector<Vec3>& positions,
                                           const std::vector<Triangle>& triangles, double crease_degrees);

@@ -1,4 +1,4 @@
-// The words of `drape picture` that need reading.
+// Reads the options of `drape picture`.
 #pragma once
 
 #include <optional>
@@ -10,12 +10,13 @@
 
 namespace drape::drawing {
 
-// Throw InputError.
-std::pair<int, int> size_named(const std::string& text);  // "1280x960"; empty: that
+// Both throw InputError.
+std::pair<int, int> size_named(const std::string& text);  // "1280x960"; empty stands for that size
 std::optional<Field> field_asked(const std::string& text);
 
-// Frames from 0 of a run with `count` of them: "12", "1,5,last", "last", "all"; empty: the last one, or with
-// `several` up to `several` spread over the run. `where` stands in messages.
+// Frame numbers, from 0, in a run with `count` frames: "12" (frames count from 1 here), "1,5,last", "last",
+// "all". Empty stands for the last one; if `several` is more than 1, for so many spread over the run.
+// `where` stands in messages.
 std::vector<int> frames_named(const std::string& text, int count, int several, const std::string& where);
 
 }  // namespace drape::drawing

@@ -1,5 +1,5 @@
-// Stills side by side on one picture, all seen by the same camera and in the same colours; one alone fills
-// the picture. Under each its time, under all the legend of the colours.
+// Stills side by side on one picture, all seen by the same camera and in the same colours; a single still
+// fills the picture. The time stands under each still, and the legend of the colours under all.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,29 +14,29 @@ namespace drape::drawing {
 struct SheetPanel {
   const Subject* subject;
   int frame;          // from 0
-  std::string label;  // empty: none
+  std::string label;  // empty when there is none
 };
 
 struct SheetOptions {
   int width = 1280, height = 960;  // pixels
   View view;
   std::optional<Field> field;
-  bool whole = false;  // all of the bodies is to be seen
+  bool whole = false;  // whether all of the bodies must be in the picture
   bool edges = false;
-  int columns = 0;  // 0: so that what is shown is largest
+  int columns = 0;  // 0: chosen so that the stills are as large as possible
 };
 
-// How all pictures of a sequence are drawn.
+// Fixes how all pictures of a sequence are drawn.
 class Sheet {
  public:
-  // `all`: everything that will be drawn; `together`: how many of these on one picture.
+  // `all` is everything that will be drawn; `together` says how many panels stand on one picture.
   Sheet(const std::vector<SheetPanel>& all, std::size_t together, const SheetOptions& options);
 
   Image draw(const std::vector<SheetPanel>& panels) const;
 
  private:
   struct Place {
-    PixelBox panel, framed;  // whole pixels; within the panel
+    PixelBox panel, framed;  // in whole pixels; `framed` lies within `panel`
   };
   Place place(std::size_t k) const;
   void choose_columns(const std::vector<SheetPanel>& all);

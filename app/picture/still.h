@@ -1,4 +1,4 @@
-// What is drawn: cloths and bodies as they are at one time, out of an output folder or of OBJ files.
+// What is drawn: cloths and bodies at one time, from an output folder or from OBJ files.
 #pragma once
 
 #include <memory>
@@ -14,11 +14,12 @@ namespace drape::drawing {
 
 struct StillPart {
   bool body = false;
-  int cloth = 0;                                     // which one, from 0: its colour
+  int cloth = 0;                                     // its number, from 0, which decides its colour
   std::vector<Vec3> positions;                       // m
-  const std::vector<Triangle>* triangles = nullptr;  // of the Subject
-  const std::vector<Vec3>* sectors = nullptr;        // of a ball: its vertices from its middle at first, m
-  std::vector<double> values;  // of vertices, to be coloured by; empty: a colour of its own
+  const std::vector<Triangle>* triangles = nullptr;  // owned by the Subject
+  // Of a ball: its vertices relative to its middle in the first frame, m.
+  const std::vector<Vec3>* sectors = nullptr;
+  std::vector<double> values;  // colours come from these values at the vertices; empty: the part's own colour
 };
 
 struct Still {
@@ -28,19 +29,19 @@ struct Still {
 
 class Subject {
  public:
-  // An output folder, or an OBJ file that counts as a cloth. Throws InputError.
+  // An output folder, or an OBJ file, which counts as a cloth. Throws InputError.
   explicit Subject(const std::string& path);
   void add_body(const std::string& path);  // an OBJ file
 
   const std::string& path() const { return path_; }
-  std::string title() const;  // the last word of the path
+  std::string title() const;  // the last component of the path
   bool is_run() const { return recording_ != nullptr; }
-  Names missing() const;  // of a folder, a line each
+  Names missing() const;  // what a folder lacks, a line each
   int frames() const { return recording_ ? recording_->frames() : 1; }
   double time(int frame) const { return recording_ ? recording_->time(frame) : 0; }  // s
 
-  // Throws InputError where the run has no such field, and Interrupted:
-  // all pictures ask for this, frame by frame.
+  // Throws InputError when the run has no such field, and Interrupted: every picture
+  // calls this for each frame.
   Still still(int frame, std::optional<Field> field) const;
 
  private:
@@ -48,8 +49,8 @@ class Subject {
 
   std::string path_;
   std::unique_ptr<Recording> recording_;
-  std::vector<RecordedShape> meshes_;       // of files
-  std::vector<std::vector<Vec3>> sectors_;  // of the recording's shapes; empty: is no ball
+  std::vector<RecordedShape> meshes_;       // read from OBJ files
+  std::vector<std::vector<Vec3>> sectors_;  // for each shape of the recording; empty when it is not a ball
 };
 
 }  // namespace drape::drawing

@@ -9,12 +9,12 @@
 
 namespace drape::drawing {
 
-// What a ray from the eye meets.
+// What a ray from the eye hits.
 struct Seen {
-  int part = -1;  // of the still; -1: nothing; -2 - k: plane k
+  int part = -1;  // part of the still; -1: nothing; -2 - k: plane k
   double distance = 0;
-  Vec3 point, from;              // m; from: where its rays start, clear of its own triangle
-  Eigen::Vector3f normal;        // unit, to the viewer
+  Vec3 point, from;              // m; `from` is where further rays start, clear of its own triangle
+  Eigen::Vector3f normal;        // unit vector, towards the viewer
   Light colour = Light::Zero();  // in full light
   float fade = 1;                // of a plane: 1 near the scene, 0 where it ends
 };
@@ -23,15 +23,16 @@ class Surface {
  public:
   Surface(const Still& still, const Look& look);
 
-  Seen seen(const Vec3& eye, const Vec3& direction, double slope) const;  // slope: of the next pixel's ray
+  // slope: Camera::slope.
+  Seen seen(const Vec3& eye, const Vec3& direction, double slope) const;
   bool blocked(const Vec3& from, const Vec3& direction, double distance) const {
     return tree_ && tree_->blocked(from, direction, distance);
   }
-  // The same, planes included.
+  // The same, but planes count too.
   bool covered(const Vec3& from, const Vec3& direction, double distance) const;
 
  private:
-  struct Piece {  // a part's triangles within all of them
+  struct Piece {  // the place of a part's triangles among all triangles
     int begin;
     const StillPart* part;
     Light front, back, mark;
@@ -46,7 +47,7 @@ class Surface {
   std::vector<Vec3> positions_;
   std::vector<Triangle> triangles_;
   std::vector<CornerNormals> normals_;
-  std::vector<int> piece_of_;  // triangle
+  std::vector<int> piece_of_;  // for each triangle, the number of its piece
   std::optional<TriangleTree> tree_;
 };
 

@@ -1,4 +1,4 @@
-// Words on a picture, in DejaVu Sans, which the program carries with it.
+// Writes words into a picture, in DejaVu Sans; the font is part of the program.
 #pragma once
 
 #include <string_view>
@@ -9,10 +9,10 @@ namespace drape::drawing {
 
 enum class Anchor { left, middle, right };
 
-// Pixels from the first letter to the end of the last one; size: of the font, pixels.
+// Width in pixels from the first letter to the end of the last one; size: of the font, pixels.
 int text_width(std::string_view utf8, int size);
 
-// On the line y (the foot of the letters), beginning, centred or ending at x.
+// Draws a line of text whose letters stand on y and which begins, is centred or ends at x.
 void draw_text(Image& image, int x, int y, std::string_view utf8, int size, Anchor anchor,
                const Pixel& colour);
 

@@ -1,5 +1,5 @@
-// Blocks of bytes in a page: compressed (zlib), as text (base64), each an element with a number. A browser's
-// script finds them by it.
+// Blocks of bytes in a page: compressed (zlib) and written as text (base64), each in an element with a
+// number, by which the script of the page finds it.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@ namespace drape {
 
 class PageBlocks {
  public:
-  int add(std::string_view bytes);  // its number
-  std::string html() const;         // all elements
+  int add(std::string_view bytes);  // returns the number of the block
+  std::string html() const;         // all the elements
 
  private:
   std::vector<std::string> texts_;

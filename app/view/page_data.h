@@ -1,10 +1,10 @@
-// What a page of `drape view` knows of a run: a head as JSON, and the blocks of numbers that it names.
+// The data of a page of `drape view`: a head in JSON, and the blocks of numbers that the head refers to.
 //   head: title, missing, facts [[name, value]], warnings, notes, times [s],
 //         shapes [{name, body, vertices, triangles {block, count}, edges {block, count}, positions, speed,
 //         strain, contact}], planes [{name, points, normals}] of every frame or of all, steps {columns, rows,
 //         block} or null
-//   positions, speed, strain and contact are tracks (track.h), null where they are not known; web/src/data.js
-//   reads it.
+//   positions, speed, strain and contact are tracks (track.h), or null where they are not known. The script
+//   web/src/data.js reads them.
 #pragma once
 
 #include "app/base/json.h"
@@ -22,13 +22,14 @@ PageData page_data(const Recording& recording);  // throws Interrupted between f
 
 std::string title_of(const Recording& recording);
 
-// The run in a table: names and values as text.
+// Facts about the run as a table: names and values as text.
 Json page_facts(const Recording& recording);
 
-// Numbers from 0 as differences of neighbours, 2 d or -2 d - 1, in four planes of bytes, the lowest first.
+// Numbers from 0 up, each as the difference to its neighbour, written as 2 d or -2 d - 1, in four planes of
+// bytes, the lowest byte first.
 std::string index_bytes(const std::vector<int>& list);
 
-// The sides of the mesh's polygons, of its triangles where it has no document; each once, two vertices each.
+// The sides of the mesh's polygons (of its triangles when it has no document), each once, two vertices each.
 std::vector<int> polygon_sides(const TriangleMesh& mesh);
 
 }  // namespace drape

@@ -1,5 +1,5 @@
-// The page of `drape view` without its data, as bundled from web/ when this program was built.
-//   Places in it: @@TITLE@@ (twice) and @@DATA@@.
+// The page of `drape view` without its data, bundled from web/ when the program was built.
+//   Places to fill in: @@TITLE@@ (twice) and @@DATA@@.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace drape {
 
-std::string_view page_template();  // empty: the viewer is not in this build
-std::string missing_viewer();      // why, and what to do
+std::string_view page_template();  // empty when this build has no viewer
+std::string missing_viewer();      // says why, and what to do
 
 }  // namespace drape

@@ -1,11 +1,12 @@
-// Numbers that change with time, as the page has them: whole numbers of 16 bits, q = round((x - min) / step)
-// with step = (max - min) / 65535 of each component, so that x is told to half a step.
-//   In a frame: component by component, of each all vertices. Frames are cut into chunks of their own
-//   compression. order 1 expects q(k) = q(k-1), order 2 q(k) = 2 q(k-1) - q(k-2); (q before the first frame:
-//   0, before the second: as the first). What is left of it, with `neighbours` the difference of that to the
-//   vertex before, all modulo 2^16 and as 2 r or -2 r - 1 (small when r is small), is written as low bytes,
-//   then high bytes. Each chunk takes the choice that leaves least. A number that is not finite is written as
-//   the vertex's last one.
+// Numbers that change with time, as the page stores them: 16-bit integers q = round((x - min) / step), with
+// step = (max - min) / 65535 for each component, so that x is accurate to half a step.
+//   A frame holds one component after the other, and all vertices within a component. Frames are grouped into
+//   chunks, each with a code of its own. order 1 predicts q(k) = q(k-1), order 2 q(k) = 2 q(k-1) - q(k-2).
+//   (The q before the first frame is 0; the one before the second frame equals the first.) The chunk stores
+//   the error of the prediction; with `neighbours`, the difference of that error to the error of the vertex
+//   before. All is modulo 2^16 and written as 2 r or -2 r - 1 (small when r is small), first all low bytes,
+//   then all high bytes. Each chunk uses the code that gives the fewest bytes. A number that is not finite is
+//   stored as the last value of its vertex.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,8 @@ struct Range {
   double step() const { return (high - low) / 65535; }
 };
 
-// Of the finite ones among values [begin, begin + count).
+// Extends the range by those of the `count` values that are finite. `any` says whether the
+// range holds a value yet.
 void widen(Range& range, bool& any, const double* values, std::size_t count);
 
 struct ChunkCode {
@@ -31,7 +33,8 @@ struct ChunkCode {
   bool neighbours = false;
 };
 
-// Frames of whole numbers; `before`: how many of them only tell what is expected of the others (0, 1 or 2).
+// The bytes of frames of integers. The first `before` (0, 1 or 2) of the frames only serve
+// to predict the others.
 std::string chunk_bytes(const std::vector<std::vector<std::uint16_t>>& frames, std::size_t before,
                         std::size_t vertices, ChunkCode code);
 ChunkCode best_code(const std::vector<std::vector<std::uint16_t>>& frames, std::size_t before,
@@ -41,7 +44,7 @@ class TrackWriter {
  public:
   TrackWriter(PageBlocks& blocks, std::vector<Range> components, std::size_t vertices);
 
-  void add(const std::vector<double>& frame);  // component by component
+  void add(const std::vector<double>& frame);  // one component after the other
   Json finish();                               // {min, step, chunks}
   long not_finite() const { return not_finite_; }
 
@@ -51,7 +54,7 @@ class TrackWriter {
   PageBlocks& blocks_;
   std::vector<Range> components_;
   std::size_t vertices_;
-  std::vector<std::vector<std::uint16_t>> frames_;  // with those before the chunk
+  std::vector<std::vector<std::uint16_t>> frames_;  // including those before the chunk
   std::size_t before_ = 0;
   Json::List chunks_;
   long not_finite_ = 0;

@@ -1,4 +1,4 @@
-// `drape view`: an output folder as one HTML file that plays it in any browser, offline.
+// `drape view`: makes one HTML file from an output folder; any browser plays it, offline.
 #pragma once
 
 #include <filesystem>
@@ -7,14 +7,14 @@
 namespace drape {
 
 struct ViewWords {
-  std::string folder, out;  // as the command line gives them; out empty: FOLDER/view.html
-  bool force = false;       // replace a file that is there
+  std::string folder, out;  // as on the command line; an empty `out` stands for FOLDER/view.html
+  bool force = false;       // whether a file that is there already is replaced
 };
-int view(const ViewWords& words);  // exit code
+int view(const ViewWords& words);  // returns the exit code
 
-// The page itself. Throws InputError when there is nothing to show, or the viewer is not in this build.
+// The page itself. Throws InputError when there is nothing to show, or when this build has no viewer.
 std::string view_html(const std::filesystem::path& folder);
 
-bool has_viewer();  // of this build
+bool has_viewer();  // whether this build has the viewer
 
 }  // namespace drape
