@@ -1,4 +1,5 @@
-// `drape compare`: solvers on the systems of one run, integrators on one scene, sizes of one sheet.
+// `drape compare`: compares solvers on the systems of one run, integrators on one scene,
+// and sizes of one sheet.
 #pragma once
 
 #include "app/compare/options.h"
@@ -6,8 +7,8 @@
 
 namespace drape {
 
-// The scene may be empty when sizes are given. Exit code: 0 all agree; 1 a solver differs, or the run or one
-// of an integrator failed; 130 interrupted, and nothing is written. Throws InputError.
+// The scene may be empty when sizes are given. Exit code: 0 when all agree; 1 when a solver differs, or when
+// the run or one of an integrator has failed; 130 when interrupted, with nothing written. Throws InputError.
 int compare(const std::filesystem::path& scene, const CompareWords& words, const CommonOptions& common);
 
 }  // namespace drape

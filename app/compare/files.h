@@ -1,4 +1,4 @@
-// compare.json, compare.csv (solvers), compare-integrators.csv and compare.html: all or none.
+// Writes compare.json, compare.csv (solvers), compare-integrators.csv and compare.html: all of them or none.
 #pragma once
 
 #include <vector>
@@ -8,12 +8,14 @@
 namespace drape {
 
 std::string compare_json(const Comparison& comparison);
-std::string compare_csv(const Comparison& comparison);      // a row for each solver and system
-std::string integrators_csv(const Comparison& comparison);  // a row for each run; none without --integrators
+std::string compare_csv(const Comparison& comparison);  // one row for each solver and system
+// One row for each run; no rows without --integrators.
+std::string integrators_csv(const Comparison& comparison);
 
 class CompareFiles {
  public:
-  explicit CompareFiles(std::filesystem::path folder);  // makes the folder and tries it; throws InputError
+  // Makes the folder and tries to write into it; throws InputError.
+  explicit CompareFiles(std::filesystem::path folder);
   void write(const Comparison& comparison);
   const std::vector<std::filesystem::path>& written() const { return written_; }
 

@@ -1,4 +1,5 @@
-// compare.html: the tables and plots of a comparison in one file that needs nothing else, no network either.
+// compare.html: the tables and plots of a comparison in one file that loads nothing else, not
+// from the network either.
 #pragma once
 
 #include "app/compare/comparison.h"

@@ -1,5 +1,5 @@
-// Several integrators from the same start, each at several time steps: how far the ends lie apart, what
-// energy they made or lost, how long they took.
+// Runs several integrators from the same start, each at several time steps, and reports how far the ends lie
+// apart, what energy they gained or lost, and how long they took.
 #pragma once
 
 #include "app/compare/comparison.h"
@@ -7,9 +7,10 @@
 
 namespace drape {
 
-// Fills comparison.runs, all to the time `duration` [s]. The reference is the finest run of the first-named
-// integrator that got there. Every other linear solver runs at the first (the scene's) time step only: its
-// row differs by linear algebra alone. False when the user interrupts.
+// Fills comparison.runs; all runs go to the time `duration` [s]. The reference is the run with the shortest
+// step of the first integrator in the list that reached the end. The other linear solvers run at the first
+// time step only, which is the scene's, so that their rows differ by linear algebra alone. Returns false
+// when the user interrupts.
 bool compare_integrators(const Scene& scene, const CompareOptions& options, double duration, bool quiet,
                          Comparison& comparison);
 

@@ -1,5 +1,5 @@
-// The words of `drape compare` made into options. Every mistake is an InputError that names
-// the option and what is known.
+// Makes options from the words of `drape compare`. Every mistake is an InputError that names the
+// option and what is allowed.
 #pragma once
 
 #include "app/compare/comparison.h"
@@ -7,7 +7,8 @@
 namespace drape {
 
 struct CompareWords {
-  std::string solvers, steps, at, repeats, integrators, time_steps, sizes;  // empty: not given
+  // as on the command line; empty when not given.
+  std::string solvers, steps, at, repeats, integrators, time_steps, sizes;
 };
 
 CompareOptions compare_options(const CompareWords& words);

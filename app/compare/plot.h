@@ -1,7 +1,7 @@
-// A line plot as inline SVG: axes with ticks, linear or logarithmic, a legend,
-// a title that screen readers say.
-//   Lines, text and axes take the colour of the page, so it is legible on light and dark; every series has
-//   its own colour and its own marker, so it is legible without colours.
+// A line plot as inline SVG: axes with ticks, linear or logarithmic, a legend, and a title that
+// screen readers read out.
+//   Lines, text and axes take the colour of the page, so the plot is legible on light and dark pages. Every
+//   series has its own colour and its own marker, so it is legible without colours.
 #pragma once
 
 #include <string>
@@ -11,11 +11,12 @@ namespace drape {
 
 struct Series {
   std::string name;
-  std::vector<double> x, y;  // what cannot be shown (not finite, or <= 0 on a logarithmic axis) is left out
+  // Points that cannot be shown (not finite, or <= 0 on a logarithmic axis) are left out.
+  std::vector<double> x, y;
   bool line = true;
-  int every = 1;        // how many points to a marker; 0: none
-  bool dashed = false;  // in the colour of the text: a limit, not a measurement
-  int look = -1;        // which colour and marker; -1: by its place among the series
+  int every = 1;        // a marker at every so many points; 0: none
+  bool dashed = false;  // and in the colour of the text: for a limit, not a measurement
+  int look = -1;        // number of the colour and marker; -1: by the place among the series
 };
 
 struct Plot {
@@ -24,7 +25,7 @@ struct Plot {
   std::vector<Series> series;
 };
 
-// "<svg ...>...</svg>"; a sentence in its place when no point can be shown.
+// "<svg ...>...</svg>", or a sentence in its place when no point can be shown.
 std::string svg(const Plot& plot);
 
 }  // namespace drape

@@ -1,5 +1,5 @@
-// A linear solver that lets another one do the work and keeps what it was given: so the systems of a run can
-// be taken out without the integrator knowing.
+// A linear solver that passes the work on to another solver and keeps the system that it was given. In this
+// way the systems of a run can be collected without changing the integrator.
 #pragma once
 
 #include <optional>
@@ -13,19 +13,19 @@ struct LinearSystem {
   VecX b;
   Filter filter;
   LinearOptions options;
-  VecX guess;     // m/s, row order, as the integrator gave it
-  VecX solution;  // m/s, of the solver that decided the path
+  VecX guess;     // m/s, in row order, as the integrator gave it
+  VecX solution;  // m/s, from the solver that the run goes on with
 };
 
 struct SystemRecording {
-  bool on = false;                   // off: nothing is copied
-  bool keep_first = false;           // of several solves, the system of the first stays
+  bool on = false;                   // when false, nothing is copied
+  bool keep_first = false;           // of several solves, whether the system of the first one is kept
   std::optional<LinearSystem> last;  // the last system solved while on
 };
 
 class RecordingSolver final : public LinearSolver {
  public:
-  // Keeps a reference to the recording.
+  // Keeps a reference to `recording`.
   RecordingSolver(std::unique_ptr<LinearSolver> solver, SystemRecording& recording)
       : solver_(std::move(solver)), recording_(recording) {}
 

@@ -1,11 +1,12 @@
-// Several linear solvers on the same systems: what each took, how far it is from the truth, and whether the
-// tolerance explains it.
-//   r = S (b - A dv)                       computed here, not the solver's word
+// Compares linear solvers on the same systems: what each took, how far it is from the truth, and whether the
+// tolerance explains the distance.
+//   r = S (b - A dv)                       computed here; the solver's own value is not used
 //   allowed = |g| (1.05 tolerance reference + |r_best|),   A g = S u  within the filter
-//     u: direction of the difference from the most accurate solver at the vertex where it is largest. As
-//     u . (dv_best - dv) = g . (r - r_best), no solve that meets the tolerance can differ there by more, and
-//     one that meets it exactly can: it is the sharpest bound there is.
-//   A verdict is `agree` when |r| <= 1.05 tolerance reference, (I - S) dv = z, and the difference is allowed.
+//     u: direction of the difference to the most accurate solver, at the vertex where it is largest. Since
+//     u . (dv_best - dv) = g . (r - r_best), a solve that meets the tolerance cannot differ more there, and
+//     one that meets it exactly can differ as much: no sharper bound exists.
+//   The verdict is `agree` when |r| <= 1.05 tolerance reference, (I - S) dv = z, and the difference is
+//   allowed.
 #pragma once
 
 #include "app/compare/comparison.h"
@@ -14,21 +15,22 @@
 
 namespace drape {
 
-inline constexpr double residual_slack = 1.05;     // solvers stop by recurrences, which drift
-inline constexpr double finest_tolerance = 1e-12;  // what round-off lets a residual reach
+// Solvers stop by recurrences, which drift from the true residual.
+inline constexpr double residual_slack = 1.05;
+inline constexpr double finest_tolerance = 1e-12;  // round-off allows no smaller residual
 
 double true_residual(const LinearSystem& system, const VecX& dv);         // N s
 double constraint_violation(const LinearSystem& system, const VecX& dv);  // m/s
-double reference_impulse(const LinearSystem& system);  // N s, what a residual is relative to
+double reference_impulse(const LinearSystem& system);                     // N s, a residual is relative to it
 
 class SolverBench {
  public:
-  // The solvers are made here and kept, so that what they reuse from step to step shows. where: stands
-  // in a verdict before the step.
+  // Makes the solvers and keeps them, so that the gain from what they reuse between steps is measured.
+  // `where` stands in a verdict before the step.
   SolverBench(const std::vector<SolverChoice>& choices, double tolerance, int repeats,
               std::string where = "");
 
-  // A row for every solver. Empty when the user interrupts.
+  // One row for each solver. Empty when the user interrupts.
   std::vector<SolverRow> compare(const LinearSystem& system, int step, const Simulation& simulation);
 
  private:

@@ -1,4 +1,4 @@
-// A comparison as tables for people: the same on the screen and in compare.html.
+// A comparison as tables for people, the same on the screen and in compare.html.
 #pragma once
 
 #include "app/compare/comparison.h"
@@ -7,16 +7,18 @@ namespace drape {
 
 struct ReportTable {
   std::string title;
-  Names notes;  // below it
+  Names notes;  // printed below the table
   Names header;
   std::vector<Names> rows;
 };
 
-Names headline(const Comparison& comparison);  // what was compared
+Names headline(const Comparison& comparison);  // says what was compared
 std::vector<ReportTable> tables_of(const Comparison& comparison);
-Names verdicts(const Comparison& comparison);  // "mpcg: agree", or all that it differs by; then the runs
+// "mpcg: agree", or everything by which the solver differs; after the solvers the runs.
+Names verdicts(const Comparison& comparison);
 std::string verdict_of(const IntegratorRow& run, const Comparison& comparison);
-std::string line_of(const IntegratorRow& run, const Comparison& comparison);  // which run, and its verdict
+// Names the run and says its verdict.
+std::string line_of(const IntegratorRow& run, const Comparison& comparison);
 
 std::string text_of(const Comparison& comparison);
 

@@ -1,8 +1,8 @@
-// Numbers between NumPy and Eigen.
-//   in   copied, from anything that NumPy makes an array of: ValueError names the shape that was expected
+// Passes numbers between NumPy and Eigen.
+//   in   copied, from anything that NumPy can make an array of; ValueError names the shape that was expected
 //   out  view(): (n, 3) or (n,) without a copy; the array keeps its owner alive
-//        Vec3, Mat3: a read-only copy, so that writing into it is an error and not lost
-// Every file that hands a Vec3 or Mat3 over includes this one.
+//        Vec3, Mat3: a read-only copy, so that writing into it is an error and is not silently lost
+// Every file that passes a Vec3 or Mat3 must include this header.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -18,7 +18,8 @@ namespace drape::python {
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using IntArray = py::array_t<int, py::array::c_style | py::array::forcecast>;
 
-// shape: -1 is any length. name stands in messages: "x: expected an array of shape (n, 3), but got (4, 2)".
+// shape: -1 stands for any length. name stands in messages: "x: expected an array of shape
+// (n, 3), but got (4, 2)".
 Array numbers(const py::handle& from, const char* name, std::initializer_list<py::ssize_t> shape);
 IntArray integers(const py::handle& from, const char* name, std::initializer_list<py::ssize_t> shape);
 
@@ -26,7 +27,7 @@ VecX stacked_rows(const py::handle& from, const char* name);            // (n, 3
 std::vector<Vec3> points(const py::handle& from, const char* name);     // (n, 3)
 std::vector<double> list_of(const py::handle& from, const char* name);  // (n,)
 
-// Of memory that the owner, a Python object, holds as long as it lives.
+// Arrays that show memory of `owner`, a Python object, which keeps the memory as long as it lives.
 enum class Access { read, write };
 Array view(const double* data, std::vector<py::ssize_t> shape, const py::handle& owner, Access access);
 Array view_rows(const VecX& x, const py::handle& owner, Access access);  // (n, 3)

@@ -1,4 +1,4 @@
-// The parts of the Python module, one subject a file; module.cpp puts them together.
+// The parts of the Python module, one subject in each file; module.cpp calls them all.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -1,4 +1,4 @@
-// Forces on their way from what makes them to a system.
+// Forces between the function that makes them and the system that takes them.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 namespace drape::python {
 
 struct Forces {
-  std::vector<std::unique_ptr<Force>> all;  // empty once a system has them
+  std::vector<std::unique_ptr<Force>> all;  // empty after a system has taken them
   bool given = false;
 
   explicit Forces(std::vector<std::unique_ptr<Force>> forces) : all(std::move(forces)) {}

@@ -1,8 +1,8 @@
-// While a step is taken the interpreter goes on, and so may other Python threads. What the step changes or
-// reads is marked here, and whoever wants to change it meanwhile gets a RuntimeError instead of a crash.
-// (Reading arrays is allowed: what they show during a step is not defined. What is copied, or may get other
-// memory, is not read meanwhile.)
-//   All of this is called with the interpreter's lock held, which guards the marks.
+// During a step the interpreter goes on, and so may other Python threads. InUse marks what the step reads or
+// changes; another thread that wants to change it meanwhile gets a RuntimeError instead of a crash. (Reading
+// arrays is allowed; what they show during a step is undefined. What would be copied, or may move in memory,
+// cannot be read meanwhile.)
+//   All functions must be called with the interpreter's lock held, which guards the marks.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,8 @@ namespace drape::python {
 
 class InUse {
  public:
-  explicit InUse(std::vector<const void*> objects);  // throws std::runtime_error when one is in use
+  // Throws std::runtime_error when one of them is marked already.
+  explicit InUse(std::vector<const void*> objects);
   ~InUse();
   InUse(const InUse&) = delete;
   InUse& operator=(const InUse&) = delete;
@@ -20,6 +21,6 @@ class InUse {
   std::vector<const void*> objects_;
 };
 
-void require_free(const void* object);  // throws std::runtime_error
+void require_free(const void* object);  // throws std::runtime_error when the object is marked
 
 }  // namespace drape::python

@@ -1,4 +1,4 @@
-// Linear solvers and systems as Python has them.
+// Linear solvers and linear systems in the form that Python sees.
 #pragma once
 
 #include <memory>
@@ -10,9 +10,9 @@ namespace drape::python {
 
 using Solver = std::shared_ptr<LinearSolver>;
 
-Solver solver_of(const py::object& given);  // a name or a solver
+Solver solver_of(const py::object& given);  // `given` is a name or a solver
 
-// A solver that somebody else has, too.
+// A solver that others may own too.
 class SharedSolver final : public LinearSolver {
  public:
   explicit SharedSolver(Solver solver) : solver_(std::move(solver)) {}
@@ -26,10 +26,10 @@ class SharedSolver final : public LinearSolver {
   Solver solver_;
 };
 
-// Shares the solver; keeps a reference to the recording.
+// Makes a RecordingSolver that shares the solver. It keeps a reference to `recording`.
 std::unique_ptr<LinearSolver> recorded(const Solver& solver, SystemRecording& recording);
 
-// The last system that was solved while recording, None without one. Not copied: a later one takes its place.
+// The last system that was solved while recording, or None. It is not copied; a later system takes its place.
 py::object last_system(const SystemRecording& recording);
 
 }  // namespace drape::python

@@ -1,4 +1,4 @@
-// What Python is told of a step.
+// The reports of a step in the form that Python sees.
 #pragma once
 
 #include "app/python/bindings.h"
@@ -6,7 +6,7 @@
 
 namespace drape::python {
 
-// A row of steps.csv, as one object.
+// A row of steps.csv as one object.
 struct RunStep : StepReport {
   long step;
   double time, kinetic_energy, elastic_energy, gravity_energy, max_speed, max_edge_strain;
@@ -22,7 +22,7 @@ struct RunStep : StepReport {
         max_edge_strain(row.max_edge_strain) {}
 };
 
-// Raises drape.StepError with the report, unless the step was done.
+// Raises drape.StepError with the report when the step was not done.
 void require_done(const StepReport& report);
 [[noreturn]] void raise_step_error(const std::string& text, const StepReport& report);
 

@@ -1,4 +1,4 @@
-// A scene given as a dict, as the plain data that the reader of scenes takes from TOML.
+// Turns a scene given as a dict into the plain data that the reader of scenes takes from TOML.
 #pragma once
 
 #include "app/base/toml_file.h"
@@ -6,7 +6,8 @@
 
 namespace drape::python {
 
-// where: "scene", then "scene['cloth'][0]['bend']" and so on. ValueError for what TOML has no word for.
+// where: "scene", then "scene['cloth'][0]['bend']" and so on, for messages. Raises ValueError for
+// what TOML cannot express.
 Node node_of(const py::handle& value, const std::string& where);
 
 }  // namespace drape::python

@@ -1,4 +1,4 @@
-// Shapes as Python has them.
+// Shapes in the form that Python sees.
 #pragma once
 
 #include "app/python/arrays.h"
@@ -13,6 +13,6 @@ struct LevelSetSurface {
   LevelSetBody grid;
 };
 
-Shape shape_of(const py::handle& object);  // TypeError when it is none
+Shape shape_of(const py::handle& object);  // raises TypeError when the object is not a shape
 
 }  // namespace drape::python

@@ -5,8 +5,8 @@
 //   (The q before the first frame is 0; the one before the second frame equals the first.) The chunk stores
 //   the error of the prediction; with `neighbours`, the difference of that error to the error of the vertex
 //   before. All is modulo 2^16 and written as 2 r or -2 r - 1 (small when r is small), first all low bytes,
-//   then all high bytes. Each chunk uses the code that gives the fewest bytes. A number that is not finite is
-//   stored as the last value of its vertex.
+//   then all high bytes. Each chunk uses the code whose numbers have the fewest bits. A number that is not
+//   finite is stored as the last value of its vertex.
 #pragma once
 
 #include <cstdint>
