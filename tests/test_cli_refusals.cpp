@@ -143,8 +143,8 @@ TEST_CASE("a frame does not replace the mesh beside which the program stands", "
 
 TEST_CASE("a disk that fills up during a run leaves nothing half written", "[cli]") {
   const Workshop shop;
-  const Outcome run =
-      shop.drape("simulate s.toml --out o --quiet --duration 2", "ulimit -f 20;");  // 10 or 20 kB
+  // The limit of 20 blocks is 10 or 20 kB.
+  const Outcome run = shop.drape("simulate s.toml --out o --quiet --duration 2", "ulimit -f 20;");
   CHECK(run.exit_code == 2);
   CHECK(lines_of(run.err) == 1);
   CHECK_THAT(run.err, StartsWith("error: o/") && Contains("cannot write: File too large"));

@@ -130,8 +130,8 @@ TEST_CASE("the constraint pushes and never pulls", "[contact]") {
   lifted.state = p.state;
   for (int n = 1; n <= 20; ++n) {
     lifted.step();
-    CHECK(lifted.state.x[1] ==
-          Approx(2e-3 + 4 * 1e-4 * n * (n + 1) / 2).epsilon(1e-9));  // free fall, upwards
+    // Free fall, upwards.
+    CHECK(lifted.state.x[1] == Approx(2e-3 + 4 * 1e-4 * n * (n + 1) / 2).epsilon(1e-9));
   }
 }
 

@@ -48,8 +48,8 @@ TEST_CASE("exports replace nothing unless they are told to", "[export]") {
   folder.refused("run --to ply", "_0001.ply: is there already; --force replaces it");
   REQUIRE(folder.drape("export run --to ply --every 3 --force").exit_code == 0);
   CHECK(fs::exists(folder.path / "run/export" / (cloth + "_0002.ply")));
-  CHECK_FALSE(
-      fs::exists(folder.path / "run/export" / (cloth + "_0003.ply")));  // of the longer sequence before
+  // The file belonged to the longer sequence before.
+  CHECK_FALSE(fs::exists(folder.path / "run/export" / (cloth + "_0003.ply")));
   CHECK_FALSE(fs::exists(folder.path / "run/export" / (cloth + "_0006.ply")));
   CHECK(fs::exists(folder.path / "run/export/box.ply"));
   // What the run wrote is never replaced.

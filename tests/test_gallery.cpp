@@ -149,8 +149,8 @@ TEST_CASE("a look at the cloth finds what is inside a body", "[gallery]") {
   constraints.add(Obstacle{.shape = Sphere{{0, 0, 0}, 0.3}});
   const std::vector<RestEdge> edges = {{0, 1, 1}, {1, 2, 1}};
   State state{0.5, VecX::Zero(9), VecX::Zero(9)};
-  state.x << -0.09, 0.295, 0, 0.09, 0.295, 0, 0.09, 0.295,
-      5;  // an edge over the top, and one that leads away
+  // An edge over the top, and one that leads away.
+  state.x << -0.09, 0.295, 0, 0.09, 0.295, 0, 0.09, 0.295, 5;
   Depths depths;
   look(constraints.bodies()[0], edges, state, depths);
   CHECK(depths.vertex.depth == Approx(0.3 - std::hypot(0.09, 0.295)));  // outside

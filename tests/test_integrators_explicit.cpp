@@ -83,7 +83,7 @@ std::vector<int> rim(int side) {
 }  // namespace
 
 TEST_CASE("the explicit schemes are stable up to their limits on a chain, to 2 %", "[integrators]") {
-  // validation.md 4.12; the stiffest vibration of n links between two pins.
+  // The stiffest vibration of n links between two pins: omega = 2 sqrt(k / m) sin(pi (n - 1) / (2 n)).
   const double k = 50, m = 0.02;
   const int links = 20;
   std::vector<PairForce<TensionSpring>::Element> elements;
@@ -98,8 +98,7 @@ TEST_CASE("the explicit schemes are stable up to their limits on a chain, to 2 %
 }
 
 TEST_CASE("the explicit schemes are stable up to their limits on a lattice, to 2 %", "[integrators]") {
-  // validation.md 4.12: structural springs k and both diagonals d,
-  // omega^2 = 4 (k + d) / m in the endless lattice.
+  // Structural springs k and both diagonals d: omega^2 = 4 (k + d) / m in the endless lattice.
   const double k = 50, d = 20, m = 0.02;
   const int side = 24;
   std::vector<PairForce<TensionSpring>::Element> elements;

@@ -205,8 +205,8 @@ TEST_CASE("between three keyframes on a line the slope is Fritsch and Butland's"
   const Motion motion = Motion::keyframes({{0, Vec3::Zero()}, {1, {3, 0, 0}}, {3, {5, 0, 0}}}, Vec3::Zero());
   const double slope = (motion.at(1 + 1e-6).translation[0] - motion.at(1 - 1e-6).translation[0]) / 2e-6;
   CHECK(slope == Approx(27.0 / 17).epsilon(1e-5));
-  CHECK(motion.at(0.5).translation[0] ==
-        Approx(1.5 - 27.0 / 17 / 8).epsilon(1e-14));  // Hermite at the middle
+  // Hermite at the middle.
+  CHECK(motion.at(0.5).translation[0] == Approx(1.5 - 27.0 / 17 / 8).epsilon(1e-14));
   // An angle about one axis follows the same curve.
   const Vec3 axis = Vec3(1, -2, 2) / 3;
   const Motion turning =

@@ -21,8 +21,8 @@ Scene read(const std::string& text, const std::filesystem::path& folder = "folde
 }
 
 const std::string cloth = "[[cloth]]\nmesh = \"sheet.obj\"\n";  // two lines: the next one is line 3
-const std::string ball =
-    cloth + "[[obstacle]]\nshape = \"sphere\"\nradius = 0.3\ncentre = [1, 2, 3]\n";  // to line 6
+// Ends in line 6 of the scene.
+const std::string ball = cloth + "[[obstacle]]\nshape = \"sphere\"\nradius = 0.3\ncentre = [1, 2, 3]\n";
 
 Motion motion_of(const std::string& line) { return read(ball + line + "\n").obstacles[0].obstacle.motion; }
 
@@ -105,8 +105,8 @@ TEST_CASE("keyframes are read, and what one does not say stays", "[motion]") {
 ] })");
   CHECK(motion.last_time() == 3);
   CHECK(off(motion, 0, Vec3(1, 2, 4), Vec3(1, 2, 4)) < 1e-14);
-  CHECK(off(motion, 0.5, Vec3(1, 2, 4), Vec3(1, 2 + 0.1 / 3, 4)) <
-        1e-14);  // one turn, slopes 0 and 0.4/3 m/s
+  // One turn, slopes 0 and 0.4/3 m/s.
+  CHECK(off(motion, 0.5, Vec3(1, 2, 4), Vec3(1, 2 + 0.1 / 3, 4)) < 1e-14);
   CHECK(off(motion, 1, Vec3(1, 2, 4), Vec3(1, 2.1, 4)) < 1e-14);
   CHECK(off(motion, 2, Vec3(1, 2, 4), Vec3(1, 2.3, 4)) < 1e-14);
   CHECK(off(motion, 3, Vec3(2, 2, 3), Vec3(1, 2.3, 4)) < 1e-14);  // x -> y -> z

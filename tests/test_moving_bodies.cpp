@@ -209,8 +209,8 @@ TEST_CASE("a cloth on a turning ball turns with it when it is rough, and not at 
   const Turning rough = turning(0.9, 1.5), smooth = turning(0, 1.5), still = turning(0, 0);
   CHECK(rough.ball > 1);
   CHECK(rough.cloth == Approx(rough.ball).epsilon(0.05));
-  CHECK(smooth.cloth ==
-        Approx(still.cloth).margin(0.02 * smooth.ball));  // it slides off, and swings as it may
+  // It slides off, and swings as it may.
+  CHECK(smooth.cloth == Approx(still.cloth).margin(0.02 * smooth.ball));
 }
 
 TEST_CASE("a rope drawn over a drum slips at the capstan's ratio of tensions", "[moving-bodies]") {

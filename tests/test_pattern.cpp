@@ -103,8 +103,8 @@ TEST_CASE("vertices of a seam pair at equal fractions of its curves", "[pattern]
       REQUIRE(a.size() == b.size());
       REQUIRE(a.size() > 4);
       for (std::size_t i = 0; i < a.size(); ++i)
-        CHECK(a[i] ==
-              Approx(seam.same_way ? b[i] : 1 - b[a.size() - 1 - i]).margin(1e-3));  // of chords, not arcs
+        // The fractions are of chords, not of arcs.
+        CHECK(a[i] == Approx(seam.same_way ? b[i] : 1 - b[a.size() - 1 - i]).margin(1e-3));
     }
   }
   const PatternMesh gathered = made(pattern_cases().back());

@@ -55,8 +55,8 @@ TEST_CASE("the page says how long a unit of the drawing is", "[pattern]") {
     REQUIRE(p.panels.size() == 1);
     CHECK(std::abs(enclosed_area(p.panels[0].outline)) == Approx(page.side * page.side));
   }
-  const Pattern p =
-      drawn(svg(kPage, "<path id=\"a\" d=\"M10 90 h50 v-30 z\"/>"));  // y up: from the lower edge
+  // In the pattern y points up, from the lower edge of the page.
+  const Pattern p = drawn(svg(kPage, "<path id=\"a\" d=\"M10 90 h50 v-30 z\"/>"));
   CHECK((p.panels[0].outline.segments[0].start - Vec2(0.01, 0.01)).norm() < 1e-12);
   CHECK((p.panels[0].outline.segments[1].end - Vec2(0.06, 0.04)).norm() < 1e-12);
 }

@@ -1,5 +1,5 @@
-// Soft bodies in motion: they fall on SB's terrains by every integrator and make no energy; steps allocate
-// nothing and have the same bits on any number of threads.
+// Soft bodies in motion: they fall on a plane, a tilted plane, a ball and into a bowl by every integrator and
+// make no energy; steps allocate nothing and have the same bits on any number of threads.
 #include <functional>
 
 #include "tests/allocations.h"

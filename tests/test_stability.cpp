@@ -1,5 +1,5 @@
-// The limits of the step: amplifications of a vibration, the highest frequency by Lanczos' method, and what
-// runs bear, against closed forms (validation.md 4.12).
+// The limits of the step against closed forms: the amplification of a vibration, the highest frequency by
+// Lanczos' method, and the longest steps at which runs are stable.
 #include <catch2/catch.hpp>
 
 #include "solver/forces/linear_spring.h"

@@ -106,8 +106,8 @@ void print_paths(const std::vector<PinEntry>& pins, const Cloth& cloth, const St
     Vec3 x = Vec3::Zero();
     for (const int i : particles) x += start.x.segment<3>(3 * i);
     x /= static_cast<double>(particles.size());
-    const std::string text =
-        described(*pin.motion, pin.source, pin.motion->at(0).to_body(x), duration);  // there at time 0
+    // The point that the motion carries is at x at time 0.
+    const std::string text = described(*pin.motion, pin.source, pin.motion->at(0).to_body(x), duration);
     std::printf("  %s of %s: %s\n", counted(static_cast<long>(particles.size()), "vertex").c_str(),
                 cloth.name.c_str(), one_line(text).c_str());
   }

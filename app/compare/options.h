@@ -7,7 +7,7 @@
 namespace drape {
 
 struct CompareWords {
-  // as on the command line; empty when not given.
+  // As on the command line; empty when not given.
   std::string solvers, steps, at, repeats, integrators, time_steps, sizes;
 };
 

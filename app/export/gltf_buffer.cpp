@@ -9,8 +9,8 @@ namespace drape {
 namespace {
 
 constexpr auto little = std::endian::little;
-constexpr int float_type = 5126, uint_type = 5125, vertex_target = 34962,
-              index_target = 34963;  // as in OpenGL
+// Numbers of OpenGL.
+constexpr int float_type = 5126, uint_type = 5125, vertex_target = 34962, index_target = 34963;
 
 int components(const std::string& kind) { return kind == "SCALAR" ? 1 : kind.back() - '0'; }
 

@@ -14,8 +14,8 @@ std::string text(const StepReport& r) {
 }
 
 py::handle step_error() {
-  static const py::object* const type =
-      new py::object(py::module_::import("drape").attr("StepError"));  // for good
+  // Never destroyed: when static objects are, the interpreter is gone.
+  static const py::object* const type = new py::object(py::module_::import("drape").attr("StepError"));
   return *type;
 }
 

@@ -203,8 +203,8 @@ void Recording::find_shapes() {
 // name: of its files.
 void Recording::add_body(const Json& body, const std::string& name,
                          const std::map<std::string, std::vector<Pose>>& poses) {
-  const bool deforms = body["deforms"].is(true),
-             moves = body["moves"].is(true) || body["reacts"].is(true);  // as a whole
+  // moves: the body moves as a whole.
+  const bool deforms = body["deforms"].is(true), moves = body["moves"].is(true) || body["reacts"].is(true);
   const auto found = poses.find(name);
   const std::vector<Pose> moved = moves && found != poses.end() ? found->second : std::vector<Pose>();
   const Pose last = place_of(body["place"]);

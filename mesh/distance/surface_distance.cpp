@@ -209,8 +209,8 @@ SurfacePoint SurfaceDistance::Tree::answer(const Vec3& x, const Candidate& c,
   const Vec3 n = pseudo_normal(c, pose);
   const double side = offset.dot(n) < 0 ? -1 : 1;
   const bool clear = d >= touching && d >= blurred * size;
-  const bool by_offset =
-      clear && c.feature != on_face;  // a face's own normal has more digits than offset / d
+  // On a face, the face's own normal has more digits than offset / d.
+  const bool by_offset = clear && c.feature != on_face;
   const Vec3 away = by_offset ? Vec3(offset / d) : Vec3(side * n);
   if (surface.closed) return {side * d, side * away};
   return {d, d < touching ? n : away};

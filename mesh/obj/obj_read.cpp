@@ -1,7 +1,7 @@
 // Wavefront OBJ reader. Why not tinyobjloader, with numbers: mesh/README.md.
 //   One pass over the text; faces may refer to vertices that come later, so references ahead are remembered
-//   with their line and looked at again at the end. Faces are cut into triangles last, when every position is
-//   known.
+//   with their line and looked at again at the end. Faces are cut into triangles last, when every position
+//   is known.
 #include <algorithm>
 #include <cstdint>
 #include <limits>

@@ -153,7 +153,8 @@ void bench_ball() {
       median(ms), ms[ms.size() * 95 / 100], median(collide));
 }
 
-// SB's cube of 10 x 10 x 10 particles and 12876 springs falls on a plane and lies on it.
+// The cube of data/scenes/soft-plane.toml, 10 x 10 x 10 particles and 12876 springs, falls on a plane and
+// comes to lie on it.
 void bench_cube() {
   set_threads(1);
   std::printf("\n1000 particles, 12876 springs with damping, fall on a plane, one thread\n");
