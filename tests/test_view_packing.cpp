@@ -21,7 +21,7 @@ TEST_CASE("what is packed comes out within half a step", "[view]") {
   for (std::size_t k = 0; k < frames; ++k)
     for (std::size_t i = 0; i < 3 * vertices; ++i)
       values[k][i] = constant && i < vertices ? 2.5 : smooth ? std::sin(0.1 * double(k * i)) : any(random);
-  std::vector<Range> ranges(3);
+  std::vector<ValueRange> ranges(3);
   for (std::size_t c = 0; c < 3; ++c) {
     bool known = false;
     for (const auto& frame : values) widen(ranges[c], known, frame.data() + c * vertices, vertices);
@@ -42,7 +42,7 @@ TEST_CASE("chunks carry on from each other", "[view]") {
   std::mt19937 random(3);
   std::normal_distribution<double> any;
   const std::size_t vertices = 700'000;  // four frames to a chunk
-  std::vector<Range> range(3, Range{-4, 4});
+  std::vector<ValueRange> range(3, ValueRange{-4, 4});
   PageBlocks blocks;
   TrackWriter writer(blocks, range, vertices);
   std::vector<double> start(3 * vertices), speed(3 * vertices), frame(3 * vertices);
@@ -62,7 +62,7 @@ TEST_CASE("chunks carry on from each other", "[view]") {
 
 TEST_CASE("what is not finite is shown as it last was", "[view]") {
   PageBlocks blocks;
-  TrackWriter writer(blocks, {Range{0, 1}}, 2);
+  TrackWriter writer(blocks, {ValueRange{0, 1}}, 2);
   writer.add({0.25, 1});
   writer.add({NAN, INFINITY});
   writer.add({0, 0.5});
@@ -78,10 +78,10 @@ TEST_CASE("200 frames of 10 000 vertices stay under 20 MB", "[view]") {
   std::mt19937 random(11);
   std::normal_distribution<double> noise(0, 3e-4);
   const std::size_t n = 100, vertices = n * n;
-  const Range range{-1, 1};
+  const ValueRange range{-1, 1};
   PageBlocks blocks;
-  TrackWriter positions(blocks, {range, range, range}, vertices), speed(blocks, {Range{0, 4}}, vertices),
-      strain(blocks, {Range{-0.1, 0.1}}, vertices), contact(blocks, {Range{0, 2}}, vertices);
+  TrackWriter positions(blocks, {range, range, range}, vertices), speed(blocks, {ValueRange{0, 4}}, vertices),
+      strain(blocks, {ValueRange{-0.1, 0.1}}, vertices), contact(blocks, {ValueRange{0, 2}}, vertices);
   for (int k = 0; k < 200; ++k) {
     std::vector<double> x(3 * vertices), v(vertices), e(vertices), touch(vertices);
     for (std::size_t i = 0; i < vertices; ++i) {

@@ -16,7 +16,7 @@ using FrameValues = std::function<std::vector<double>(int frame)>;  // component
 // Twice through the frames: how far they go, then what they are.
 Json track(PageBlocks& blocks, int frames, std::size_t components, std::size_t vertices,
            const FrameValues& values, long& not_finite) {
-  std::vector<Range> ranges(components);
+  std::vector<ValueRange> ranges(components);
   std::vector<char> any(components, 0);
   for (int frame = 0; frame < frames; ++frame) {
     end_if_interrupted();

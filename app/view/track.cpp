@@ -38,11 +38,11 @@ void for_residuals(const std::vector<Frame>& frames, std::size_t k, std::size_t 
 
 }  // namespace
 
-void widen(Range& range, bool& any, const double* values, std::size_t count) {
+void widen(ValueRange& range, bool& any, const double* values, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     if (!std::isfinite(values[i])) continue;
-    range = any ? Range{std::min(range.low, values[i]), std::max(range.high, values[i])}
-                : Range{values[i], values[i]};
+    range = any ? ValueRange{std::min(range.low, values[i]), std::max(range.high, values[i])}
+                : ValueRange{values[i], values[i]};
     any = true;
   }
 }
@@ -72,13 +72,13 @@ ChunkCode best_code(const std::vector<Frame>& frames, std::size_t before, std::s
   return best;
 }
 
-TrackWriter::TrackWriter(PageBlocks& blocks, std::vector<Range> components, std::size_t vertices)
+TrackWriter::TrackWriter(PageBlocks& blocks, std::vector<ValueRange> components, std::size_t vertices)
     : blocks_(blocks), components_(std::move(components)), vertices_(vertices) {}
 
 void TrackWriter::add(const std::vector<double>& frame) {
   Frame whole(frame.size());
   for (std::size_t i = 0; i < frame.size(); ++i) {
-    const Range& range = components_[i / vertices_];
+    const ValueRange& range = components_[i / vertices_];
     if (std::isfinite(frame[i])) {
       const double place = range.step() > 0 ? (frame[i] - range.low) / range.step() : 0;
       whole[i] = static_cast<std::uint16_t>(std::clamp(std::round(place), 0.0, 65535.0));
@@ -106,7 +106,7 @@ void TrackWriter::write_chunk() {
 Json TrackWriter::finish() {
   write_chunk();
   Json::List min, step;
-  for (const Range& range : components_) {
+  for (const ValueRange& range : components_) {
     min.emplace_back(range.low);
     step.emplace_back(range.step());
   }

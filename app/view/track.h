@@ -18,7 +18,7 @@
 
 namespace drape {
 
-struct Range {
+struct ValueRange {
   double low = 0, high = 0;
 
   double step() const { return (high - low) / 65535; }
@@ -26,7 +26,7 @@ struct Range {
 
 // Extends the range by those of the `count` values that are finite. `any` says whether the
 // range holds a value yet.
-void widen(Range& range, bool& any, const double* values, std::size_t count);
+void widen(ValueRange& range, bool& any, const double* values, std::size_t count);
 
 struct ChunkCode {
   int order = 1;
@@ -42,7 +42,7 @@ ChunkCode best_code(const std::vector<std::vector<std::uint16_t>>& frames, std::
 
 class TrackWriter {
  public:
-  TrackWriter(PageBlocks& blocks, std::vector<Range> components, std::size_t vertices);
+  TrackWriter(PageBlocks& blocks, std::vector<ValueRange> components, std::size_t vertices);
 
   void add(const std::vector<double>& frame);  // one component after the other
   Json finish();                               // {min, step, chunks}
@@ -52,7 +52,7 @@ class TrackWriter {
   void write_chunk();
 
   PageBlocks& blocks_;
-  std::vector<Range> components_;
+  std::vector<ValueRange> components_;
   std::size_t vertices_;
   std::vector<std::vector<std::uint16_t>> frames_;  // including those before the chunk
   std::size_t before_ = 0;

@@ -81,14 +81,14 @@ class PieceChecker {
   }
 
  private:
-  const Piece& piece(int i) const { return sides_.pieces[z(i)]; }
-  const Run& run(int i) const { return sides_.runs[z(piece(i).run)]; }
+  const Subsegment& piece(int i) const { return sides_.pieces[z(i)]; }
+  const ChainRun& run(int i) const { return sides_.runs[z(piece(i).run)]; }
   int panel(int i) const { return run(i).panel; }
   const Vec2& start(int i) const { return sides_.points[z(panel(i))][z(piece(i).a)]; }
   const Vec2& end(int i) const { return sides_.points[z(panel(i))][z(piece(i).b)]; }
 
   void check_same_panel(int i, int j) const {
-    const Piece &p = piece(i), &q = piece(j);
+    const Subsegment &p = piece(i), &q = piece(j);
     const auto shared = [&] { return std::set<int>{p.a, p.b, q.a, q.b}.size() < 4; };
     if (!shared()) {
       if (meet(start(i), end(i), start(j), end(j))) crosses(i, j, (start(j) + end(j)) / 2);
@@ -101,7 +101,7 @@ class PieceChecker {
   }
 
   [[noreturn]] void crosses(int i, int j, const Vec2& x) const {
-    const Run &a = run(i), &b = run(j);
+    const ChainRun &a = run(i), &b = run(j);
     const std::string at = " near " + place_of(x);
     if (a.where == b.where)
       throw InputError(a.where + ": crosses or touches itself" + at + "; draw it without a crossing");

@@ -59,7 +59,7 @@ class Refinement {
       if (!encroached_.empty()) {
         const Asked asked = encroached_.front();
         encroached_.pop_front();
-        const Piece& piece = refined_.pieces[z(asked.piece)];
+        const Subsegment& piece = refined_.pieces[z(asked.piece)];
         if (piece.a == asked.a && piece.b == asked.b) split_with_twins(asked.piece);
       } else if (!bad_.empty()) {
         const Bad bad = bad_.top();
@@ -88,8 +88,8 @@ class Refinement {
     }
   };
 
-  const Run& run_of(const Piece& piece) const { return sides_.runs[z(piece.run)]; }
-  int panel_of(const Piece& piece) const { return run_of(piece).panel; }
+  const ChainRun& run_of(const Subsegment& piece) const { return sides_.runs[z(piece.run)]; }
+  int panel_of(const Subsegment& piece) const { return run_of(piece).panel; }
 
   void start_panel(int panel) {
     const std::vector<Vec2>& points = sides_.points[z(panel)];
@@ -99,7 +99,7 @@ class Refinement {
     for (const Vec2& x : points) near = mesh.face_at(mesh.add(x, mesh.locate(x, near, false)));
     std::vector<char> closed(refined_.pieces.size(), 0);
     for (std::size_t i = 0; i < refined_.pieces.size(); ++i) {
-      Piece& piece = refined_.pieces[i];
+      Subsegment& piece = refined_.pieces[i];
       if (panel_of(piece) != panel) continue;
       closed[i] = run_of(piece).boundary;
       if (!mesh.force_edge(piece.a + kBox, piece.b + kBox, static_cast<int>(i)))
@@ -108,19 +108,19 @@ class Refinement {
                          "; draw them apart");
     }
     mesh.mark_inside(closed);
-    for (const Piece& piece : refined_.pieces)
+    for (const Subsegment& piece : refined_.pieces)
       if (panel_of(piece) == panel) check_sides(mesh, piece);
   }
 
   // The panel is on the left of what bounds it, on both sides of a line.
-  void check_sides(const Delaunay& mesh, const Piece& piece) const {
+  void check_sides(const Delaunay& mesh, const Subsegment& piece) const {
     const auto inside = [&](int a, int b) {
       const Delaunay::Corner c = mesh.edge_of(a + kBox, b + kBox);
       const Delaunay::Face& f = mesh.faces()[z(c.t)];
       const bool left = f.v[z(Delaunay::after(c.i))] == a + kBox;
       return mesh.faces()[z(left ? c.t : f.next[z(c.i)])].inside;
     };
-    const Run& run = run_of(piece);
+    const ChainRun& run = run_of(piece);
     const bool left = inside(piece.a, piece.b), right = inside(piece.b, piece.a);
     if (run.boundary ? left && !right : left && right) return;
     throw InputError(
@@ -137,7 +137,7 @@ class Refinement {
     for (int i = 0; i < 3; ++i) {
       const int p = f.piece[z(i)];
       if (p >= 0 && encroaches(mesh, p, f.v[z(i)])) {
-        const Piece& piece = refined_.pieces[z(p)];
+        const Subsegment& piece = refined_.pieces[z(p)];
         if (!piece.stuck) encroached_.push_back({p, piece.a, piece.b});
       }
     }
@@ -150,12 +150,12 @@ class Refinement {
     bad_.push({radius2, panel, t, f.v});
   }
 
-  bool in_circle_around(const Delaunay& mesh, const Piece& piece, const Vec2& x) const {
+  bool in_circle_around(const Delaunay& mesh, const Subsegment& piece, const Vec2& x) const {
     return (mesh.points()[z(piece.a + kBox)] - x).dot(mesh.points()[z(piece.b + kBox)] - x) < 0;
   }
 
   bool encroaches(const Delaunay& mesh, int p, int v) const {
-    const Piece& piece = refined_.pieces[z(p)];
+    const Subsegment& piece = refined_.pieces[z(p)];
     if (!in_circle_around(mesh, piece, mesh.points()[z(v)])) return false;
     const int panel = panel_of(piece);
     return !span_sharp_corner(sides_, mesh, panel, piece.a, v - kBox) &&
@@ -187,7 +187,7 @@ class Refinement {
     bool done = false;
     const std::vector<Asked> asked = asked_for(in_the_way_);
     for (const Asked& a : asked) {
-      const Piece& piece = refined_.pieces[z(a.piece)];
+      const Subsegment& piece = refined_.pieces[z(a.piece)];
       if (piece.a == a.a && piece.b == a.b) done = split_with_twins(a.piece) || done;
     }
     if (done && mesh.faces()[z(bad.t)].v == bad.v) bad_.push(bad);
@@ -239,7 +239,7 @@ class Refinement {
     for (int q = refined_.pieces[z(p)].twin; q != p; q = refined_.pieces[z(q)].twin) ring.push_back(q);
     std::vector<std::pair<Delaunay::Corner, Vec2>> places;
     for (const int q : ring) {
-      const Piece& piece = refined_.pieces[z(q)];
+      const Subsegment& piece = refined_.pieces[z(q)];
       const Delaunay& mesh = refined_.panels[z(panel_of(piece))];
       const Vec2 &a = mesh.points()[z(piece.a + kBox)], &b = mesh.points()[z(piece.b + kBox)];
       const Delaunay::Corner edge = mesh.edge_of(piece.a + kBox, piece.b + kBox);
@@ -262,13 +262,13 @@ class Refinement {
     return true;
   }
 
-  static double length2(const Delaunay& mesh, const Piece& piece) {
+  static double length2(const Delaunay& mesh, const Subsegment& piece) {
     return (mesh.points()[z(piece.a + kBox)] - mesh.points()[z(piece.b + kBox)]).squaredNorm();
   }
 
   // A piece that is half as long has been halved already.
   void add_companions(int p, std::vector<Asked>& companions) const {
-    const Piece& piece = refined_.pieces[z(p)];
+    const Subsegment& piece = refined_.pieces[z(p)];
     for (const bool at_end : {false, true}) {
       const int cluster = sides_.legs[z(piece.leg)].sharp[at_end];
       const int apex = corner_of(sides_, piece.leg, at_end);
@@ -278,7 +278,7 @@ class Refinement {
         const Delaunay::Face& f = mesh.faces()[z(t)];
         for (const int q : f.piece) {
           if (q < 0 || q == p) continue;
-          const Piece& other = refined_.pieces[z(q)];
+          const Subsegment& other = refined_.pieces[z(q)];
           const bool first = (other.a == apex && sides_.legs[z(other.leg)].sharp[0] == cluster) ||
                              (other.b == apex && sides_.legs[z(other.leg)].sharp[1] == cluster);
           if (first && length2(mesh, other) > 0.5 * length2(mesh, piece))
@@ -290,7 +290,7 @@ class Refinement {
 
   void split(int p, Delaunay::Corner edge, const Vec2& x) {
     const int fresh = static_cast<int>(refined_.pieces.size());
-    Piece second = refined_.pieces[z(p)];
+    Subsegment second = refined_.pieces[z(p)];
     const int panel = panel_of(second);
     Delaunay& mesh = refined_.panels[z(panel)];
     // A twin in the same panel may have changed what is around the edge.

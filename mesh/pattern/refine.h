@@ -19,8 +19,8 @@
 namespace drape {
 
 struct Refined {
-  std::vector<Delaunay> panels;  // vertex v of panel p of Sides is v + Delaunay::kBoxCorners
-  std::vector<Piece> pieces;     // of all panels, with these numbers
+  std::vector<Delaunay> panels;    // vertex v of panel p of Sides is v + Delaunay::kBoxCorners
+  std::vector<Subsegment> pieces;  // of all panels, with these numbers
 };
 
 // `sides` learns which leg each new vertex is on. Throws InputError when the boundary of a panel is not the

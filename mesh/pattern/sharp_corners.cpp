@@ -39,7 +39,7 @@ class CornerFinder {
     std::vector<int> legs = sides_.corner_legs[z(panel)][z(v)];
     legs.erase(std::unique(legs.begin(), legs.end()), legs.end());
     for (const int leg : legs) {
-      const Run& run = sides_.runs[z(sides_.legs[z(leg)].run)];
+      const ChainRun& run = sides_.runs[z(sides_.legs[z(leg)].run)];
       const std::size_t i = z(leg - run.first_leg);
       for (const bool at_end : {false, true}) {
         if (run.corners[i + (at_end ? 1 : 0)] != v) continue;
@@ -77,7 +77,7 @@ class CornerFinder {
 
 }  // namespace
 
-double leg_fraction(const Run& run, int leg, bool at_end) {
+double leg_fraction(const ChainRun& run, int leg, bool at_end) {
   const int i = leg - run.first_leg + (at_end ? 1 : 0);
   return i == 0 ? 0 : run.curve.end_of(z(i - 1));
 }
@@ -95,7 +95,7 @@ std::vector<double> collars(const Sides& sides, double edge) {
   std::vector<double> length(sides.clusters.size(), 0.6 * edge);
   for (std::size_t c = 0; c < length.size(); ++c)
     for (const auto& [leg, at_end] : sides.clusters[c]) {
-      const Run& run = sides.runs[z(sides.legs[z(leg)].run)];
+      const ChainRun& run = sides.runs[z(sides.legs[z(leg)].run)];
       const double f0 = leg_fraction(run, leg, false), f1 = leg_fraction(run, leg, true);
       length[c] = std::min(length[c], (f1 - f0) * run.curve.length() / 3);
     }
@@ -104,7 +104,7 @@ std::vector<double> collars(const Sides& sides, double edge) {
     const auto for_each = [&](const auto& f) {
       for (std::size_t c = 0; c < length.size(); ++c)
         for (const auto& [leg, at_end] : sides.clusters[c]) {
-          const Run& run = sides.runs[z(sides.legs[z(leg)].run)];
+          const ChainRun& run = sides.runs[z(sides.legs[z(leg)].run)];
           const long place =
               std::lround(class_fraction(run, leg_fraction(run, leg, at_end)) / (10 * kSameFraction));
           f(c, run.curve.length(), std::tuple(run.seam_class, place, at_end != run.turned));
@@ -125,7 +125,7 @@ std::vector<double> collars(const Sides& sides, double edge) {
 }
 
 int corner_of(const Sides& sides, int leg, bool at_end) {
-  const Run& run = sides.runs[z(sides.legs[z(leg)].run)];
+  const ChainRun& run = sides.runs[z(sides.legs[z(leg)].run)];
   return run.corners[z(leg - run.first_leg + (at_end ? 1 : 0))];
 }
 

@@ -11,8 +11,8 @@ namespace drape {
 inline constexpr double kSameFraction = 1e-7;  // fractions of a run that count as one
 
 // Fraction of the run's class for one of the run, and back.
-inline double class_fraction(const Run& run, double f) { return run.turned ? 1 - f : f; }
-double leg_fraction(const Run& run, int leg, bool at_end);  // of a run, at an end of one of its legs
+inline double class_fraction(const ChainRun& run, double f) { return run.turned ? 1 - f : f; }
+double leg_fraction(const ChainRun& run, int leg, bool at_end);  // of a run, at an end of one of its legs
 
 // Fills in the clusters, the legs' sharp ends, and the corners below the bound.
 void find_sharp_corners(const Pattern& pattern, double min_angle, Sides& sides);

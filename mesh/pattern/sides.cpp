@@ -59,7 +59,7 @@ class SideCutter {
     for (std::size_t i = 0; i < points.size(); ++i)
       if ((points[i] - x).norm() <= tolerance_ / 2) return static_cast<int>(i);
     for (std::size_t r = 0; r < sides_.runs.size(); ++r) {
-      const Run& run = sides_.runs[r];
+      const ChainRun& run = sides_.runs[r];
       if (run.panel != panel) continue;
       const double f = nearest_fraction(run.curve, x);
       if ((run.curve.at(f) - x).norm() > tolerance_ / 2) continue;
@@ -123,16 +123,16 @@ class SideCutter {
       throw InputError(chain.where + ": the name '" + chain.names[begin] +
                        "' is given to two parts that do not follow each other; give each its own name");
     const bool closed = corners.front() == corners.back();
-    Run run{panel,
-            name,
-            boundary,
-            closed,
-            ArcLength(std::move(segments)),
-            std::move(corners),
-            static_cast<int>(sides_.legs.size()),
-            0,
-            false,
-            chain.where};
+    ChainRun run{panel,
+                 name,
+                 boundary,
+                 closed,
+                 ArcLength(std::move(segments)),
+                 std::move(corners),
+                 static_cast<int>(sides_.legs.size()),
+                 0,
+                 false,
+                 chain.where};
     for (std::size_t i = 0; i + 1 < run.corners.size(); ++i) {
       for (const int v : {run.corners[i], run.corners[i + 1]})
         sides_.corner_legs[z(panel)][z(v)].push_back(static_cast<int>(sides_.legs.size()));
@@ -180,7 +180,7 @@ class SideCutter {
   // Where every run of a class must have a vertex, in fractions of the class.
   void place_knots() {
     for (std::size_t r = 0; r < sides_.runs.size(); ++r) {
-      const Run& run = sides_.runs[r];
+      const ChainRun& run = sides_.runs[r];
       std::vector<double>& knots = knots_[z(run.seam_class)];
       knots.insert(knots.end(), {0, 1});
       for (std::size_t i = 0; i + 1 < run.curve.segments().size(); ++i)
@@ -191,7 +191,7 @@ class SideCutter {
     const std::vector<double> collar = collars(sides_, edge_);
     for (std::size_t c = 0; c < collar.size(); ++c)
       for (const auto& [leg, at_end] : sides_.clusters[c]) {
-        const Run& run = sides_.runs[z(sides_.legs[z(leg)].run)];
+        const ChainRun& run = sides_.runs[z(sides_.legs[z(leg)].run)];
         const double part = collar[c] / run.curve.length();
         knots_[z(run.seam_class)].push_back(
             class_fraction(run, leg_fraction(run, leg, at_end) + (at_end ? -part : part)));
@@ -223,7 +223,7 @@ class SideCutter {
                 std::vector<double>& cuts) const {
     bool good = true;
     for (const int r : members) {
-      const Run& run = sides_.runs[z(r)];
+      const ChainRun& run = sides_.runs[z(r)];
       const double f = class_fraction(run, a), g = class_fraction(run, b);
       good = good && close_enough(run.curve, std::min(f, g), std::max(f, g));
     }
@@ -259,7 +259,7 @@ class SideCutter {
 
   // The vertices and pieces of a run, in the order of its class.
   void add_pieces(int r, const std::vector<double>& cuts) {
-    const Run& run = sides_.runs[z(r)];
+    const ChainRun& run = sides_.runs[z(r)];
     std::vector<Attached> fixed = attached_[r];
     for (std::size_t i = 0; i < run.corners.size(); ++i)
       fixed.push_back({i == 0 ? 0 : run.curve.end_of(i - 1), run.corners[i]});
@@ -283,13 +283,13 @@ class SideCutter {
       if (vertices[i] == vertices[i + 1])  // both ends of a line were taken for one vertex
         throw InputError(run.where + ": a part at " + place_of(run.curve.at(f)) +
                          " is shorter than half the tolerance; leave it out, or ask for a smaller tolerance");
-      Piece piece{r, vertices[i], vertices[i + 1], f, g, leg_at(run, (f + g) / 2), 0};
+      Subsegment piece{r, vertices[i], vertices[i + 1], f, g, leg_at(run, (f + g) / 2), 0};
       if (run.turned) std::swap(piece.a, piece.b), std::swap(piece.f0, piece.f1);
       sides_.pieces.push_back(piece);
     }
   }
 
-  static int leg_at(const Run& run, double f) {
+  static int leg_at(const ChainRun& run, double f) {
     std::size_t low = 0, high = run.curve.segments().size() - 1;  // the first that ends at f or behind it
     while (low < high) {
       const std::size_t middle = (low + high) / 2;

@@ -1,6 +1,7 @@
 // The boundary of a pattern cut into pieces: where the vertices on outlines, holes and lines are at first.
-//   run    a part of a chain with one name (a side that may be sewn), or one nameless segment
-//   piece  what lies between two vertices that follow each other on a run; an edge of the mesh
+//   run    (ChainRun) a part of a chain with one name (a side that may be sewn), or one nameless segment
+//   piece  (Subsegment, as Ruppert calls it) what lies between two vertices that follow each other on a run;
+//          it is an edge of the mesh
 //   twins  pieces that are sewn on one another: they lie at the same fractions of their runs, and are split
 //          together, so that the vertices of a seam always pair
 //   corner where two segments meet; at a sharp one (less than 60 degrees inside the panel) the first pieces
@@ -16,7 +17,7 @@
 
 namespace drape {
 
-struct Run {
+struct ChainRun {
   int panel;
   std::string name;  // PANEL.NAME, or empty
   bool boundary;     // of an outline or a hole, with the panel on its left; else a line inside the panel
@@ -29,7 +30,7 @@ struct Run {
   std::string where;
 };
 
-struct Piece {
+struct Subsegment {
   int run;
   int a, b;            // vertices, along the run
   double f0, f1;       // fractions of the run's length
@@ -45,9 +46,9 @@ struct Leg {
 };
 
 struct Sides {
-  std::vector<Run> runs;
+  std::vector<ChainRun> runs;
   std::vector<Leg> legs;
-  std::vector<Piece> pieces;
+  std::vector<Subsegment> pieces;
   std::vector<std::vector<Vec2>> points;                    // of each panel; its corners come first
   std::vector<std::vector<std::vector<int>>> corner_legs;   // of each panel and corner
   static constexpr int kCorner = -1, kFree = -2;            // not on one leg: on several, on none

@@ -146,13 +146,14 @@ class Assembler {
   }
 
   std::vector<int> vertices_of(int r) const {
-    std::vector<const Piece*> pieces;
-    for (const Piece& piece : refined_.pieces)
+    std::vector<const Subsegment*> pieces;
+    for (const Subsegment& piece : refined_.pieces)
       if (piece.run == r) pieces.push_back(&piece);
-    std::sort(pieces.begin(), pieces.end(), [](const Piece* a, const Piece* b) { return a->f0 < b->f0; });
+    std::sort(pieces.begin(), pieces.end(),
+              [](const Subsegment* a, const Subsegment* b) { return a->f0 < b->f0; });
     const std::vector<int>& number = numbers_[z(sides_.runs[z(r)].panel)];
     std::vector<int> vertices = {number[z(pieces.front()->a + kBox)]};
-    for (const Piece* piece : pieces) vertices.push_back(number[z(piece->b + kBox)]);
+    for (const Subsegment* piece : pieces) vertices.push_back(number[z(piece->b + kBox)]);
     return vertices;
   }
 
@@ -166,7 +167,7 @@ class Assembler {
   void add_seam(const Seam& seam) {
     SeamReport report{seam.a, seam.b, 0, 0, 0};
     for (std::size_t r = 0; r < sides_.runs.size(); ++r) {
-      const Run& run = sides_.runs[r];
+      const ChainRun& run = sides_.runs[r];
       if (run.name == seam.a) report.length_a = run.curve.length();
       if (run.name == seam.b) report.length_b = run.curve.length();
       if (run.name == seam.a) report.pairs = static_cast<int>(vertices_of(static_cast<int>(r)).size());
