@@ -1,10 +1,8 @@
-// Triangles of the cloth against bodies: what vertices alone would let through, the corner of a table in the
-// middle of a triangle or its rim across an edge, is kept off by a stiff spring on the triangle's three
-// corners.
+// Triangles of the cloth against bodies. Vertices alone would let the corner of a table through the middle of a
+// triangle, or its rim through an edge; a stiff spring on the three corners of the triangle keeps it off.
 //   p = sum w_k x_k    the point of the triangle that is nearest to the body, or deepest in it
-//   g = g_0 + n . (sum w_k (x_k - x_k0) - h v_b)     its gap, linearised as a contact's is; the offset
-//                                                    is half the margin: where vertices rest it touches
-//                                                    nothing
+//   g = g_0 + n . (sum w_k (x_k - x_k0) - h v_b)     the gap of p to the surface, offset by half the margin:
+//                                                    a triangle touches nothing where its vertices rest
 //   E = k/2 g^2 for g < 0,   f_k = -k g w_k n,   K_kl = k w_k w_l n n^T
 //   friction: the damper mu N / |u| on the part u of sum w_k v_k - v_b along the surface, N = -k g and |u|
 //   those of the step before (where it touches anew: of the solve before); below slow [m/s] it creeps instead

@@ -1,5 +1,4 @@
-// Which changes of velocity a particle may take, and which are given.               [Baraff & Witkin 1998,
-// section 5.1]
+// Which changes of velocity a particle may take, and which are given.   [Baraff & Witkin 1998, section 5.1]
 //   dv_i = S_i (free part) + z_i
 //   S = I: free; I - p p^T: locked along p; I - p p^T - q q^T: along two; 0: locked
 //   z: given change in the locked directions

@@ -1,8 +1,7 @@
 // A body in the cloth's way: a shape that may move and that rubs.
 //   friction  Coulomb's coefficients [-]: static holds up to mu_s N, kinetic rubs with mu_k N
 //   margin    the cloth comes to rest this far outside the surface [m]: vertices stop at phi = margin, so
-//   that
-//             the straight edges between them stay clear of a curved body
+//             that the straight edges between them stay clear of a curved body
 //   motion    where the body is at a time; the shape is given in the body's own frame, which is the world's
 //             where nothing moves
 //   restitution  which part of the normal velocity an impact gives back [-], with the contact mode

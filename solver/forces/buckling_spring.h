@@ -1,21 +1,20 @@
-// Diagonal connection: a beam that buckles at once into a circular arc.        [Choi & Ko 2002, section 4;
-// Noh & Jung, eq. 9-13]
+// The connection across an edge: a beam that buckles at once into a circular arc.
+//                                                      [Choi & Ko 2002, section 4; Noh & Jung, eq. 9-13]
 //   sinc(u) = l/L,  u in [0, pi],  kappa = 2 u / L
 //   E(l) = k_b L kappa^2 / 2 = 2 k_b u^2 / L
 //   t(l) = dE/dl = (k_b / L^2) 4 u^2 / (cos u - sinc u)       negative: it pushes apart
-//   t*   = max(t, c_b (l - L))                                the clamp: linear from l = L to its crossing
-//   with t
-// k_b [N m^2], L [m], c_b [N/m].  l >= L: no force.
-// The clamp takes the bending rigidity away below a curvature (solver/forces/noh_jung.h says which;
-// solver/forces/connections.h chooses c_b). When c_b L^3 / k_b <= 4 pi^2 the line never leaves the clamp for good:
-// the connection is then linear throughout.
+//   t*   = max(t, c_b (l - L))       the clamp: linear in l from L down to where the two forces are equal
+// k_b [N m^2], L [m], c_b [N/m].  For l >= L there is no force.
+// The clamp takes the bending rigidity away below a curvature, which solver/forces/noh_jung.h gives;
+// solver/forces/connections.h chooses c_b. When c_b L^3 / k_b <= 4 pi^2 the force never leaves the clamp, and
+// the connection is a linear spring throughout.
 #pragma once
 
 #include "solver/forces/pair_force.h"
 
 namespace drape {
 
-// The law without dimensions, at delta = 1 - l/L in [0, 1].
+// The law in numbers without dimension, at delta = 1 - l/L in [0, 1].
 struct Buckling {
   double energy;     // E L / k_b    = 2 u^2
   double force;      // t L^2 / k_b
@@ -23,8 +22,8 @@ struct Buckling {
 };
 Buckling immediate_buckling(double delta);
 
-// Where the clamp c_hat = c_b L^3 / k_b meets the buckling law: the root of  c_hat delta = -force(delta); 1
-// when it never buckles.
+// The delta at which the clamp c_hat = c_b L^3 / k_b meets the buckling law: the root of
+// c_hat delta = -force(delta). It is 1 when the connection never buckles.
 double clamp_crossing(double c_hat);
 
 struct BucklingSpring {

@@ -1,5 +1,6 @@
-// What joins the particles of a cloth, as plain numbers: a model makes them from a mesh (solver/forces/noh_jung.h,
-// solver/forces/choi_ko.h), and forces are made from them. The ends i, j are vertices of the mesh.
+// What joins the particles of a cloth, as plain numbers. A model makes these numbers from a mesh
+// (solver/forces/noh_jung.h, solver/forces/choi_ko.h), and forces are made from them. The ends i, j are
+// vertices of the mesh.
 //   stretch  TensionSpring                                        k [N/m], L [m]
 //   bend     BucklingSpring                                       k_b [N m^2], c_b [N/m], L [m]
 //   damping  PairDamping along both                               k_d [N s/m], of the fabric
@@ -43,7 +44,7 @@ struct Connections {
 // Jung's weighted forces (eq. 1-3), as a symmetric system.
 std::vector<double> neighbour_weighted(std::vector<double> masses, const Connections& connections);
 
-// 0.1 / c [1/m], of a bending rigidity B [N m] and an area density [kg/m^2] under g = 9.81 m/s^2.
+// 0.1 / c [1/m] of a bending rigidity [N m] and an area density [kg/m^2] under g = 9.81 m/s^2.
 double limp_curvature(double bend, double area_density);
 
 inline constexpr double stiffest_clamp = 10;  // times k_s
@@ -52,8 +53,8 @@ inline constexpr double stiffest_clamp = 10;  // times k_s
 std::vector<std::unique_ptr<Force>> forces_of(const Connections& connections, const Fabric& fabric,
                                               int first_particle = 0);
 
-// The curvature [1/m] below which the clamp makes this cloth limp: the median over its bend connections. 0
-// without any.
+// The curvature [1/m] below which the clamp makes this cloth limp: the median over the bend connections, 0
+// when there are none.
 double limp_below(const Connections& connections, const Fabric& fabric);
 
 }  // namespace drape

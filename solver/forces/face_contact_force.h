@@ -1,8 +1,8 @@
-// The springs of constraints/face_contact.h as a force: its blocks stand where the edges of the cloth have
-// theirs.
-//   E = sum k/2 min(g, 0)^2,   f_k = (-k g n - d u) w_k,   K_kl = k w_k w_l n n^T,
-//   D_kl = d w_k w_l (I - n n^T)
-// What acts is linear within a solve, also where it starts on the other side of g = 0.
+// The springs of constraints/face_contact.h as a force. The blocks of a contact are those of the edges of its
+// triangle.
+//   E = sum k/2 min(g, 0)^2,   f_k = (-k g n - d u) w_k
+//   K_kl = k w_k w_l n n^T,    D_kl = d w_k w_l (I - n n^T)
+// A contact that acts is a linear spring within a solve, also when the solve starts at a gap g > 0.
 #pragma once
 
 #include <memory>

@@ -1,10 +1,9 @@
-// The connections of a triangle mesh.                        [Noh & Jung, section 2; Choi & Ko 2002, eq.
-// 9-13]
+// The connections of a triangle mesh.                   [Noh & Jung, section 2; Choi & Ko 2002, eq. 9-13]
 //   every edge      stretch  k_s = Y (A_1 + A_2) / l^2                          [Van Gelder 1998, eq. 4]
 //   every diagonal  bend     k_b = B l L^3 / (6 h_1 h_2 (h_1 + h_2))            a beam of order 2
-//     Y [N/m]: membrane stiffness per width; B [N m]: bending rigidity per width; l [m]: the edge; A [m^2], h
-//     [m]: area and height over it of the triangles beside it; L [m]: rest length of the connection. So the
-//     same fabric on a finer mesh is the same fabric.
+//     Y [N/m]: membrane stiffness per width; B [N m]: bending rigidity per width; l [m]: length of the edge;
+//     A [m^2], h [m]: areas of the two triangles beside the edge, and their heights over it; L [m]: rest length
+//     of the connection.
 //   or k_s and k_b given, the same for every connection, as in the papers.
 //   The clamp makes it limp below  kappa = sqrt(96 k_b / (c_b L h_1 h_2 (h_1 + h_2)^2)).
 //
@@ -20,10 +19,10 @@
 
 namespace drape {
 
-// Throws InputError (solver/forces/fabric.h) when the fabric is none.
+// Throws InputError when a value of the fabric makes no sense (solver/forces/fabric.h).
 Connections noh_jung_connections(const TriangleMesh& mesh, const TriangleMesh& rest, const Fabric& fabric);
 
-// Masses of the fabric: lumped, weighted by neighbours if it says so.                                    [kg]
+// The masses of the vertices [kg]: lumped, and weighted by neighbours if the fabric says so.
 std::vector<double> masses(const TriangleMesh& mesh, const Fabric& fabric);
 
 // Stretch, bend and damping of a cloth that rests as the mesh is, vertex 0 being the particle

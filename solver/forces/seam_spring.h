@@ -1,8 +1,9 @@
-// A stitch that closes: pulls two particles together, from as far apart as they begin to nothing.
+// A stitch that closes: a spring whose rest length shrinks from the distance at the start to nothing.
 //   E(l) = k/2 (l - L(t))^2   l >= L(t),   0 otherwise
 //   L(t) = L_0 (1 - s),  s = u^2 (3 - 2 u),  u = t / T within [0, 1]
-// k [N/m], L_0 [m] the distance at the start, T [s] the time that it takes. Within a step L is that at its
-// end. Once closed it is a weld (TensionSpring with L = 0): what it holds stays apart by tension / k.
+// k [N/m] is the stiffness, L_0 [m] the distance at the start, T [s] the time that the seam takes to close.
+// Within a step L has its value at the end of the step. A closed seam is a weld (a TensionSpring with L = 0):
+// the two particles stay apart by tension / k.
 #pragma once
 
 #include <algorithm>

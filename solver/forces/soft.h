@@ -1,8 +1,9 @@
-// What a soft body is made of: a lattice of particles (mesh/lattice/lattice.h) with springs of three kinds.      [SB]
-//   LinearSpring  structural, shear and bend, each with its own k [N/m], the same for every spring
-//   damping       along every spring, in the same loop (or of all relative motion, PairDamping)
-// or young [Pa] of an isotropic solid with Poisson's number 1/4 (what central springs can be: Cauchy's
-// relation), on cubes of edge a, each spring as strong as the part of the cells round it that is there:
+// The springs of a soft body: those of a lattice of particles (mesh/lattice/lattice.h), of three kinds.    [SB]
+//   LinearSpring  structural, shear and bend springs, each kind with its own k [N/m]
+//   damping       along every spring; or of all relative motion (PairDamping)
+// In place of the three stiffnesses, young [Pa] gives those of an isotropic solid with Poisson's number 1/4,
+// the only one that springs between points can have (Cauchy's relation). The cells are cubes of edge a, and a
+// spring is as strong as the part of the cells around it that the body fills:
 //   k_structural = 22/35 E a,   k_shear = 6/35 E a,   k_bend = 0
 //   from C_ijkl = 1/V sum k l^2 t_i t_j t_k t_l:  C11 = (k_s + 10/3 k_h) / a,  C12 = C44 = 7/3 k_h / a, and
 //   C11 = 3 C12
@@ -30,7 +31,7 @@ struct SoftMaterial {
 // Throws InputError naming the field when a value is negative, not finite, or zero where it may not be.
 void check(const SoftMaterial& material);
 
-// volume [m^3]: that of the body, which has all its mass; by default that of the cells.
+// volume [m^3]: the volume of the body, which carries the whole mass. Unset: the volume of the cells.
 std::vector<double> masses(const Lattice& lattice, const SoftMaterial& material,
                            std::optional<double> volume = {});
 

@@ -3,9 +3,9 @@
 //   v = its target in the locked directions;   Newton's direction A dv = -F, A = M + h D + h^2 K of here;
 //   KINSOL looks along it for less |F|.                        [Dennis & Schnabel 1996, algorithm A6.3.1]
 // |F| has false minima where edges go slack. Where that search ends in one, KINSOL goes on from there with
-// directions that are cut short by halves until they lower the incremental potential Phi(v) (solver/integrators/bdf.h),
-// of which F is the gradient. (By Phi from the start it takes longer: kinks keep its steps short.) The last
-// resort is the majorant K; then the step is halved.
+// directions that are cut short by halves until they lower the incremental potential Phi(v), of which F is the
+// gradient (solver/integrators/merit.h). (To go by Phi from the start takes longer: kinks keep its steps
+// short.) The last resort is the majorant K; then the step is halved.
 // When the contacts do not agree with the solution, they change and KINSOL begins again from it. x [m], v
 // [m/s], M [kg], f [N], h [s], F [N s].
 #include <kinsol/kinsol.h>

@@ -5,10 +5,10 @@
 //   (M + g D + g^2 K) dv = M rv - g K rx,   dx = rx + g dv,
 // with the positive semidefinite K: Newton's iteration may need more rounds for it, its end is the same.
 // Adams' formulas use no matrix (fixed-point iteration), nor does ERK: both need steps as short as the
-// stiffest vibration asks for, and give up after max_inner_steps.      [Hindmarsh et al. 2005; Reynolds et
-//                                                                       al. 2023]
+// stiffest vibration asks for, and give up after max_inner_steps.
+//                                                      [Hindmarsh et al. 2005; Reynolds et al. 2023]
 // What bodies hold at the start of the step is held in it; contact is settled at its end, by
-// solver/integrators/held_motion.h. Where that changes the motion or what is held, SUNDIALS starts anew from there.
+// solver/integrators/held_motion.h. Where that changes the motion or what is held, SUNDIALS starts anew.
 #include <arkode/arkode_arkstep.h>
 #include <cvode/cvode.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>

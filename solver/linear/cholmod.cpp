@@ -1,9 +1,7 @@
-// SuiteSparse's CHOLMOD over the same filtered system: LL^T, the analysis kept while the pattern's serial
-// stands.
-//   The supernodal part that it links is GPL (README.md says what that means); without SuiteSparse this file
-//   is not built.
-//                                                              [Chen, Davis, Hager & Rajamanickam 2008,
-//                                                              CHOLMOD]
+// SuiteSparse's CHOLMOD over the same filtered system: LL^T. The analysis is kept while the serial of the
+// matrix stands.                                       [Chen, Davis, Hager & Rajamanickam 2008, CHOLMOD]
+//   The supernodal part of CHOLMOD is GPL (README.md says what that means). Without SuiteSparse this file is
+//   not built.
 #include <cholmod.h>
 #include <dlfcn.h>
 

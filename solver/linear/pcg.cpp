@@ -1,11 +1,9 @@
 // The preconditioned conjugate gradient under a filter, in its two readings:
-//   mpcg  Baraff & Witkin's modified CG: dv itself is the unknown; residual and search directions are
-//   filtered.
-//         Start dv_0 = S guess + z and symmetric convergence test of Ascher & Boxerman.
+//   mpcg  Baraff & Witkin's modified CG. The unknown is dv itself; residual and search directions are filtered.
+//         It starts from dv_0 = S guess + z and has the symmetric convergence test of Ascher & Boxerman.
 //                                              [Baraff & Witkin 1998, 5.3; Ascher & Boxerman 2003]
-//   ppcg  the prefiltered system (S A S + I - S) y = S (b - A z), dv = y + z, y_0 = S guess: plain CG, which
-//         takes any preconditioner that was built for the projected matrix.  [Tamstorf, Jones & McCormick
-//         2015]
+//   ppcg  plain CG on the prefiltered system (S A S + I - S) y = S (b - A z), dv = y + z, y_0 = S guess. It
+//         takes any preconditioner that was built for the projected matrix. [Tamstorf, Jones & McCormick 2015]
 // In exact arithmetic both take the same steps; so the loop stands here once, and they differ in what they
 // begin from and in what is added at the end.
 #include "solver/linear/pcg.h"

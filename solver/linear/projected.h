@@ -1,5 +1,5 @@
-// The filtered system as an ordinary sparse one, for solvers that know no filter:             [Tamstorf,
-// Jones & McCormick 2015]
+// The filtered system as an ordinary sparse one, for solvers that know no filter.
+//                                                                 [Tamstorf, Jones & McCormick 2015]
 //   (S A S + I - S) y = S (b - A z),   dv = S y + z
 // The lower triangle, column by column; its pattern is kept while the serial of the matrix stands, values are
 // refilled.
