@@ -12,19 +12,22 @@
 namespace drape {
 
 struct StepOptions {
-  int newton_iterations = 1;  // linear solves per step; 1 is Baraff & Witkin's step
-  double newton_tolerance =
-      1e-6;                 // of the nonlinear residual, relative to h |m g|: fewer iterations when it is met
+  // Linear solves per step at least; 1 is Baraff & Witkin's step.
+  int newton_iterations = 1;
+  // Of the nonlinear residual, relative to h |m g|. When it is met the step needs no more iterations.
+  double newton_tolerance = 1e-6;
   double tolerance = 1e-6;  // of the linear solve, see LinearOptions
-  int max_linear_iterations =
-      0;  // 0: chosen by size, and reaching it is a failure; given: the solve stops there and says so
-  std::optional<ContactMode> contact = {};  // none: what the integrator does best
-  int max_contact_solves = 8;  // how often a step may be solved again because a contact changed, for every
-                               // motion that is tried for a body that reacts
+  // 0: the limit is chosen by the size of the system, and reaching it is a failure. When a limit is given, the
+  // solve stops there, and the report says so.
+  int max_linear_iterations = 0;
+  std::optional<ContactMode> contact = {};  // unset: the mode that suits the integrator best
+  // How often a step may be solved again because a contact changed, for every motion that is tried for a body
+  // that reacts.
+  int max_contact_solves = 8;
   int max_rescues = 20;  // further Newton iterations when a full one would raise the incremental potential
   int max_halvings = 6;  // how often a failed step may be halved before it is given up
-  // Of the integrators with inner steps (cvode-, arkode-): the error of one, relative to |x| and |v|, and
-  // below which it does not matter.
+  // Of the integrators with inner steps (cvode-, arkode-): the error of an inner step may be
+  // relative_tolerance times |x| or |v|, plus the absolute tolerance.
   double relative_tolerance = 1e-4;
   double absolute_tolerance_position = 1e-5;  // m
   double absolute_tolerance_velocity = 1e-3;  // m/s
@@ -34,25 +37,25 @@ struct StepOptions {
 // Why and where a step failed.
 struct StepFailure {
   std::string what;   // "the matrix is not positive definite", "not a finite number"
-  int particle = -1;  // where it is worst
-  std::string force;  // which term, when it is known
+  int particle = -1;  // where the trouble is worst
+  std::string force;  // the force that causes it, when that is known
 };
 
 struct StepReport {
-  bool done = true;           // false: the state is as it was before, though not bodies that react
-  StepFailure failure;        // when not done
-  int substeps = 1;           // pieces the step was cut into, because it failed whole
-  int inner_steps = 0;        // of the integrators that choose them
-  int inner_rejected = 0;     // inner steps tried in vain: too large an error, or no convergence
-  int newton_iterations = 0;  // these summed over the substeps
+  bool done = true;        // false: the state is as it was before the step, but bodies that react may not be
+  StepFailure failure;     // of a step that is not done
+  int substeps = 1;        // pieces that the step was cut into, because it failed as a whole
+  int inner_steps = 0;     // of the integrators that choose their inner steps
+  int inner_rejected = 0;  // inner steps tried in vain: the error was too large, or nothing converged
+  int newton_iterations = 0;  // this and the next counts are sums over the substeps
   int linear_solves = 0;
   int linear_iterations = 0;
-  int rescues = 0;         // Newton iterations that had to be cut short, so that energy is not made
-  int guarded = 0;         // particles stopped at a surface outside the equations
-  double residual = 0;     // relative, the worst of the solves that the step ended with
+  int rescues = 0;         // Newton iterations that had to be cut short, so that no energy is made
+  int guarded = 0;         // particles that were stopped at a surface outside the equations
+  double residual = 0;     // relative: the worst of the solves that the substeps ended with
   bool converged = true;   // every solve reached its tolerance
   int contacts = 0;        // particles in contact at the end
-  double penetration = 0;  // m, deepest particle inside a body at the start
+  double penetration = 0;  // m: how far the deepest particle was inside a body at the start
   double assemble_ms = 0, solve_ms = 0, collide_ms = 0, step_ms = 0;
 };
 
