@@ -13,6 +13,7 @@
 #include "app/recording/steps_csv.h"
 #include "app/simulation/measure.h"
 #include "mesh/base/errors.h"
+#include "mesh/base/hash.h"
 #include "mesh/triangles/generate.h"
 #include "tests/folder.h"
 
@@ -146,4 +147,12 @@ TEST_CASE("measures of a state", "[output]") {
   CHECK(d.max == 5);
   CHECK(d.mean == Approx(3));
   CHECK(distribution({}).max == 0);
+}
+
+TEST_CASE("hashes are those that FNV-1a is known by", "[output]") {
+  const auto hash = [](const std::string& text) { return Fnv1a().add_all(text); };
+  CHECK(hash("").text() == "cbf29ce484222325");
+  CHECK(hash("a").text() == "af63dc4c8601ec8c");
+  CHECK(hash("foobar").value() == 0x85944171f73967e8u);
+  CHECK(Fnv1a().add("foo", 3).add("bar", 3).text() == hash("foobar").text());
 }

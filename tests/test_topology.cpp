@@ -2,6 +2,7 @@
 // triangles, walks that end on any mesh.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <random>
@@ -208,4 +209,10 @@ TEST_CASE("pieces are numbered by their lowest vertex", "[topology]") {
   CHECK(connected_pieces(mesh_of(3, {{0, 0, 1}})) == std::vector<int>{0, 1, 2});
   const std::vector<int> one = connected_pieces(sphere(2, 1));
   CHECK(std::count(one.begin(), one.end(), 0) == static_cast<int>(one.size()));
+}
+
+TEST_CASE("vertices at one place are one; those without a place are none", "[topology]") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Vec3> places = {{1, 0, 2}, {nan, 0, 0}, {1, -0.0, 2}, {0, 0, 0}, {nan, 0, 0}, {1, 0, 2}};
+  CHECK(welded(places) == std::vector<int>{0, 1, 0, 3, 4, 0});
 }
