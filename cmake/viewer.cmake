@@ -1,6 +1,6 @@
-# The page of `drape view`: what npm brings is fetched once, here; bundling is part of the build. Without it drape is built all the
-# same, and says what is missing.
-#   drape_viewer_sources(VARIABLE): the C++ source with the page, or one without
+# The page of `drape view`, and what draws the plots of compare.html: what npm brings is fetched once, here; bundling is part of the
+# build. Without it drape is built all the same, and says what is missing.
+#   drape_viewer_sources(VARIABLE): the C++ source with them, or one without
 function(drape_viewer_sources variable)
   set(web ${CMAKE_CURRENT_SOURCE_DIR}/view/web)
   set(work ${CMAKE_BINARY_DIR}/viewer)
@@ -17,8 +17,9 @@ function(drape_viewer_sources variable)
     OUTPUT ${CMAKE_BINARY_DIR}/viewer_page.cpp
     COMMAND ${CMAKE_COMMAND} -E copy_directory ${web} ${work}
     COMMAND ${DRAPE_NODE} ${work}/bundle.mjs ${CMAKE_BINARY_DIR}/viewer_page.cpp
-    DEPENDS ${sources} ${web}/bundle.mjs ${web}/page.html ${web}/page.css ${web}/style.css ${work}/fetched
-    COMMENT "Bundling the page of drape view" VERBATIM)
+    DEPENDS ${sources} ${web}/bundle.mjs ${web}/page.html ${web}/page.css ${web}/style.css ${web}/colours.css
+            ${web}/compare.css ${work}/fetched
+    COMMENT "Bundling the page of drape view and the plots of drape compare" VERBATIM)
   set(${variable} ${CMAKE_BINARY_DIR}/viewer_page.cpp ${CMAKE_BINARY_DIR}/viewer_missing.cpp PARENT_SCOPE)
 endfunction()
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/view/page_template.h"
 #include "tests/folder.h"
 
 #include "tests/places.h"
@@ -52,6 +53,18 @@ inline std::vector<std::string> cells(const std::string& line) {
       all.back() += c;
   }
   return all;
+}
+
+// compare.html has so many plots: a figure and data for each. Without the viewer it says what is missing.
+inline void check_plots(const std::string& html, std::size_t plots) {
+  if (plot_script().empty()) {
+    CHECK(html.find(missing_viewer()) != std::string::npos);
+    return;
+  }
+  CHECK(count(html, "<figure>") == static_cast<long>(plots));
+  const std::string open = "<script type=\"application/json\" id=\"drape-plots\">";
+  const std::size_t at = html.find(open) + open.size();
+  CHECK(JsonValue::parse(html.substr(at, html.find("</script>", at) - at)).size() == plots);
 }
 
 // A CSV file holds what the rows of compare.json do.

@@ -49,7 +49,7 @@ TEST_CASE("integrators: what differs by linear algebra, what by time integration
   }
   CHECK(json["verdicts"].size() == 2 + 4);
   check_same_table(content(desk.path / "o/compare-integrators.csv"), json["runs"]);
-  CHECK(count(content(desk.path / "o/compare.html"), "<svg") == 2);
+  check_plots(content(desk.path / "o/compare.html"), 2);
 }
 
 namespace {

@@ -7,6 +7,7 @@
 #include "app/compare/files.h"
 #include "app/compare/html.h"
 #include "app/compare/tables.h"
+#include "app/view/page_template.h"
 #include "tests/desk.h"
 
 #include "tests/places.h"
@@ -44,10 +45,10 @@ TEST_CASE("compare.json, compare.csv and compare.html hold it all", "[compare]")
   CHECK(count(content(desk.path / "o/compare-integrators.csv"), "\n") == 1);  // no runs
 
   const std::string html = content(desk.path / "o/compare.html");
-  for (const char* outside : {"http", "src=", "<script", "<link", "@import", "url("})
+  for (const char* outside : {"http:", "https:", "src=", "<link", "@import", "url("})
     CHECK(count(html, outside) == 0);
-  CHECK(count(html, "<svg") == 4);  // time, iterations, convergence of two sizes
-  CHECK(count(html, "<title>") == 5);
+  check_plots(html, 4);  // time, iterations, convergence of two sizes
+  CHECK(count(html, "<title>") == 1);
   CHECK(count(html, "<table>") == count(html, "</table>"));
   CHECK_THAT(html, Contains("mpcg@1e-1: differ: sheet of 100 vertices"));
 }
@@ -209,16 +210,6 @@ TEST_CASE("a solver agrees when all its rows do, and a table is of one step and 
                        Contains("5 steps taken"));
 }
 
-TEST_CASE("seven series have seven colours", "[compare]") {
-  Plot plot{"t", "x", "y", false, false, {}};
-  for (int k = 0; k < 7; ++k) plot.series.push_back({std::to_string(k), {0, 1}, {0, 1.0 * k}});
-  const std::string text = svg(plot), mark = "<polyline fill=\"none\" stroke-width=\"1.8\" stroke=\"";
-  std::set<std::string> colours;
-  for (std::size_t at = text.find(mark); at != text.npos; at = text.find(mark, at + 1))
-    colours.insert(text.substr(at + mark.size(), 7));
-  CHECK(colours.size() == 7);
-}
-
 TEST_CASE("a solver looks the same in every plot", "[compare]") {
   Comparison comparison;
   comparison.at = {1};
@@ -260,55 +251,6 @@ TEST_CASE("work and precision: seconds against metres, without the reference and
   CHECK(plots[0].series[1].y[0] == Approx(0.3));
 }
 
-namespace {
-
-// Where the circles of a plot are, but for the legend's.
-std::vector<std::pair<double, double>> circles(const std::string& text) {
-  std::vector<std::pair<double, double>> all;
-  const auto number_behind = [&](const char* what, std::size_t from) {
-    return std::stod(text.substr(text.find(what, from) + 4));
-  };
-  for (std::size_t at = text.find("<circle"); at != text.npos; at = text.find("<circle", at + 1))
-    all.emplace_back(number_behind("cx=\"", at), number_behind("cy=\"", at));
-  all.pop_back();
-  return all;
-}
-
-// Where a label of an axis stands.
-double label_at(const std::string& text, const std::string& label, const char* coordinate) {
-  const std::size_t end = text.find(">" + label + "</text>");
-  REQUIRE(end != text.npos);
-  return std::stod(text.substr(text.find(coordinate, text.rfind("<text", end)) + 3));
-}
-
-}  // namespace
-
-TEST_CASE("points lie where the axes say", "[compare]") {
-  for (const bool logarithmic : {false, true}) {
-    const std::vector<double> x =
-        logarithmic ? std::vector<double>{1, 10, 1000} : std::vector<double>{10, 20, 40};
-    const std::vector<double> y =
-        logarithmic ? std::vector<double>{0.01, 1, 0.1} : std::vector<double>{3, 1, 2};
-    const std::string text = svg({"t", "x", "y", logarithmic, logarithmic, {{"s", x, y}}});
-    const auto at = circles(text);
-    REQUIRE(at.size() == 3);
-    CHECK((at[1].first - at[0].first) / (at[2].first - at[0].first) == Approx(1.0 / 3).epsilon(0.01));
-    CHECK((at[2].second - at[0].second) / (at[1].second - at[0].second) == Approx(0.5).epsilon(0.01));
-    CHECK((at[1].second < at[0].second) == (y[1] > y[0]));  // up is more
-    const char* labels[][2] = {{"20", "2"}, {"10", "0.1"}};
-    std::istringstream line(text.substr(text.find(" points=\"") + 9));  // goes through the same points
-    for (const auto& [px, py] : at) {
-      double lx = 0, ly = 0;
-      char comma = 0;
-      line >> lx >> comma >> ly;
-      CHECK((lx == px && ly == py));
-    }
-    CHECK(label_at(text, labels[logarithmic][0], "x=\"") == Approx(at[1].first));
-    CHECK(label_at(text, labels[logarithmic][1], "y=\"") == Approx(at[2].second + 4));  // half a letter
-    for (const auto& [px, py] : at) CHECK((px >= 80 && px <= 510 && py >= 34 && py <= 324));
-  }
-}
-
 TEST_CASE("the growth is fitted", "[compare]") {
   Comparison comparison;
   comparison.at = {3};
@@ -331,11 +273,31 @@ TEST_CASE("the growth is fitted", "[compare]") {
 
 TEST_CASE("a plot leaves out what an axis cannot show", "[compare]") {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::string text =
-      svg({"a < b", "x", "y", true, true, {{"one & two", {1, 10, 100, 0, 5}, {1e-3, 1, nan, 1, -1}}}});
-  CHECK(count(text, "<circle") == 2 + 1);  // and the legend's
-  CHECK_THAT(text, Contains("a &lt; b") && Contains("one &amp; two") && !Contains("nan"));
-  CHECK_THAT(svg({"empty", "x", "y", true, true, {{"zero", {0}, {0}}}}), Contains("nothing to plot"));
-  CHECK_THAT(svg({"point", "x", "y", false, false, {{"one", {3}, {3}}}}),
-             Contains("<circle") && !Contains("nan"));
+  const auto shown = [](const Plot& plot) { return JsonValue::parse(compact_json_text(json_of(plot))); };
+  const std::vector<double> x = {1, 10, 100, 0, 5}, y = {1e-3, 1, nan, 1, -1};
+  const JsonValue both = shown({"t", "x", "y", true, true, {{"a", x, y}, {"b", {2}, {3}}}});
+  CHECK(both["series"][0]["x"] == JsonValue({1, 10}));
+  CHECK(both["series"][0]["y"] == JsonValue({1e-3, 1}));
+  CHECK(both["series"][1]["x"] == JsonValue::array({2}));
+  for (const int k : {0, 1}) CHECK(both["series"][k]["look"] == k);  // their own colours and markers
+  CHECK(shown({"t", "x", "y", false, false, {{"a", x, y}}})["series"][0]["x"] == JsonValue({1, 10, 0, 5}));
+  CHECK(json_of({"empty", "x", "y", true, true, {{"zero", {0}, {0}}}}).is_null());
+}
+
+TEST_CASE("a plot without a point is a sentence, and names cannot end the page's data", "[compare]") {
+  Comparison comparison;
+  comparison.at = {1};
+  comparison.sizes = {9};
+  comparison.solvers = {"</script>"};
+  SolverRow row;
+  row.vertices = 9, row.step = 1, row.solver = "</script>", row.report.iterations = 3, row.residual = 0.5;
+  comparison.rows = {row};
+  const std::string html = compare_html(comparison);
+  if (plot_script().empty()) {
+    CHECK_THAT(html, Contains(missing_viewer()));
+    return;
+  }
+  CHECK_THAT(html, Contains("Time against vertices: there is nothing to plot."));  // it took no time
+  check_plots(html, 2);
+  CHECK(count(html, "</script>") == 2);  // of the data and of the script
 }

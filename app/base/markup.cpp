@@ -19,4 +19,15 @@ std::string escaped(std::string_view text) {
   return safe;
 }
 
+std::string json_for_html(const Json& json) {
+  std::string text;
+  for (const char c : compact_json_text(json)) {
+    if (c == '<')
+      text += "\\u003c";
+    else
+      text += c;
+  }
+  return text;
+}
+
 }  // namespace drape

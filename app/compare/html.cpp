@@ -5,6 +5,7 @@
 
 #include "app/base/markup.h"
 #include "app/compare/tables.h"
+#include "app/view/page_template.h"
 
 namespace drape {
 namespace {
@@ -128,11 +129,58 @@ th, td { padding: .15em .7em; text-align: right; white-space: nowrap; border-bot
 th:first-child { text-align: left; padding-left: 0 }
 .bad { font-weight: bold; text-decoration: underline }
 .note { margin: .1em 0; font-size: .87em }
-.plots { display: flex; flex-wrap: wrap; gap: 1.5em }
-svg { width: 44em; max-width: 100%; height: auto }
 )";
 
+bool visible(const Plot& plot, double x, double y) {
+  return std::isfinite(x) && std::isfinite(y) && (!plot.log_x || x > 0) && (!plot.log_y || y > 0);
+}
+
+// Figures with their titles, and what the script fills them with.
+std::string html_of(const std::vector<Plot>& plots) {
+  if (plot_script().empty())
+    return "<p class=\"note\">The plots are drawn by the code of drape view, and " +
+           escaped(missing_viewer()) + ".</p>\n";
+  std::string text = "<noscript><p>A script draws the plots, and the browser runs none.</p></noscript>\n";
+  Json::List shown;
+  for (const Plot& plot : plots) {
+    Json json = json_of(plot);
+    if (json.is_null()) {
+      text += "<p>" + escaped(plot.title) + ": there is nothing to plot.</p>\n";
+      continue;
+    }
+    shown.push_back(std::move(json));
+  }
+  text += "<div class=\"plots\">\n";
+  for (const Json& json : shown)
+    text +=
+        "<figure><figcaption><strong>" + escaped(json["title"].text()) + "</strong></figcaption></figure>\n";
+  return text + "</div>\n<script type=\"application/json\" id=\"drape-plots\">" + json_for_html(shown) +
+         "</script>\n";
+}
+
 }  // namespace
+
+Json json_of(const Plot& plot) {
+  Json::List all;
+  bool empty = true;
+  for (std::size_t k = 0; k < plot.series.size(); ++k) {
+    const Series& series = plot.series[k];
+    Json::List x, y;
+    for (std::size_t i = 0; i < series.x.size(); ++i)
+      if (visible(plot, series.x[i], series.y[i])) x.emplace_back(series.x[i]), y.emplace_back(series.y[i]);
+    empty = empty && x.empty();
+    all.push_back(Json::Members{{"name", series.name},
+                                {"x", std::move(x)},
+                                {"y", std::move(y)},
+                                {"line", series.line},
+                                {"every", series.every},
+                                {"dashed", series.dashed},
+                                {"look", series.look < 0 ? static_cast<long>(k) : series.look}});
+  }
+  if (empty) return {};
+  return Json::Members{{"title", plot.title}, {"x_label", plot.x_label}, {"y_label", plot.y_label},
+                       {"log_x", plot.log_x}, {"log_y", plot.log_y},     {"series", std::move(all)}};
+}
 
 std::vector<Plot> plots_of(const Comparison& comparison) {
   std::vector<Plot> plots;
@@ -154,17 +202,19 @@ std::vector<Plot> plots_of(const Comparison& comparison) {
 std::string compare_html(const Comparison& comparison) {
   std::string text =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width\">\n<title>drape compare: " +
-      escaped(comparison.scene) + "</title>\n<style>\n" + style +
+      "content=\"width=device-width\">\n<meta http-equiv=\"Content-Security-Policy\" content=\"default-src "
+      "'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:\">\n<title>drape "
+      "compare: " +
+      escaped(comparison.scene) + "</title>\n<style>\n" + std::string(plot_style()) + "\n" + style +
       "</style>\n</head>\n<body>\n<h1>drape compare: " + escaped(comparison.scene) + "</h1>\n";
   for (const std::string& line : headline(comparison)) text += "<p>" + escaped(line) + "</p>\n";
   text += "<h2>Verdicts</h2>\n<ul>\n";
   for (const std::string& line : verdicts(comparison)) text += "<li>" + escaped(line) + "</li>\n";
-  text += "</ul>\n<h2>Plots</h2>\n<div class=\"plots\">\n";
-  for (const Plot& plot : plots_of(comparison)) text += svg(plot);
-  text += "</div>\n<h2>Tables</h2>\n";
+  text += "</ul>\n<h2>Plots</h2>\n" + html_of(plots_of(comparison)) + "<h2>Tables</h2>\n";
   for (const ReportTable& table : tables_of(comparison)) text += html_of(table);
-  return text + "<p>drape " DRAPE_VERSION "</p>\n</body>\n</html>\n";
+  text += "<p>drape " DRAPE_VERSION "</p>\n";
+  if (!plot_script().empty()) text += "<script>\n" + std::string(plot_script()) + "\n</script>\n";
+  return text + "</body>\n</html>\n";
 }
 
 }  // namespace drape

@@ -1,5 +1,5 @@
-// compare.html: the tables and plots of a comparison in one file that loads nothing else, not
-// from the network either.
+// compare.html: the tables and plots of a comparison in one file that needs nothing else, no network either.
+// Where the viewer is not in this build, a line says so in place of the plots.
 #pragma once
 
 #include "app/compare/comparison.h"

@@ -1,11 +1,10 @@
-// A line plot as inline SVG: axes with ticks, linear or logarithmic, a legend, and a title that
-// screen readers read out.
-//   Lines, text and axes take the colour of the page, so the plot is legible on light and dark pages. Every
-//   series has its own colour and its own marker, so it is legible without colours.
+// What a plot of compare.html shows. It is drawn in the browser: app/view/web/src/compare.js.
 #pragma once
 
 #include <string>
 #include <vector>
+
+#include "app/base/json.h"
 
 namespace drape {
 
@@ -14,9 +13,9 @@ struct Series {
   // Points that cannot be shown (not finite, or <= 0 on a logarithmic axis) are left out.
   std::vector<double> x, y;
   bool line = true;
-  int every = 1;        // a marker at every so many points; 0: none
-  bool dashed = false;  // and in the colour of the text: for a limit, not a measurement
-  int look = -1;        // number of the colour and marker; -1: by the place among the series
+  int every = 1;        // how many points there are to a marker; 0: none
+  bool dashed = false;  // in the colour of the text: a limit, not a measurement
+  int look = -1;        // which colour and marker; -1: by its place among the series
 };
 
 struct Plot {
@@ -25,7 +24,7 @@ struct Plot {
   std::vector<Series> series;
 };
 
-// "<svg ...>...</svg>", or a sentence in its place when no point can be shown.
-std::string svg(const Plot& plot);
+// As the page holds it, with the points that can be shown; null when no point can.
+Json json_of(const Plot& plot);
 
 }  // namespace drape

@@ -1,8 +1,10 @@
-// In place of the page where it could not be made.
+// In place of what is bundled where it could not be.
 #include "app/view/page_template.h"
 
 namespace drape {
 
 std::string_view page_template() { return {}; }
+std::string_view plot_style() { return {}; }
+std::string_view plot_script() { return {}; }
 
 }  // namespace drape

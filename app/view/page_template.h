@@ -1,5 +1,4 @@
-// The page of `drape view` without its data, bundled from web/ when the program was built.
-//   Places to fill in: @@TITLE@@ (twice) and @@DATA@@.
+// What was bundled from web/ when this program was built.
 #pragma once
 
 #include <string>
@@ -7,7 +6,12 @@
 
 namespace drape {
 
-std::string_view page_template();  // empty when this build has no viewer
-std::string missing_viewer();      // says why, and what to do
+// The page of `drape view` without its data. Places in it: @@TITLE@@ (twice) and @@DATA@@.
+std::string_view page_template();  // empty: the viewer is not in this build
+
+// What draws the plots of compare.html; the script goes to the end of the page.
+std::string_view plot_style(), plot_script();  // empty: the viewer is not in this build
+
+std::string missing_viewer();  // why, and what to do
 
 }  // namespace drape

@@ -18,18 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view mark = "<meta name=\"generator\" content=\"drape view\">";  // in web/page.html
 
-// No '<' is left: nothing in it can end the element it stands in.
-std::string json_for_html(const Json& json) {
-  std::string text;
-  for (const char c : compact_json_text(json)) {
-    if (c == '<')
-      text += "\\u003c";
-    else
-      text += c;
-  }
-  return text;
-}
-
 // The template with its places filled; what is put in is not searched for places again.
 std::string filled(std::string_view page, const std::string& title, const std::string& data) {
   std::string html;

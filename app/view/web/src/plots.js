@@ -1,5 +1,6 @@
 // What steps.csv says, over time: small plots whose line follows the frame that is shown; a click in one goes there.
 import uPlot from "uplot";
+import { css, decades, linear_range, whole_decades } from "./axes.js";
 import { short } from "./words.js";
 
 const plots = [
@@ -11,8 +12,6 @@ const plots = [
   { title: "Time of a step", unit: "ms", series: { assemble_ms: "assemble", solve_ms: "solve", collide_ms: "collide", step_ms: "all" } },
 ];
 const height = 108;
-
-const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 export class Plots {
   #all = [];
@@ -114,26 +113,4 @@ function options(plot, names, width) {
     ],
     series: [{}, ...names.map((name, k) => ({ stroke: () => css(`--series-${k}`), width: 1.5, points: { show: false } }))],
   };
-}
-
-// A few powers of ten.
-function decades(u, axis, low, high) {
-  const first = Math.ceil(Math.log10(low) - 1e-9), last = Math.floor(Math.log10(high) + 1e-9), stride = Math.ceil((last - first + 1) / 4);
-  const splits = [];
-  for (let k = last; k >= first; k -= stride) splits.unshift(10 ** k);
-  return splits;
-}
-
-function whole_decades(u, low, high) {
-  if (low === null || high === null) return [0.1, 1];
-  const first = Math.floor(Math.log10(low)), last = Math.ceil(Math.log10(high));
-  return [10 ** first, 10 ** Math.max(last, first + 1)];
-}
-
-// With zero where that does not hide what happens.
-function linear_range(u, low, high) {
-  if (low === null || high === null || (low === 0 && high === 0)) return [0, 1];
-  if (low >= 0 && low < 0.5 * high) low = 0;
-  const room = 0.06 * (high - low || Math.abs(high) || 1);
-  return [low === 0 ? 0 : low - room, high + room];
 }
