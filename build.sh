@@ -41,7 +41,7 @@ for_viewer=(nodejs npm)
 for_docs=(python3 python3-sphinx python3-myst-parser furo doxygen linkchecker)
 for_python=(python3-dev pybind11-dev python3-numpy)
 for_tests=(catch2 libtinyobjloader-dev libstb-dev "${for_docs[@]}"
-  "${for_python[@]}" python3-matplotlib python3-venv python3-pip python3-setuptools python3-wheel mypy)
+  "${for_python[@]}" python3-scipy python3-matplotlib python3-venv python3-pip python3-setuptools python3-wheel mypy)
 for_browser_tests=(chromium-headless-shell)
 for_export_tests=(python3-numpy python3-vtk9 blender chromium-headless-shell nodejs npm)  # readers of what is exported
 for_format=(clang-format)

@@ -2,11 +2,16 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+#include <set>
 #include <tuple>
 
 #include "solver/forces/buckling_spring.h"
+#include "solver/forces/choi_ko.h"
 #include "solver/forces/damping.h"
 #include "solver/forces/linear_spring.h"
+#include "solver/forces/noh_jung.h"
+#include "solver/forces/seam_spring.h"
+#include "solver/forces/soft.h"
 #include "tests/tables.h"
 
 using namespace drape;
@@ -96,7 +101,97 @@ struct Network {
   }
 };
 
+// One force of every kind that depends on positions and velocities alone, and where its particles are at rest.
+// (The force of contacts with faces depends on which contacts there are, too.)
+struct Resting {
+  std::unique_ptr<Force> force;
+  VecX x;
+};
+std::vector<Resting> one_of_every_kind() {
+  std::vector<Resting> all;
+  const TriangleMesh sheet = grid(9, 8, 0.8, 0.7);
+  const Fabric fabric{.area_density = 0.2, .stretch = 300, .bend = 1e-4, .damping = 1e-2};
+  const VecX flat = at_rest(sheet).x;
+  for (auto& force : noh_jung(sheet, fabric)) all.push_back({std::move(force), flat});
+  for (auto& force : choi_ko(sheet, fabric)) all.push_back({std::move(force), flat});
+  const Lattice block = box_lattice({5, 4, 4}, Vec3(0.1, 0.1, 0.1));
+  VecX corners(3 * static_cast<Eigen::Index>(block.positions.size()));
+  for (std::size_t i = 0; i < block.positions.size(); ++i)
+    corners.segment<3>(3 * static_cast<Eigen::Index>(i)) = block.positions[i];
+  for (auto& force : soft_body(block, {.damping = 0.3})) all.push_back({std::move(force), corners});
+  std::vector<PairForce<SeamSpring>::Element> stitches;
+  std::vector<PairDamping::Element> pairs;
+  for (int i = 0; i < 8; ++i) {
+    stitches.push_back({i, i + 9, {{0.02, 400}, 0.1}});
+    pairs.push_back({i, i + 9});
+  }
+  all.push_back({std::make_unique<PairForce<SeamSpring>>(stitches, 0.2), flat});
+  for (const DampingKind kind : {DampingKind::relative, DampingKind::axial})
+    all.push_back({std::make_unique<PairDamping>(pairs, 0.4, kind), flat});
+  return all;
+}
+
+// All that a force answers at one place.
+struct Answers {
+  double energy, dissipation;
+  VecX f, b, A;  // A: the values of the matrix
+
+  bool same_as(const Answers& o) const {
+    VecX mine(2), others(2);
+    mine << energy, dissipation;
+    others << o.energy, o.dissipation;
+    return same_bits(mine, others) && same_bits(f, o.f) && same_bits(b, o.b) && same_bits(A, o.A);
+  }
+};
+Answers ask(const Force& force, const std::shared_ptr<const BlockPattern>& pattern, const VecX& x,
+            const VecX& v) {
+  Answers a{0, 0, VecX::Zero(x.size()), VecX::Zero(x.size()), {}};
+  BlockMatrix A(pattern);
+  A.set_to_mass(std::vector<double>(static_cast<std::size_t>(pattern->rows()), 0.0));
+  force.add_linearised(x, v, 0.1 * v, 0.02, Stiffness::majorant, A, a.b);
+  a.A = Eigen::Map<const VecX>(A.block(0), 9 * pattern->blocks());
+  force.add_force(x, v, a.f);
+  a.dissipation = force.dissipation(x, v);
+  a.energy = force.energy(x);
+  return a;
+}
+
 }  // namespace
+
+TEST_CASE(
+    "a force is a pure function: asked twice, and after other questions, it says the same to the last bit",
+    "[forces]") {
+  std::set<std::string_view> asked;
+  for (const Resting& resting : one_of_every_kind()) {
+    Force& force = *resting.force;
+    INFO(force.name());
+    asked.insert(force.name());
+    std::vector<ParticlePair> pairs;
+    force.list_pairs(pairs);
+    REQUIRE_FALSE(pairs.empty());
+    const auto n = resting.x.size();
+    const auto pattern = std::make_shared<const BlockPattern>(static_cast<int>(n / 3), pairs);
+    force.bind(*pattern);
+    const VecX v = random_vector(n, 0.5, 2), w = random_vector(n, 0.5, 3);
+    const VecX here = resting.x + random_vector(n, 0.05, 4), there = 0.8 * here + 0.1 * w;
+
+    const double energy = force.energy(here);
+    CHECK(force.energy(here) == energy);
+    const Answers first = ask(force, pattern, here, v);
+    CHECK(first.energy == energy);
+    const Answers elsewhere = ask(force, pattern, there, w);
+    CHECK(force.energy(here) == energy);
+    CHECK(first.same_as(ask(force, pattern, here, v)));
+    force.energy(here);
+    CHECK(elsewhere.same_as(ask(force, pattern, there, w)));
+    VecX f = VecX::Zero(n);
+    force.add_force(there, v, f);
+    CHECK(force.energy(here) == energy);
+    CHECK(first.same_as(ask(force, pattern, here, v)));
+    CHECK_FALSE(first.same_as(elsewhere));  // the two places are not alike
+  }
+  CHECK(asked.size() >= 5);
+}
 
 TEMPLATE_LIST_TEST_CASE("a pair law: tension is the slope of the energy, stiffness the slope of the tension",
                         "[forces]", Laws) {

@@ -72,6 +72,26 @@ TEST_CASE("a report sums up the linear solves of its step", "[integrators]") {
   }
 }
 
+TEST_CASE("every report tells how long the step took, and its parts took no longer", "[integrators]") {
+  for (const Method& method : methods()) {
+    INFO(method.label);
+    HungSheet sheet(8, 300, 1e-6);
+    auto stepper = make_integrator(method.name, sheet.system, sheet.constraints, make_linear_solver("mpcg"),
+                                   method.options());
+    for (int n = 0; n < 3; ++n) {
+      const StepReport report = stepper->advance(sheet.state, 1e-3);
+      REQUIRE(report.done);
+      CHECK(report.step_ms > 0);
+      CHECK(report.assemble_ms > 0);
+      CHECK(report.step_ms >= report.assemble_ms + report.solve_ms + report.collide_ms);
+    }
+    sheet.state.v.setConstant(std::nan(""));  // a step that fails took its time, too
+    const StepReport failed = stepper->advance(sheet.state, 1e-3);
+    CHECK_FALSE(failed.done);
+    CHECK(failed.step_ms > 0);
+  }
+}
+
 TEST_CASE("a step whose linear solves fail is not done, and the state stays", "[integrators]") {
   for (const std::string& name : implicit_names()) {
     INFO(name);

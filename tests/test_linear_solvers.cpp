@@ -1,7 +1,10 @@
 // Laws that every linear solver obeys: the constraints hold, the answer is the dense one,
 // the report is the truth.
+#include <dlfcn.h>
+
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
+#include <thread>
 
 #include "tests/tables.h"
 
@@ -85,6 +88,17 @@ std::vector<std::string> names() {
   return all;
 }
 
+// How many threads OpenBLAS has in this process; what a test sets is put back.
+struct BlasThreads {
+  int (*get)() = reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_num_threads"));
+  void (*set)(int) = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
+  int before = there() ? get() : 1;
+  bool there() const { return get && set; }
+  ~BlasThreads() {
+    if (there()) set(before);
+  }
+};
+
 bool is_direct(std::string_view name) { return name == "cholmod" || name == "eigen-ldlt"; }
 
 }  // namespace
@@ -112,6 +126,68 @@ TEST_CASE("every linear solver gives the dense solution of the projected system"
       }
     }
   }
+}
+
+TEST_CASE("a solve leaves the threads of BLAS as they were, and its bits do not depend on them",
+          "[solvers]") {
+  const BlasThreads blas;
+  if (!blas.there()) {
+    WARN("skipped: this process has no OpenBLAS");
+    return;
+  }
+  const Problem p(300, 7, true);  // large fronts, which BLAS would share out
+  for (const std::string& name : names()) {
+    if (!is_direct(name)) continue;
+    INFO(name);
+    const auto solved = [&] {
+      VecX dv = VecX::Zero(p.b.size());
+      const auto solver = make_linear_solver(name);
+      for (int again = 0; again < 2; ++again) {
+        CHECK(solver->solve(p.A, p.b, p.filter, {}, dv).reason == StopReason::converged);
+      }
+      return dv;
+    };
+    blas.set(1);
+    const VecX alone = solved();
+    CHECK(blas.get() == 1);
+    blas.set(2);
+    const auto solver = make_linear_solver(name);
+    CHECK(blas.get() == 2);
+    CHECK(same_bits(solved(), alone));
+    CHECK(blas.get() == 2);
+    Problem indefinite = p;  // also where the solve ends early
+    indefinite.A.at(p.pattern->diagonal(7)) -= 1e4 * Mat3::Identity();
+    VecX dv = VecX::Zero(p.b.size());
+    solver->solve(indefinite.A, p.b, p.filter, {}, dv);
+    CHECK(blas.get() == 2);
+  }
+}
+
+TEST_CASE("solvers at work at the same time leave the threads of BLAS as they were", "[solvers]") {
+  const BlasThreads blas;
+  const std::vector<std::string> all = names();
+  if (!blas.there() || std::find(all.begin(), all.end(), "cholmod") == all.end()) {
+    WARN("skipped: this process has no OpenBLAS, or the build no cholmod");
+    return;
+  }
+  const Problem p(150, 7, true);
+  std::array<VecX, 3> dv;
+  const auto solve_often = [&](VecX& result) {
+    const auto solver = make_linear_solver("cholmod");
+    for (int k = 0; k < 10; ++k) {
+      result = VecX::Zero(p.b.size());
+      solver->solve(p.A, p.b, p.filter, {}, result);
+    }
+  };
+  blas.set(1);
+  solve_often(dv[0]);
+  blas.set(2);
+  std::thread other([&] { solve_often(dv[1]); });
+  solve_often(dv[2]);
+  other.join();
+  CHECK(blas.get() == 2);
+  CHECK(same_bits(dv[1], dv[0]));
+  CHECK(same_bits(dv[2], dv[0]));
 }
 
 TEST_CASE("a solve that stops early says so, with the true residual", "[solvers]") {

@@ -157,6 +157,8 @@ void add_compare(CLI::App& app, int& exit_code) {
          "of the integrators' runs (the scene's, 1/2 and 1/4 of it)");
   option("--sizes", compare_words.sizes, "N,...",
          "a generated hung sheet of so many vertices instead: 1k,10k,40k");
+  command->add_flag("--save-systems", compare_words.save_systems,
+                    "also write the systems of the compared steps, constraints and all, for other programs");
   command->add_option("--out", words->run.out, "output folder (out/compare/NAME)")->type_name("DIR");
   add_scene_options(*command, words->run);
   command->footer(

@@ -55,7 +55,8 @@ class Path {
     });
   }
 
-  bool follow(const CompareOptions& options, SolverBench& bench, Comparison& comparison) {
+  bool follow(const CompareOptions& options, SolverBench& bench, CompareFiles& files,
+              Comparison& comparison) {
     for (int k = 1; k <= options.at.back(); ++k) {
       if (interrupted()) return false;
       recording_.on = std::find(options.at.begin(), options.at.end(), k) != options.at.end();
@@ -68,6 +69,8 @@ class Path {
                          ": there is nothing to give to the solvers; choose another with --integrator");
       say(common_, "comparing at step " + std::to_string(k) + " of " + std::to_string(options.at.back()) +
                        ", " + counted(simulation_.state.particles(), "vertex"));
+      if (options.save_systems)
+        comparison.systems.push_back(files.save(*recording_.last, comparison, k, simulation_.state.time));
       std::vector<SolverRow> rows = bench.compare(*recording_.last, k, simulation_);
       if (rows.empty()) return false;
       for (SolverRow& row : rows) comparison.rows.push_back(std::move(row));
@@ -94,24 +97,24 @@ class Path {
 };
 
 bool compare_scene(const Scene& scene, Simulation& simulation, const CompareOptions& options,
-                   const CommonOptions& common, Comparison& comparison) {
+                   const CommonOptions& common, CompareFiles& files, Comparison& comparison) {
   for (const std::string& message : simulation.messages) say(common, message);
   SolverBench bench(options.solvers, comparison.tolerance, options.repeats);
-  if (!Path(scene, simulation, common).follow(options, bench, comparison)) return false;
+  if (!Path(scene, simulation, common).follow(options, bench, files, comparison)) return false;
   if (options.integrators.empty()) return true;
   return compare_integrators(scene, options, options.steps * scene.simulation.time_step, common.quiet,
                              comparison);
 }
 
 bool compare_sizes(const Scene& scene, const CompareOptions& options, const CommonOptions& common,
-                   Comparison& comparison) {
+                   CompareFiles& files, Comparison& comparison) {
   for (const int vertices : options.sizes) {
     const int side = sheet_side(vertices);
     comparison.sizes.push_back(side * side);
     Simulation simulation = make_hung_sheet(scene, side);
     SolverBench bench(options.solvers, comparison.tolerance, options.repeats,
                       "sheet of " + std::to_string(side * side) + " vertices, ");
-    if (!Path(scene, simulation, common).follow(options, bench, comparison)) return false;
+    if (!Path(scene, simulation, common).follow(options, bench, files, comparison)) return false;
     if (!comparison.failure.empty()) break;
   }
   comparison.growth = growth_of(comparison);
@@ -160,12 +163,14 @@ int compare(const std::filesystem::path& path, const CompareWords& words, const 
   Simulation simulation;
   if (options.sizes.empty()) simulation = make_simulation(scene);
   const std::filesystem::path name = options.sizes.empty() ? path.stem() : "sizes";
-  CompareFiles files(common.out.empty() ? std::filesystem::path("out") / "compare" / name : common.out);
+  CompareFiles files(common.out.empty() ? std::filesystem::path("out") / "compare" / name : common.out,
+                     options.save_systems);
   catch_interrupts();
 
   Comparison comparison = begun(scene, options);
-  const bool ended = options.sizes.empty() ? compare_scene(scene, simulation, options, common, comparison)
-                                           : compare_sizes(scene, options, common, comparison);
+  const bool ended = options.sizes.empty()
+                         ? compare_scene(scene, simulation, options, common, files, comparison)
+                         : compare_sizes(scene, options, common, files, comparison);
   if (!ended) {
     say(common, "interrupted: nothing is written");
     return 130;

@@ -27,6 +27,7 @@ struct CompareOptions {
   Names integrators;
   std::vector<double> time_steps;  // s
   std::vector<int> sizes;          // vertices
+  bool save_systems = false;       // the systems of the compared steps are written, too
 };
 
 // The result of one solver on one system.
@@ -96,6 +97,7 @@ struct Comparison {
   std::vector<IntegratorRow> runs;
   double run_duration = 0;  // s, duration of the integrator runs
   std::vector<Growth> growth;
+  Names systems;        // the folders of the systems that were saved, within the output folder
   std::string failure;  // of the run that gives the systems; empty when it reached its last step
 
   // True when every solver agrees and nothing failed, neither the run that gives the

@@ -1,9 +1,9 @@
 #include "app/compare/files.h"
 
-#include "app/base/atomic_file.h"
 #include "app/base/csv_text.h"
 #include "app/base/json.h"
 #include "app/compare/html.h"
+#include "app/compare/system_files.h"
 #include "app/compare/tables.h"
 #include "app/recording/output.h"
 
@@ -99,6 +99,7 @@ std::string compare_json(const Comparison& c) {
                                  {"failure", c.failure.empty() ? Json() : Json(c.failure)},
                                  {"rows", std::move(rows)},
                                  {"growth", std::move(growth)},
+                                 {"systems", c.systems},
                                  {"run_duration", c.runs.empty() ? Json() : Json(c.run_duration)},
                                  {"runs", std::move(runs)}});
 }
@@ -115,8 +116,26 @@ std::string integrators_csv(const Comparison& comparison) {
   return text;
 }
 
-CompareFiles::CompareFiles(std::filesystem::path folder) : folder_(std::move(folder)) {
+CompareFiles::CompareFiles(std::filesystem::path folder, bool with_systems) : folder_(std::move(folder)) {
   make_output_folder(folder_, {"compare.json", "compare.csv", "compare-integrators.csv", "compare.html"});
+  if (with_systems) make_output_folder(folder_ / "systems");
+}
+
+std::string CompareFiles::save(const LinearSystem& system, const Comparison& comparison, int step,
+                               double time) {
+  const std::string name = "systems/" +
+                           (comparison.sizes.empty() ? "" : std::to_string(system.A.rows()) + "-vertices-") +
+                           "step-" + std::to_string(step);
+  for (AtomicFile& file : write_system(folder_ / name, system,
+                                       {{"drape_version", DRAPE_VERSION},
+                                        {"scene", comparison.scene},
+                                        {"integrator", comparison.integrator},
+                                        {"linear_solver", comparison.reference_solver},
+                                        {"step", step},
+                                        {"time", time},
+                                        {"time_step", comparison.time_step}}))
+    systems_.push_back(std::move(file));
+  return name;
 }
 
 void CompareFiles::write(const Comparison& comparison) {
@@ -133,6 +152,9 @@ void CompareFiles::write(const Comparison& comparison) {
     file.keep();
     written_.push_back(file.path());
   }
+  for (AtomicFile& file : systems_) file.keep();
+  systems_.clear();
+  for (const std::string& name : comparison.systems) written_.push_back(folder_ / name);
 }
 
 }  // namespace drape

@@ -1,9 +1,12 @@
-// Writes compare.json, compare.csv (solvers), compare-integrators.csv and compare.html: all of them or none.
+// Writes compare.json, compare.csv (solvers), compare-integrators.csv, compare.html and the systems that are
+// saved: all of them or none.
 #pragma once
 
 #include <vector>
 
+#include "app/base/atomic_file.h"
 #include "app/compare/comparison.h"
+#include "app/compare/recording_solver.h"
 
 namespace drape {
 
@@ -14,13 +17,17 @@ std::string integrators_csv(const Comparison& comparison);
 
 class CompareFiles {
  public:
-  // Makes the folder and tries to write into it; throws InputError.
-  explicit CompareFiles(std::filesystem::path folder);
+  // Makes the folder, and the one for systems, and tries to write into them; throws InputError.
+  explicit CompareFiles(std::filesystem::path folder, bool with_systems = false);
+  // Saves the system of a step, with its place in the comparison, and returns the name of its folder in
+  // systems/.
+  std::string save(const LinearSystem& system, const Comparison& comparison, int step, double time);
   void write(const Comparison& comparison);
   const std::vector<std::filesystem::path>& written() const { return written_; }
 
  private:
   std::filesystem::path folder_;
+  std::vector<AtomicFile> systems_;
   std::vector<std::filesystem::path> written_;
 };
 

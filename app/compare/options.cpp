@@ -150,6 +150,7 @@ CompareOptions compare_options(const CompareWords& words) {
   options.integrators = integrator_names(words.integrators);
   options.time_steps = time_steps(words.time_steps);
   options.sizes = sizes(words.sizes);
+  options.save_systems = words.save_systems;
   if (options.integrators.empty() && !options.time_steps.empty())
     throw InputError("--time-steps: are those of --integrators, which is not given");
   if (!options.integrators.empty() && !options.sizes.empty())

@@ -9,6 +9,7 @@ namespace drape {
 struct CompareWords {
   // As on the command line; empty when not given.
   std::string solvers, steps, at, repeats, integrators, time_steps, sizes;
+  bool save_systems = false;
 };
 
 CompareOptions compare_options(const CompareWords& words);

@@ -88,6 +88,16 @@ double constraint_violation(const LinearSystem& system, const VecX& dv) {
   return worst;
 }
 
+double whole_residual(const LinearSystem& system, const VecX& dv) {
+  VecX r = residual_of(system, dv);
+  for (const FilterEntry& e : system.filter.entries()) {
+    const Vec3 own = dv.segment<3>(3 * e.particle);
+    const Vec3 impulse = system.A.at(system.A.pattern().diagonal(e.particle)) * (own - e.S * own - e.z);
+    r.segment<3>(3 * e.particle) += impulse - e.S * impulse;  // at right angles to what is there
+  }
+  return r.norm();
+}
+
 SolverBench::SolverBench(const std::vector<SolverChoice>& choices, double tolerance, int repeats,
                          std::string where)
     : tolerance_(tolerance), repeats_(repeats), where_(std::move(where)) {

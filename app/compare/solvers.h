@@ -21,7 +21,10 @@ inline constexpr double finest_tolerance = 1e-12;  // round-off allows no smalle
 
 double true_residual(const LinearSystem& system, const VecX& dv);         // N s
 double constraint_violation(const LinearSystem& system, const VecX& dv);  // m/s
-double reference_impulse(const LinearSystem& system);                     // N s, a residual is relative to it
+// N s, of both equations: a missed constraint of a particle i counts as the impulse
+// (I - S) A_ii ((I - S) dv - z) that would bring the particle there.
+double whole_residual(const LinearSystem& system, const VecX& dv);
+double reference_impulse(const LinearSystem& system);  // N s, a residual is relative to it
 
 class SolverBench {
  public:

@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include "app/base/words.h"
+#include "app/compare/plain_system.h"
 #include "app/compare/solvers.h"
 #include "app/python/arrays.h"
 #include "app/python/in_use.h"
@@ -68,11 +69,51 @@ py::tuple bsr(const LinearSystem& system) {
   return py::make_tuple(data, copied(columns), copied(starts));
 }
 
+// (n, 3) [m/s] in row order.
+VecX rows_of(const LinearSystem& system, const py::object& dv) {
+  const VecX given = stacked_rows(dv, "dv");
+  if (given.size() != system.b.size())
+    throw py::value_error("dv: expected an array of shape (" + std::to_string(system.A.rows()) +
+                          ", 3), but got (" + std::to_string(given.size() / 3) + ", 3)");
+  VecX rows(given.size());
+  to_rows(system.A.pattern(), given, rows);
+  return rows;
+}
+
+py::tuple filter(const LinearSystem& system) {
+  const PlainFilter plain = plain_filter(system);
+  std::vector<double> S;  // row by row
+  S.reserve(9 * plain.S.size());
+  for (const Mat3& block : plain.S)
+    for (int k = 0; k < 9; ++k) S.push_back(block(k / 3, k % 3));
+  return py::make_tuple(Array({system.A.rows(), 3, 3}, S.data()), copied_rows(plain.z));
+}
+
+py::tuple projected(const std::shared_ptr<LinearSystem>& system) {
+  const PlainSystem plain = projected_system(*system);
+  const PlainMatrix& A = plain.matrix;
+  const py::cpp_function back(
+      [system](const py::object& y) {
+        const py::ssize_t n = system->A.rows();
+        const py::array any = py::array::ensure(y);  // null: no array at all
+        const bool flat = any && any.ndim() == 1;
+        const Array given =
+            flat ? numbers(y, "y", {3 * n}) : numbers(y, "y", {n, 3});  // they throw for any other shape
+        return copied_rows(solution_within_constraints(*system, Eigen::Map<const VecX>(given.data(), 3 * n)));
+      },
+      "y"_a, "dv (n, 3) [m/s] = S y + z of a solution y, (3n,) or (n, 3), of the projected system.");
+  return py::make_tuple(
+      py::make_tuple(Array(A.nonZeros(), A.valuePtr()), IntArray(A.nonZeros(), A.innerIndexPtr()),
+                     IntArray(A.cols() + 1, A.outerIndexPtr())),
+      Array(plain.right.size(), plain.right.data()), back);
+}
+
 void add_systems_of_steps(py::module_& m) {
   py::class_<LinearSystem, std::shared_ptr<LinearSystem>>(
       m, "LinearSystem",
-      "A dv = b of a step, within a filter: what pins and contacts allow. A [kg], b [N s], dv [m/s]; "
-      "particle order.")
+      "The linear system of a step: S (A dv - b) = 0 and (I - S) dv = z, where S and z are what pins and "
+      "contacts allow.\n"
+      "A [kg], b [N s], dv [m/s]; particle order.")
       .def_property_readonly("particles", [](const LinearSystem& system) { return system.A.rows(); })
       .def_property_readonly(
           "b", [](const LinearSystem& s) { return by_particle(s, s.b); }, "(n, 3) [N s], a copy")
@@ -85,21 +126,32 @@ void add_systems_of_steps(py::module_& m) {
       .def_property_readonly(
           "constrained", [](const LinearSystem& system) { return system.filter.entries().size(); },
           "how many particles are not free")
+      .def_property_readonly("filter", &filter,
+                             "(S, z): (n, 3, 3), the identity where a particle is free, and (n, 3) [m/s]; "
+                             "copies")
       .def("bsr", &bsr,
-           "A as (data (k, 3, 3), indices (k,), indptr (n + 1,)), for scipy.sparse.bsr_matrix; a copy, "
-           "unfiltered.")
+           "A as (data (k, 3, 3), indices (k,), indptr (n + 1,)), for scipy.sparse.bsr_matrix; a copy. The\n"
+           "constraints are not in it: see projected().")
+      .def(
+          "projected", &projected,
+          "The system with the constraints in it, for any solver: (A, b, back). A = S A S + I - S as (data,\n"
+          "indices, indptr), for scipy.sparse.csc_matrix or csr_matrix, symmetric and positive definite;\n"
+          "b = S (b - A z), (3n,); back(y) gives dv = S y + z, (n, 3) [m/s], of a solution y. All are "
+          "copies.")
       .def(
           "residual",
           [](const LinearSystem& system, const py::object& dv) {
-            const VecX given = stacked_rows(dv, "dv");
-            if (given.size() != system.b.size())
-              throw py::value_error("dv: expected an array of shape (" + std::to_string(system.A.rows()) +
-                                    ", 3), but got (" + std::to_string(given.size() / 3) + ", 3)");
-            VecX rows(given.size());
-            to_rows(system.A.pattern(), given, rows);
-            return true_residual(system, rows) / reference_impulse(system);
+            return whole_residual(system, rows_of(system, dv)) / reference_impulse(system);
           },
-          "dv"_a, "Of (n, 3) [m/s]: |S (b - A dv)|, relative as the tolerance is.")
+          "dv"_a,
+          "Of (n, 3) [m/s]: what is left of both equations, relative as the tolerance is. A missed\n"
+          "constraint counts as the impulse (I - S) A_ii ((I - S) dv - z) of its particle i.")
+      .def(
+          "constraint_violation",
+          [](const LinearSystem& system, const py::object& dv) {
+            return constraint_violation(system, rows_of(system, dv));
+          },
+          "dv"_a, "Of (n, 3) [m/s]: the largest |(I - S) dv - z| of a particle, m/s.")
       .def("__repr__", [](const LinearSystem& system) {
         return "LinearSystem(" + counted(system.A.rows(), "particle") + ", " +
                std::to_string(system.filter.entries().size()) + " constrained)";

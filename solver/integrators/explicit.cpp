@@ -35,7 +35,14 @@ StepReport Explicit::advance(State& state, double h) {
   check_step(system_, state, h);
   system_.bind();
   StepReport report;
-  const Stopwatch watch(report.step_ms);
+  {
+    const Stopwatch watch(report.step_ms);
+    take(state, h, report);
+  }
+  return report;
+}
+
+void Explicit::take(State& state, double h, StepReport& report) {
   motion_.begin(state, h, report);
   count_given(state);
   const VecX& start = motion_.start_velocity();
@@ -72,7 +79,6 @@ StepReport Explicit::advance(State& state, double h) {
     report.failure.what += "; an explicit method needs a shorter time step, or take an implicit one";
     x_.resize(0);
   }
-  return report;
 }
 
 // What came since the end of the last step, by contact or from outside; at first, all that there is.

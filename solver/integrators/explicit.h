@@ -45,6 +45,7 @@ class Explicit final : public Integrator {
   void count_given(double energy) override { given_ += energy; }
 
  private:
+  void take(State& state, double h, StepReport& report);  // one step
   void count_given(const State& state);
   bool explodes(double h) const;
   StepFailure explosion() const;

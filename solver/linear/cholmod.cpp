@@ -5,6 +5,7 @@
 #include <cholmod.h>
 #include <dlfcn.h>
 
+#include <mutex>
 #include <stdexcept>
 
 #include "mesh/base/stopwatch.h"
@@ -31,17 +32,46 @@ std::string blas_note() {
   return {};
 }
 
-// One thread: its sums would depend on how many there are.
-void calm_blas() {
-  using SetThreads = void (*)(int);
-  if (const auto set_threads = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads")))
-    set_threads(1);
-}
+// While one of these lives, BLAS has one thread, for its sums would depend on how many there are. The setting
+// belongs to the whole process: the first of several that live at once remembers what it was, and the last one
+// restores it.
+class OneBlasThread {
+ public:
+  OneBlasThread() {
+    Shared& s = shared();
+    if (!s.count_of_blas || !s.set_count_of_blas) return;
+    const std::lock_guard lock(s.mutex);
+    if (s.living++ > 0) return;
+    s.before = s.count_of_blas();
+    s.set_count_of_blas(1);
+  }
+  ~OneBlasThread() {
+    Shared& s = shared();
+    if (!s.count_of_blas || !s.set_count_of_blas) return;
+    const std::lock_guard lock(s.mutex);
+    if (--s.living == 0) s.set_count_of_blas(s.before);
+  }
+  OneBlasThread(const OneBlasThread&) = delete;
+  OneBlasThread& operator=(const OneBlasThread&) = delete;
+
+ private:
+  struct Shared {
+    int (*count_of_blas)() =
+        reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_num_threads"));  // null: not OpenBLAS
+    void (*set_count_of_blas)(int) = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT,
+                                                                           "openblas_set_num_threads"));
+    std::mutex mutex;
+    int living = 0, before = 1;
+  };
+  static Shared& shared() {
+    static Shared only;
+    return only;
+  }
+};
 
 class Cholmod final : public LinearSolver {
  public:
   Cholmod() {
-    calm_blas();
     cholmod_start(&common_);
     common_.print = 0;
     common_.supernodal = CHOLMOD_AUTO;
@@ -60,6 +90,7 @@ class Cholmod final : public LinearSolver {
                      VecX& dv) override {
     LinearReport report;
     report.note = blas_note();
+    const OneBlasThread calm;
     {
       const Stopwatch watch(report.setup_ms);
       system_.project(A, b, filter, options);

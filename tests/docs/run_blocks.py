@@ -20,7 +20,7 @@ from pathlib import Path
 
 from page import Mistake, Page
 
-optional_modules = ("drape", "numpy", "matplotlib", "bpy", "vtk")
+optional_modules = ("drape", "numpy", "scipy", "matplotlib", "bpy", "vtk")
 only_shown = ("text", "{toctree}")
 only_as_file = ("json", "xml", "html", "js")
 small_cloth = '[[cloth]]\nmesh = "data/meshes/sheet-625.obj"\n'

@@ -162,15 +162,116 @@ class LinearSystems(unittest.TestCase):
                     self.assertGreater(report.history[0], report.history[-1])
                     self.assertEqual(len(report.history), report.iterations + 1)
 
-    def test_the_matrix_is_the_one_of_the_step(self):
-        system = self.recorded()
-        data, indices, indptr = system.bsr()
+    def in_contact(self):
+        """Of a step in which two particles are pinned and others slide on a ball."""
+        system, constraints, state = falling_sheet(15)
+        constraints.pin([0, 14])
+        stepper = drape.ImplicitEuler(system, constraints, "eigen-ldlt")
+        stepper.record_systems = True
+        for _ in range(30):
+            stepper.advance(state, 0.01)
+        S, _ = stepper.last_system.filter
+        locked = np.count_nonzero(np.abs(S).max(axis=(1, 2)) == 0)
+        free = np.count_nonzero((S == np.eye(3)).all(axis=(1, 2)))
+        self.assertGreaterEqual(locked, 2)
+        self.assertLess(locked + free, system.particles)  # the others slide
+        return stepper.last_system
+
+    def test_the_filter_is_what_pins_and_contacts_allow(self):
+        system = self.in_contact()
+        S, z = system.filter
+        self.assertEqual(S.shape, (225, 3, 3))
+        np.testing.assert_allclose(S, S.transpose(0, 2, 1), atol=1e-15)
+        np.testing.assert_allclose(S @ S, S, atol=1e-14)  # projections
+        np.testing.assert_array_equal(S[[0, 14]], 0)
+        self.assertGreater(np.abs(z).max(), 0)
+        locked = system.solution - np.einsum("ijk,ik->ij", S, system.solution)
+        np.testing.assert_allclose(locked, z, atol=1e-15)
+        self.assertEqual(system.constrained, np.count_nonzero((S != np.eye(3)).any(axis=(1, 2))))
+
+    def test_the_projected_system_is_what_its_formula_says(self):
+        system = self.in_contact()
         n = system.particles
+        blocks, z = system.filter
+        S = np.zeros((3 * n, 3 * n))
+        for i in range(n):
+            S[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] = blocks[i]
+        A, b = self.dense(*system.bsr()), system.b.ravel()
+        (data, indices, indptr), right, back = system.projected()
+        projected = np.zeros_like(A)
+        for column in range(3 * n):
+            part = slice(indptr[column], indptr[column + 1])
+            self.assertTrue((np.diff(indices[part]) > 0).all())
+            projected[indices[part], column] = data[part]
+        scale = np.abs(A).max()
+        np.testing.assert_allclose(projected, S @ A @ S + np.eye(3 * n) - S, atol=1e-14 * scale)
+        np.testing.assert_array_equal(projected, projected.T)
+        np.testing.assert_allclose(right, S @ (b - A @ z.ravel()), atol=1e-14 * np.abs(b).max())
+        y = np.linspace(-1, 1, 3 * n)
+        np.testing.assert_allclose(back(y).ravel(), S @ y + z.ravel(), atol=1e-14)
+        np.testing.assert_array_equal(back(y), back(y.reshape(n, 3)))
+        for wrong in (y[1:], np.zeros((n + 1, 3)), None, "y", [[1], [2, 3]]):
+            with self.assertRaisesRegex(ValueError, "^y: expected "):
+                back(wrong)
+
+    def test_scipy_solves_a_step_with_pins_and_contacts(self):
+        try:
+            from scipy import sparse
+            from scipy.sparse.linalg import cg, spsolve
+        except ImportError:
+            self.skipTest("scipy is not installed (Debian package python3-scipy)")
+        system = self.in_contact()
+        A, b, back = system.projected()
+        A = sparse.csc_matrix(A)
+        for y in (spsolve(A, b), cg(A, b, tol=1e-13, atol=0)[0]):
+            dv = back(y)
+            np.testing.assert_allclose(dv, system.solution, atol=1e-8)
+            self.assertLess(system.constraint_violation(dv), 1e-15)
+            self.assertLess(system.residual(dv), 1e-11)
+        # Without the constraints it solves another system, and is told so.
+        free = spsolve(sparse.bsr_matrix(system.bsr()).tocsc(), system.b.ravel()).reshape(-1, 3)
+        self.assertGreater(np.abs(free - system.solution).max(), 0.01)
+        self.assertGreater(system.constraint_violation(free), 0.01)
+        self.assertGreater(system.residual(free), 0.01)
+
+    def test_the_residual_is_of_both_equations(self):
+        system = self.in_contact()
+        S, z = system.filter
+        self.assertLess(system.residual(system.solution), 1e-12)
+        free = int(np.flatnonzero((S == np.eye(3)).all(axis=(1, 2)))[0])
+        for particle in (0, free):  # a pinned one, and one that is free
+            moved = system.solution.copy()
+            moved[particle] += [0, 0.5, 0]
+            self.assertEqual(system.constraint_violation(moved) > 0.4999, particle == 0)
+            self.assertGreater(system.residual(moved), 1e-3)
+        A, b = self.dense(*system.bsr()), system.b.ravel()
+        moved = system.solution + np.linspace(-0.1, 0.1, 675).reshape(225, 3)
+        first = np.einsum("ijk,ik->ij", S, (A @ moved.ravel() - b).reshape(225, 3))
+        missed = moved - np.einsum("ijk,ik->ij", S, moved) - z
+        own = np.stack([A[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] @ missed[i] for i in range(225)])
+        own -= np.einsum("ijk,ik->ij", S, own)
+        self.assertAlmostEqual(system.constraint_violation(moved), np.linalg.norm(missed, axis=1).max())
+        ratio = system.residual(moved) / np.sqrt((first**2).sum() + (own**2).sum())
+        only_first = moved - missed
+        first = np.einsum("ijk,ik->ij", S, (A @ only_first.ravel() - b).reshape(225, 3))
+        self.assertAlmostEqual(system.residual(only_first) / np.linalg.norm(first) / ratio, 1)
+        for function in (system.residual, system.constraint_violation):
+            with self.assertRaisesRegex(ValueError, r"^dv: expected an array of shape \(225, 3\)"):
+                function(moved[1:])
+
+    @staticmethod
+    def dense(data, indices, indptr):
+        n = len(indptr) - 1
         dense = np.zeros((n, 3, n, 3))
         for i in range(n):
             for k in range(indptr[i], indptr[i + 1]):
                 dense[i, :, indices[k], :] = data[k]
-        dense = dense.reshape(3 * n, 3 * n)
+        return dense.reshape(3 * n, 3 * n)
+
+    def test_the_matrix_is_the_one_of_the_step(self):
+        system = self.recorded()
+        n = system.particles
+        dense = self.dense(*system.bsr())
         np.testing.assert_allclose(dense, dense.T, atol=1e-12)
         self.assertGreater(np.linalg.eigvalsh(dense).min(), 0)
         self.assertGreater(system.constrained, 0)

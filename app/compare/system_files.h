@@ -1,0 +1,22 @@
+// One linear system as files of the Matrix Market, which SciPy, Julia, MATLAB and most solvers read.
+//   A, b, S, z          S (A dv - b) = 0 and (I - S) dv = z
+//   A-projected, b-projected, dv = S y + z of their solution y; guess and dv as the step had them
+//   system.json         what each file is, and which system
+//                                             [Boisvert, Pozo & Remington 1996, The Matrix Market exchange formats]
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "app/base/atomic_file.h"
+#include "app/base/json.h"
+#include "app/compare/recording_solver.h"
+
+namespace drape {
+
+// Makes the folder and writes the files beside their names: they appear when they are kept. `about` comes
+// first in system.json. Throws InputError when something cannot be written.
+std::vector<AtomicFile> write_system(const std::filesystem::path& folder, const LinearSystem& system,
+                                     Json::Members about);
+
+}  // namespace drape
