@@ -4,7 +4,6 @@
 #include <map>
 #include <set>
 
-#include "app/commands/triangulate_command.h"
 #include "app/pattern/remarks.h"
 #include "mesh/pattern/delaunay.h"
 #include "mesh/pattern/predicates.h"

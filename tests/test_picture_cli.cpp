@@ -14,7 +14,7 @@ using Catch::StartsWith;
 
 namespace {
 
-// A sheet has fallen on a ball: 8 frames.
+// A sheet has fallen on a ball: 9 frames.
 struct ShortRun : Workshop {
   ShortRun() { REQUIRE(drape("simulate s.toml --out o --quiet").exit_code == 0); }
   Image read(const std::string& name) const { return read_png(content(path / name)); }

@@ -6,6 +6,7 @@
 #include "app/pattern/pattern_read.h"
 #include "app/scene/obstacle_read.h"
 #include "app/simulation/motion_extent.h"
+#include "app/simulation/schedule.h"
 #include "app/simulation/simulation.h"
 #include "app/simulation/soft_body.h"
 #include "mesh/obj/obj.h"
@@ -147,8 +148,8 @@ void check_scene(const std::filesystem::path& file) {
   const Simulation simulation = make_simulation(scene, keep_level_sets);
   const SimulationOptions& s = scene.simulation;
   std::printf("%s: %s s in steps of %s s, %s, %s, tolerance %s\n", file.c_str(),
-              rounded(s.duration, 4).c_str(), rounded(s.time_step, 4).c_str(), s.integrator.c_str(),
-              s.linear_solver.c_str(), rounded(s.step.tolerance, 3).c_str());
+              rounded(s.duration, 4).c_str(), rounded(StepGrid(s.time_step, s.frame_rate).step(), 4).c_str(),
+              s.integrator.c_str(), s.linear_solver.c_str(), rounded(s.step.tolerance, 3).c_str());
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
     print_cloth(scene.cloths[k], simulation.cloths[k]);
     print_seams(simulation.cloths[k], simulation.state.x);

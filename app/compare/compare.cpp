@@ -10,6 +10,7 @@
 #include "app/compare/integrators.h"
 #include "app/compare/solvers.h"
 #include "app/compare/tables.h"
+#include "app/simulation/time_loop.h"
 #include "mesh/base/errors.h"
 #include "mesh/base/threads.h"
 
@@ -27,13 +28,18 @@ std::vector<int> spread(int steps) {
   return at;
 }
 
+// The steps of the path are those that `drape simulate` takes.
+StepGrid grid_of(const Scene& scene) {
+  return StepGrid(scene.simulation.time_step, scene.simulation.frame_rate);
+}
+
 // Which steps are taken and compared.
 void choose_steps(const Scene& scene, CompareOptions& options) {
   constexpr int usual = 50, usual_of_a_sheet = 30;
   if (options.steps == 0 && !options.at.empty()) options.steps = options.at.back();
   if (options.steps == 0 && !options.sizes.empty()) options.steps = usual_of_a_sheet;
   if (options.steps == 0) {
-    const double whole = scene.simulation.duration / scene.simulation.time_step;
+    const double whole = scene.simulation.duration / grid_of(scene).step();
     options.steps = static_cast<int>(std::clamp(std::round(whole), 1.0, static_cast<double>(usual)));
   }
   if (options.at.empty())
@@ -57,37 +63,50 @@ class Path {
 
   bool follow(const CompareOptions& options, SolverBench& bench, CompareFiles& files,
               Comparison& comparison) {
-    for (int k = 1; k <= options.at.back(); ++k) {
-      if (interrupted()) return false;
-      recording_.on = std::find(options.at.begin(), options.at.end(), k) != options.at.end();
-      recording_.last.reset();
-      if (!advance(k, comparison)) return !interrupted();
-      if (!recording_.on) continue;
-      if (!recording_.last)
-        throw InputError("integrator '" + scene_.simulation.integrator +
-                         "' solves no linear system in step " + std::to_string(k) +
-                         ": there is nothing to give to the solvers; choose another with --integrator");
-      say(common_, "comparing at step " + std::to_string(k) + " of " + std::to_string(options.at.back()) +
-                       ", " + counted(simulation_.state.particles(), "vertex"));
-      if (options.save_systems)
-        comparison.systems.push_back(files.save(*recording_.last, comparison, k, simulation_.state.time));
-      std::vector<SolverRow> rows = bench.compare(*recording_.last, k, simulation_);
-      if (rows.empty()) return false;
-      for (SolverRow& row : rows) comparison.rows.push_back(std::move(row));
-    }
-    return true;
+    const StepGrid grid = grid_of(scene_);
+    TimeLoop loop(simulation_, Schedule(grid, 0, grid.time(options.at.back())));
+    bool whole = true;
+    listen(options, 1);
+    march(loop, [&](const StepReport& report) {
+      whole = report.done ? bench_step(loop.number(), options, bench, files, comparison)
+                          : note_failure(loop.number(), report, comparison);
+      listen(options, loop.number() + 1);
+      return whole;
+    });
+    return whole && !interrupted();
   }
 
  private:
-  bool advance(int k, Comparison& comparison) {
-    const double h = scene_.simulation.time_step;
-    const StepReport report = simulation_.advance(h);
-    simulation_.state.time = k * h;
-    if (report.done && simulation_.state.x.allFinite()) return true;
-    comparison.failure =
-        "step " + std::to_string(k) + " of the run with " + scene_.simulation.linear_solver +
-        " failed: " + (report.done ? "a position is not a finite number" : report.failure.what);
-    return false;
+  // Keeps the system of step k where it is one that is compared.
+  void listen(const CompareOptions& options, long k) {
+    recording_.on = std::find(options.at.begin(), options.at.end(), k) != options.at.end();
+    recording_.last.reset();
+  }
+
+  // False when the user interrupts.
+  bool bench_step(long k, const CompareOptions& options, SolverBench& bench, CompareFiles& files,
+                  Comparison& comparison) {
+    if (!recording_.on) return true;
+    if (!recording_.last)
+      throw InputError("integrator '" + scene_.simulation.integrator + "' solves no linear system in step " +
+                       std::to_string(k) +
+                       ": there is nothing to give to the solvers; choose another with --integrator");
+    say(common_, "comparing at step " + std::to_string(k) + " of " + std::to_string(options.at.back()) +
+                     ", " + counted(simulation_.state.particles(), "vertex"));
+    const int step = static_cast<int>(k);
+    if (options.save_systems)
+      comparison.systems.push_back(files.save(*recording_.last, comparison, step, simulation_.state.time));
+    std::vector<SolverRow> rows = bench.compare(*recording_.last, step, simulation_);
+    const bool done = !rows.empty();
+    for (SolverRow& row : rows) comparison.rows.push_back(std::move(row));
+    return done;
+  }
+
+  // The path ends, and what was compared so far counts.
+  bool note_failure(long k, const StepReport& report, Comparison& comparison) const {
+    comparison.failure = "step " + std::to_string(k) + " of the run with " + scene_.simulation.linear_solver +
+                         " failed: " + report.failure.what;
+    return true;
   }
 
   const Scene& scene_;
@@ -102,8 +121,7 @@ bool compare_scene(const Scene& scene, Simulation& simulation, const CompareOpti
   SolverBench bench(options.solvers, comparison.tolerance, options.repeats);
   if (!Path(scene, simulation, common).follow(options, bench, files, comparison)) return false;
   if (options.integrators.empty()) return true;
-  return compare_integrators(scene, options, options.steps * scene.simulation.time_step, common.quiet,
-                             comparison);
+  return compare_integrators(scene, options, grid_of(scene).time(options.steps), common.quiet, comparison);
 }
 
 bool compare_sizes(const Scene& scene, const CompareOptions& options, const CommonOptions& common,
@@ -143,7 +161,7 @@ Comparison begun(const Scene& scene, const CompareOptions& options) {
   comparison.scene = scene.label;
   comparison.integrator = scene.simulation.integrator;
   comparison.reference_solver = scene.simulation.linear_solver;
-  comparison.time_step = scene.simulation.time_step;
+  comparison.time_step = grid_of(scene).step();
   comparison.tolerance = scene.simulation.step.tolerance;
   comparison.steps = options.steps;
   comparison.at = options.at;

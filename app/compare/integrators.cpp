@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "app/base/interrupt.h"
-#include "app/simulation/simulation.h"
+#include "app/simulation/time_loop.h"
 #include "mesh/base/stopwatch.h"
 
 namespace drape {
@@ -22,17 +22,8 @@ struct Run {
   double end_energy = 0;
 };
 
-// One step; false when the run ends with it.
-bool step(Simulation& simulation, IntegratorRow& row, double h) {
-  StepReport report;
-  {
-    const Stopwatch watch(row.wall_ms);
-    report = simulation.advance(h);
-  }
-  if (report.done && !(simulation.state.x.allFinite() && simulation.state.v.allFinite())) {
-    report.done = false;
-    report.failure.what = "a position or velocity is not a finite number";
-  }
+// What a step adds; false when the run ends with it.
+bool count(const StepReport& report, IntegratorRow& row) {
   if (!report.done) {
     row.failure = "step " + std::to_string(row.steps + 1) + ": " + one_line(report.failure.what);
     return false;
@@ -70,13 +61,12 @@ Run run_one(const Scene& scene, const std::string& integrator, double h, const S
       return make_integrator(integrator, system, constraints, make_linear_solver(solver.name), options);
     });
     const double start = total_energy(simulation);
-    const auto count = static_cast<long>(std::ceil(duration / h * (1 - 1e-9)));
-    for (long k = 0; k < count && !interrupted(); ++k) {
-      const double h_now = std::min(h, duration - static_cast<double>(k) * h);  // the last may be shorter
-      if (!step(simulation, run.row, h_now)) break;
-      simulation.state.time = std::min(duration, static_cast<double>(k + 1) * h);
-      run.row.end = simulation.state.time;
+    TimeLoop loop(simulation, Schedule(StepGrid(h), 0, duration));  // no frames: steps as they were asked for
+    {
+      const Stopwatch watch(run.row.wall_ms);
+      march(loop, [&](const StepReport& report) { return count(report, run.row); });
     }
+    run.row.end = simulation.state.time;
     run.end_energy = total_energy(simulation);
     run.row.energy_drift = run.end_energy - start;
     if (run.row.failure.empty()) run.x = vertices_of(simulation);
@@ -101,7 +91,7 @@ Distance distance(const VecX& a, const VecX& b) {
 }
 
 std::vector<double> time_steps(const Scene& scene, const CompareOptions& options) {
-  const double h = scene.simulation.time_step;
+  const double h = StepGrid(scene.simulation.time_step, scene.simulation.frame_rate).step();
   return options.time_steps.empty() ? std::vector<double>{h, h / 2, h / 4} : options.time_steps;
 }
 

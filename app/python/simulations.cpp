@@ -225,7 +225,8 @@ void add_simulations(py::module_& m) {
       .def_property_readonly(
           "time", [](const Whole& whole) { return whole.simulation.state.time; }, "s")
       .def_property_readonly(
-          "time_step", [](const Whole& w) { return w.simulation.scene->simulation.time_step; }, "s")
+          "time_step", [](const Whole& w) { return w.simulation.scene->simulation.time_step; },
+          "s, as the scene asks for it; run() takes shorter steps where frames need them")
       .def_property_readonly(
           "duration", [](const Whole& w) { return w.simulation.scene->simulation.duration; },
           "s, of the scene")

@@ -90,6 +90,7 @@ std::string run_json(const RunRecord& record) {
       {"threads", record.threads},
       {"duration", record.duration},
       {"time_step", record.time_step},
+      {"time_step_asked", record.time_step_asked},
       {"steps", record.steps},
       {"simulated_seconds", record.simulated_seconds},
       {"wall_seconds", record.wall_seconds},

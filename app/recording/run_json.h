@@ -50,7 +50,8 @@ struct RunRecord {
   std::vector<BodyRecord> bodies;
   Names warnings;
   int threads = 1;
-  double duration = 0, time_step = 0, simulated_seconds = 0, wall_seconds = 0;  // s
+  double duration = 0, time_step = 0, time_step_asked = 0, simulated_seconds = 0, wall_seconds = 0;  // s
+  bool step_as_asked = true;
   long steps = 0, steps_cut = 0, steps_not_converged = 0;
   int substeps_max = 1;
   long inner_rejected = 0;                                             // inner steps of the whole run

@@ -20,12 +20,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-int first_not_finite(const State& state) {
-  for (int i = 0; i < state.particles(); ++i)
-    if (!state.x.segment<3>(3 * i).allFinite() || !state.v.segment<3>(3 * i).allFinite()) return i;
-  return -1;
-}
-
 // The force that pulls hardest at a particle: the term to look at when the solve itself names none.
 std::string strongest_term(const System& system, const State& state, int particle) {
   std::string strongest = "gravity";
@@ -59,18 +53,20 @@ double last_motion(const Scene& scene, const Simulation& simulation) {
   return last;
 }
 
-double step_of(const SimulationOptions& wanted, const std::optional<double>& time_step) {
-  const double h = time_step.value_or(wanted.time_step);
-  if (!(h > 0) || !std::isfinite(h))
-    throw InputError("time step = " + rounded(h, 6) + " s: a time step is greater than zero");
-  return h;
+StepGrid grid_of(const SimulationOptions& wanted, const std::optional<double>& time_step) {
+  if (!time_step) return StepGrid(wanted.time_step, wanted.frame_rate);
+  if (!(*time_step > 0) || !std::isfinite(*time_step))
+    throw InputError("time step = " + rounded(*time_step, 6) + " s: a time step is greater than zero");
+  return StepGrid(*time_step);
 }
 
-double end_of(const SimulationOptions& wanted, double start, const std::optional<double>& duration) {
+// A run in parts ends each of them at a time of the whole.
+double end_of(const SimulationOptions& wanted, const StepGrid& grid, double start,
+              const std::optional<double>& duration) {
   if (!duration) return std::max(start, wanted.duration);
   if (!(*duration >= 0) || !std::isfinite(*duration))
     throw InputError("duration = " + rounded(*duration, 6) + " s: a duration is not negative");
-  return start + *duration;
+  return grid.rounded(start + *duration);
 }
 
 }  // namespace
@@ -78,32 +74,14 @@ double end_of(const SimulationOptions& wanted, double start, const std::optional
 Run::Run(Simulation& simulation, const RunOptions& options)
     : wanted_(simulation.scene->simulation),
       simulation_(simulation),
-      h_(step_of(wanted_, options.time_step)),
-      start_time_(simulation.state.time),
-      end_time_(end_of(wanted_, start_time_, options.duration)),
+      grid_(grid_of(wanted_, options.time_step)),
+      end_time_(end_of(wanted_, grid_, simulation.state.time, options.duration)),
+      loop_(simulation, Schedule(grid_, simulation.state.time, end_time_)),
       progress_(end_time_, options.quiet),
       last_motion_(last_motion(*simulation.scene, simulation)) {
   if (!options.out.empty()) output_.emplace(options.out, *simulation.scene, simulation, options.frames);
-  plan(!options.duration);
   describe();
-  write_due_frames();
-}
-
-// How many steps, and which of its frames is the first.
-void Run::plan(bool until_duration) {
-  const double exact = (end_time_ - start_time_) / h_;
-  last_step_ = h_;
-  if (exact > 1e-6) step_count_ = std::max(1L, std::lround(exact));
-  const bool whole = !(std::abs(exact - static_cast<double>(step_count_)) > 1e-6 * std::max(1.0, exact));
-  if (!whole) {  // the last step is shorter
-    step_count_ = static_cast<long>(std::ceil(exact));
-    last_step_ = end_time_ - start_time_ - h_ * static_cast<double>(step_count_ - 1);
-  }
-  const long before = std::lround(start_time_ / h_);
-  if (static_cast<double>(before) * h_ == start_time_) steps_before_ = before;
-  if (whole && steps_before_ > 0 && !until_duration)
-    end_time_ = static_cast<double>(steps_before_ + step_count_) * h_;
-  next_frame_ = std::max(0L, static_cast<long>(std::ceil((start_time_ - 1e-6 * h_) * wanted_.frame_rate)));
+  write_due_frame();
 }
 
 void Run::describe() {
@@ -113,7 +91,9 @@ void Run::describe() {
   record_.linear_solver = wanted_.linear_solver;
   record_.threads = threads();
   record_.duration = end_time_;
-  record_.time_step = h_;
+  record_.time_step = grid_.step();
+  record_.time_step_asked = grid_.asked();
+  record_.step_as_asked = grid_.as_asked();
   record_.warnings = simulation_.messages;
   for (const Cloth& c : simulation_.cloths)
     if (c.soft)
@@ -124,24 +104,10 @@ void Run::describe() {
           {c.name, c.mesh.vertex_count(), c.mesh.triangle_count(), c.report.edges, c.report.diagonals});
 }
 
-// Whole steps from the start, not a sum that drifts by round-off.
-double Run::time_after(long step) const {
-  if (step == step_count_) return end_time_;
-  if (steps_before_ > 0) return static_cast<double>(steps_before_ + step) * h_;
-  return start_time_ + static_cast<double>(step) * h_;
-}
-
 const StepRow& Run::step() {
-  State& state = simulation_.state;
-  before_ = state;
-  row_.step = steps_before_ + next_step_;
-  row_.report = simulation_.advance(at_last_step() ? last_step_ : h_);
-  if (const int bad = first_not_finite(state); bad >= 0) {  // out of the range of numbers
-    if (row_.report.done) row_.report.failure = {"a position or velocity is not a finite number", bad, {}};
-    row_.report.done = false;
-    state = before_;
-  }
-  if (row_.report.done) state.time = time_after(next_step_);
+  const State& state = simulation_.state;
+  row_.report = loop_.step();
+  row_.step = loop_.number();
   row_.time = state.time;
   row_.kinetic_energy = simulation_.system->kinetic_energy(state.v);
   row_.elastic_energy = simulation_.system->elastic_energy(state.x);
@@ -152,9 +118,9 @@ const StepRow& Run::step() {
     note_failure(row_.report.failure);
     return row_;
   }
+  framed_ = false;
   record_step(row_);
-  ++next_step_;
-  write_due_frames();
+  write_due_frame();
   progress_.show(row_);
   watch_settling();
   return row_;
@@ -190,7 +156,7 @@ void Run::record_step(const StepRow& row) {
   const auto write_start = Clock::now();
   if (output_) output_->step(row);
   record_.write_ms += 1000 * seconds_since(write_start);
-  record_.steps = next_step_;
+  record_.steps = loop_.done();
   record_.step_ms.push_back(report.step_ms);
   record_.linear_iterations.push_back(report.linear_iterations);
   record_.inner_steps.push_back(report.inner_steps);
@@ -226,14 +192,8 @@ void Run::write_frame() {
   record_.write_ms += 1000 * seconds_since(start);
 }
 
-// Frame k belongs to the time k / rate: the first state at or after it.
-void Run::write_due_frames() {
-  if (!(wanted_.frame_rate > 0)) return;
-  const double soon = simulation_.state.time + 1e-6 * h_;
-  while (static_cast<double>(next_frame_) <= soon * wanted_.frame_rate) {
-    write_frame();
-    ++next_frame_;
-  }
+void Run::write_due_frame() {
+  if (loop_.schedule().frame()) write_frame();
 }
 
 void Run::note_failure(const StepFailure& failure) {
@@ -278,7 +238,7 @@ void Run::tell_of_open_seams() {
 
 const RunRecord& Run::finish() {
   record_.interrupted = !over();
-  if (!(wanted_.frame_rate > 0) || !framed_) write_frame();
+  if (!framed_) write_frame();  // the last frame is the end
   record_.simulated_seconds = simulation_.state.time;
   record_.settled = record_.steps > 0 && slow(record_.max_speed);
   for (double depth : simulation_.constraints->penetration(simulation_.state.x))
@@ -302,7 +262,7 @@ int run(const Scene& scene, const RunOptions& options) {
       std::fprintf(stderr, "%s\n", one_line(message).c_str());
   catch_interrupts();
   Run run(simulation, options);
-  while (!run.over() && !interrupted()) run.step();
+  march(run, [](const StepRow&) { return true; });
   if (!run.failure().empty()) std::fprintf(stderr, "error: %s\n", run.failure().c_str());
   const RunRecord& record = run.finish();
   if (!options.quiet) std::fputs(run.summary().c_str(), stdout);

@@ -1,5 +1,5 @@
-// A run of a simulation from its start to its end: steps, frames, messages, output files. One time loop for
-// the command line and for Python.
+// A run of a simulation from its start to its end: steps, frames, messages, output files. The command line and
+// Python both run through it.
 #pragma once
 
 #include <chrono>
@@ -8,6 +8,7 @@
 
 #include "app/recording/output.h"
 #include "app/run/progress.h"
+#include "app/simulation/time_loop.h"
 
 namespace drape {
 
@@ -15,8 +16,10 @@ struct RunOptions {
   std::filesystem::path out;  // empty: no files
   Frames frames = Frames::pc2;
   bool quiet = false;
-  // s, from where the simulation is; none: what is left of the scene's, and the scene's.
-  std::optional<double> duration = {}, time_step = {};
+  std::optional<double> duration = {};  // s, from where the simulation is; unset: to the end of the scene
+  // s; unset: the scene's, shortened where a frame comes sooner. Given: steps of just this length, which pass
+  // over the times of frames; the last state is the only frame.
+  std::optional<double> time_step = {};
 };
 
 // Starts where the simulation is. Keeps a reference to it.
@@ -26,7 +29,7 @@ class Run {
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
-  bool over() const { return at_end() || settled_ || record_.failure; }
+  bool over() const { return loop_.over() || settled_; }
   // The next step, and the frames that are due with it; not when it is over. When it fails, the state and its
   // numbers are those from before.
   const StepRow& step();
@@ -39,36 +42,30 @@ class Run {
  private:
   using Clock = std::chrono::steady_clock;
 
-  void plan(bool until_duration);
   void describe();
-  double time_after(long step) const;  // s
   bool at_rest(const StepRow& row) const;
   bool slow(double cloth_speed) const;
   void record_step(const StepRow& row);
   void watch_settling();
-  void write_due_frames();
+  void write_due_frame();
   void write_frame();
-  bool at_last_step() const { return next_step_ == step_count_; }
-  bool at_end() const { return next_step_ > step_count_; }
   void note_failure(const StepFailure& failure);
   void tell_once(bool& told, const std::string& line);
   void tell_of_open_seams();
 
   const SimulationOptions& wanted_;
   Simulation& simulation_;
+  const StepGrid grid_;
+  const double end_time_;  // s
+  TimeLoop loop_;
   std::optional<Output> output_;
-  double h_, start_time_, end_time_;  // s
   Progress progress_;
   RunRecord record_;
   StepRow row_;
-  State before_;  // the step under way
   Clock::time_point start_ = Clock::now();
-  long step_count_ = 0, next_step_ = 1;
-  long steps_before_ = 0;  // of the same length, when the start is a whole number of them
-  long next_frame_ = 0;
-  bool framed_ = false, settled_ = false;
+  bool framed_ = false;  // there is a frame of the state as it is now
+  bool settled_ = false;
   double last_motion_;         // s
-  double last_step_ = 0;       // s, of the last step
   double settled_since_ = -1;  // s, -1: it moves
   bool told_cut_ = false, told_not_converged_ = false;
   std::string failure_;

@@ -31,6 +31,9 @@ std::string summary(const RunRecord& record, const Output& output) {
   std::string text = (record.interrupted ? "interrupted after " : "simulated ") +
                      rounded(record.simulated_seconds, 4) + " s in " + counted(record.steps, "step") + ", " +
                      rounded(record.wall_seconds, 3) + " s of wall time\n";
+  if (!record.step_as_asked)
+    text += "steps of " + rounded(1000 * record.time_step, 4) + " ms between frames, " +
+            rounded(1000 * record.time_step_asked, 4) + " ms were asked for\n";
   for (const ClothCounts& c : record.cloths)
     text += c.name + ": " + counted(c.particles, "particle") + ", " + counted(c.triangles, "triangle") + "\n";
   for (const SoftCounts& s : record.softs)

@@ -71,12 +71,13 @@ SimulationOptions read_simulation(const Table* given) {
   if (!given) return options;
   Table table = *given;
   table.read("duration", options.duration, dimension::time, Range::positive,
-             "what is simulated; the last step is shortened where it is not a multiple of the step");
-  table.read("time_step", options.time_step, dimension::time, Range::positive, "length of a step");
-  table.read(
-      "frame_rate", options.frame_rate, dimension::rate, Range::not_negative,
-      "of the frames that are written: frame k is the first state at or after k / rate; 0: only the last "
-      "state");
+             "what is simulated; the end is the last frame, also where it is no whole number of frames");
+  table.read("time_step", options.time_step, dimension::time, Range::positive,
+             "length of a step; shorter, equal from frame to frame, where no whole number of them comes to a "
+             "frame");
+  table.read("frame_rate", options.frame_rate, dimension::rate, Range::not_negative,
+             "of the frames that are written: frame k is the state at k / rate, the last frame the state at "
+             "the end; 0: only the last");
   table.read("gravity", options.gravity, dimension::acceleration, "acts on all that has a mass");
   table.read_part("integrator", options.integrator, names_of(integrators()), "how time goes on");
   table.read_part("linear_solver", options.linear_solver, names_of(linear_solvers()),
@@ -96,8 +97,8 @@ SimulationOptions read_simulation(const Table* given) {
              "also decides between \"settled\" and \"moving\" in run.json");
   table.finish();
   if (options.frame_rate * options.time_step > 10)
-    table.fail("frame_rate",
-               "is more than ten frames a step of " + rounded(options.time_step, 4) + " s; check the units");
+    table.fail("frame_rate", "is more than ten frames in a step of " + rounded(options.time_step, 4) +
+                                 " s, which would be cut as often; check the units");
   if (options.duration / options.time_step > 1e9)
     table.fail(
         table.has("time_step") ? "time_step" : "duration",

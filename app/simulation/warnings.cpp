@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "app/simulation/schedule.h"
+
 namespace drape {
 namespace {
 
@@ -95,6 +97,16 @@ void warn_of_time(const SimulationOptions& options, Names& messages) {
                        " s is long: motion is lost in it; 10 ms is usual");
 }
 
+// The step that is taken where it is not the one asked for.
+void tell_of_step(const SimulationOptions& options, Names& messages) {
+  const StepGrid grid(options.time_step, options.frame_rate);
+  if (grid.as_asked()) return;
+  messages.push_back("note: steps of " + rounded(1000 * grid.step(), 4) + " ms instead of " +
+                     rounded(1000 * grid.asked(), 4) + " ms: " +
+                     (grid.per_frame() == 1 ? "one comes" : std::to_string(grid.per_frame()) + " come") +
+                     " to a frame at " + rounded(options.frame_rate, 6) + " Hz");
+}
+
 }  // namespace
 
 void add_warnings(const Scene& scene, Simulation& simulation) {
@@ -103,6 +115,7 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
   warn_if_coarse(scene, simulation);
   warn_of_restitution(scene, simulation.messages);
   warn_of_time(scene.simulation, simulation.messages);
+  tell_of_step(scene.simulation, simulation.messages);
   if (simulation.constraints->bodies().empty() && simulation.constraints->pinned().empty() &&
       !scene.simulation.gravity.isZero(0))
     simulation.messages.push_back(

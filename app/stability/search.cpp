@@ -6,8 +6,7 @@
 #include <numeric>
 #include <random>
 
-#include "app/base/interrupt.h"
-#include "app/simulation/simulation.h"
+#include "app/simulation/time_loop.h"
 #include "mesh/base/errors.h"
 
 namespace drape {
@@ -67,23 +66,20 @@ Trial run_at(const Scene& scene, double h, const StabilityOptions& options) {
   Simulation simulation = make_simulation(scene);
   shake(simulation, options.shake, simulation.state);
   EnergyWatch watch(simulation, h);
-  const auto steps = static_cast<long>(std::ceil(options.time / h * (1 - 1e-9)));
-  for (long k = 1; k <= steps && !interrupted(); ++k) {
-    const StepReport report = simulation.advance(h);
-    const std::string at =
-        "step " + std::to_string(k) + " (" + rounded(static_cast<double>(k) * h, 3) + " s): ";
+  const double steps = std::ceil(options.time / h * (1 - 1e-9));  // all of them whole
+  TimeLoop loop(simulation, Schedule(StepGrid(h), 0, steps * h));
+  march(loop, [&](const StepReport& report) {
+    const std::string at = "step " + std::to_string(loop.number()) + " (" +
+                           rounded(static_cast<double>(loop.number()) * h, 3) + " s): ";
     trial.steps_cut += report.substeps > 1 ? 1 : 0;
     double growth = 0;
     if (!report.done)
       trial.failure = at + one_line(report.failure.what);
-    else if (!simulation.state.x.allFinite() || !simulation.state.v.allFinite())
-      trial.failure = at + "a position or velocity is not a finite number";
     else if (growth = watch.growth(); !(growth <= options.growth))
       trial.failure = at + "energy has been made, " + rounded(growth, 2) + " times what was given";
-    if (trial.failure.empty()) continue;
-    trial.stable = false;
-    break;
-  }
+    trial.stable = trial.failure.empty();
+    return trial.stable;
+  });
   return trial;
 }
 

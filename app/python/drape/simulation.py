@@ -44,7 +44,10 @@ class Simulation(_drape.Simulation):
         self._forget_scratch: Optional[Callable[[], Any]] = None
 
     def advance(self, h: Optional[float] = None) -> _drape.RunStep:
-        """One step of h [s], by default the scene's. StepError when it fails; the state is then as it was."""
+        """One step of just h [s], by default the scene's time_step. StepError when it fails; the state is then as it was.
+
+        run() shortens its steps to end at the times of frames; this does not.
+        """
         step = self.time_step if h is None else h
         return _drape.Run(self, None, "none", step, step).step()
 
