@@ -24,8 +24,9 @@ void check(const Obstacle& obstacle) {
     throw InputError(where + ": restitution = " + std::to_string(obstacle.restitution) +
                      ": a restitution is a number from 0 (stays) to 1 (springs back as fast as it came)");
   if (!obstacle.rigid) return;
-  if (std::holds_alternative<Plane>(obstacle.shape) || std::holds_alternative<Bowl>(obstacle.shape))
-    throw InputError(where + ": cannot react; give a mass to a sphere, a box, a capsule or a closed mesh");
+  if (!can_react(obstacle.shape))
+    throw InputError(where +
+                     ": cannot react; give a mass to a body such as a sphere, a box or a closed mesh");
   try {
     check(*obstacle.rigid);
   } catch (const InputError& error) {

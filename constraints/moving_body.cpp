@@ -4,7 +4,7 @@ namespace drape {
 
 MovingBody::MovingBody(Obstacle obstacle, int number) : obstacle_(std::move(obstacle)), number_(number) {
   check(obstacle_);
-  if (auto* plane = std::get_if<Plane>(&obstacle_.shape)) plane->normal.normalize();
+  make_unit(obstacle_.shape);
   now_ = start_ = end_ = obstacle_.motion.at(0);
   move(obstacle_.shape, 0, 0);
   if (obstacle_.rigid) reacting_.emplace(*obstacle_.rigid, now_);
@@ -49,13 +49,12 @@ Vec3 MovingBody::carried(const Vec3& x) const {
 
 MovingBody::Mark MovingBody::mark(const Vec3& x) const {
   const Vec3 X = now_.to_body(x);
-  if (const auto* body = std::get_if<DeformingBody>(&obstacle_.shape))
-    return {X, body->surface->anchor(X, 1)};
+  if (const DeformingBody* const body = deforming(obstacle_.shape)) return {X, body->surface->anchor(X, 1)};
   return {X, {}};
 }
 
 Vec3 MovingBody::carried(const Mark& mark) const {
-  if (const auto* body = std::get_if<DeformingBody>(&obstacle_.shape))
+  if (const DeformingBody* const body = deforming(obstacle_.shape))
     return end_.to_world(body->surface->place(*mark.anchor, 1));
   return end_.to_world(mark.place);
 }

@@ -71,7 +71,7 @@ class MovingBody {
   std::optional<Vec3> stop(const Vec3& x0, Vec3& x1, double start_distance) const;
 
  private:
-  bool deforms() const { return std::holds_alternative<DeformingBody>(obstacle_.shape); }
+  bool deforms() const { return deforming(obstacle_.shape) != nullptr; }
   ContactPlane plane_at(const Vec3& x, const Vec3& normal, double gap) const;
 
   Obstacle obstacle_;

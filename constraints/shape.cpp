@@ -1,44 +1,37 @@
-// Signed distances of the shapes, and the first meeting of a straight path with one.
-//   f(s) = phi(x(s)) - margin,  f'(s) = n . direction,  s [m] the way gone along the path
-// Convex shapes: f is convex, so Newton's step from the left never passes the first root and a rising f stays
-// clear.
+// The built-in shapes, one block for each: what kind it is, where its surface is, what it weighs, how it looks,
+// and which sizes it may have. The questions of shape.h are put to the block of the shape by std::visit. They
+// are asked as kinds::..., which no argument converts to: a shape that lacks an answer does not compile.
 //
-// Others: f cannot fall faster than 1, so that a step of |f| is safe [Hart 1996, sphere tracing]. Where |f|
-// is below a resolution r, Newton's step is taken, at most r long; if f rises after it, the lowest f between
-// is sought. A path that slides along a surface costs about length / r distances. Missed can be only what is
-// thinner than r - 2 margin and hidden from the path by a nearer surface. r = 1 mm for paths up to 256 mm, a
-// 256th of longer ones.
-//
-// Against a surface that deforms, s [m] counts the most by which the two can come nearer to each other,
-//   length = |x1 - x0 - m| + max_i |u_i - m|,  u_i displacements of the vertices, m their mean,
-// so that f still falls no faster than 1; f' = n . (x1 - x0 - u) / length, u that of the closest point. What
-// a margin below r / 2 could let through is found as a root of the triangles' cubics (mesh/distance/crossing.h).
+// Moments of inertia of a solid of uniform density about its own axes, m mass [kg]:
+//   sphere   2/5 m r^2
+//   box      m/12 (b^2 + c^2), a b c the edges
+//   capsule  a cylinder (mass m_c, length l) and two half spheres (m_s together), in the ratio of volumes:
+//            along  m_c r^2/2 + 2/5 m_s r^2
+//            across m_c (l^2/12 + r^2/4) + m_s (2/5 r^2 + l^2/4 + 3/8 l r)
+//   plate    of discs of radius rho(z) along the axis, density m / V:
+//            V = pi int rho^2,  along pi/2 int rho^4,  across pi/4 int rho^4 + pi int z^2 rho^2
 #include "constraints/shape.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <string>
 
+#include "constraints/mesh_kinds.h"
 #include "mesh/base/errors.h"
+#include "mesh/base/match.h"
+#include "mesh/triangles/generate.h"
 
 namespace drape {
 namespace {
 
-constexpr double touch = 1e-8;       // m: f below this is a meeting
-constexpr double sliding = 1e-9;     // a slope that is none
-constexpr double resolution = 1e-3;  // m
-constexpr double rounding = 1e-12;   // m: what goes with a moving surface goes no farther from it
-constexpr int resolved_steps = 256;  // of a long path
-constexpr int most_steps = 2 * resolved_steps;
-constexpr int most_halvings = 40;
+using Eigen::AlignedBox3d;
+using std::numbers::pi;
 
-template <class... Cases>
-struct Match : Cases... {
-  using Cases::operator()...;
-};
-template <class... Cases>
-Match(Cases...) -> Match<Cases...>;
+constexpr double endless = std::numeric_limits<double>::infinity();
+constexpr int fineness = 4;  // subdivisions of a sphere
+constexpr int around = 96;   // vertices
 
 // A unit vector across the unit vector n.
 Vec3 across(const Vec3& n) { return n.unitOrthogonal(); }
@@ -47,16 +40,124 @@ Vec3 direction_or(const Vec3& v, double length, const Vec3& otherwise) {
   return length > 0 ? Vec3(v / length) : otherwise;
 }
 
+// The turn that takes `from`, a unit vector, to the direction `to`.
+Mat3 turn(const Vec3& from, const Vec3& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+}
+
+TriangleMesh placed(TriangleMesh mesh, const Mat3& rotation, const Vec3& translate) {
+  for (Vec3& x : mesh.positions) x = rotation * x + translate;
+  return mesh;
+}
+
+UniformSolid solid(double volume, const Vec3& centre, const Mat3& axes, const Vec3& moments) {
+  return {volume, centre, axes * moments.asDiagonal() * axes.transpose()};
+}
+
+// The box of a shape from how far it reaches along a direction: reach(u) = max u . (x - centre), |u| = 1.
+template <class Reach>
+AlignedBox3d box_about(const Vec3& centre, const Reach& reach) {
+  Vec3 lower, upper;
+  for (int k = 0; k < 3; ++k) {
+    lower[k] = centre[k] - reach(Vec3(-Vec3::Unit(k)));
+    upper[k] = centre[k] + reach(Vec3(Vec3::Unit(k)));
+  }
+  return {lower, upper};
+}
+
+// The part of a unit vector across an axis, from its part along the axis.
+double across_part(double along) { return std::sqrt(std::max(0.0, 1 - along * along)); }
+
+void require(bool fine, const char* message, double value) {
+  if (!fine) throw InputError(std::string(message) + ", it is " + std::to_string(value));
+}
+
+void require_size(double value, const char* message) {
+  require(std::isfinite(value) && value > 0, message, value);
+}
+
+void require_place(const Vec3& p, const char* message) {
+  if (!p.allFinite()) throw InputError(message);
+}
+
+void require_direction(const Vec3& n, const char* message) {
+  require(n.allFinite() && n.norm() > 0, message, n.norm());
+}
+
+}  // namespace
+
+namespace kinds {
+
+// ---- plane
+
+constexpr Nature nature(const Plane&) { return {"plane", true, false}; }
+
 SurfacePoint closest(const Plane& plane, const Vec3& x) {
   const Vec3 n = plane.normal.normalized();
   return {n.dot(x - plane.point), n};
 }
+
+Vec3 middle_of(const Plane& plane) { return plane.point; }
+void make_unit(Plane& plane) { plane.normal.normalize(); }
+Mat3 axes_of(const Plane&) { return Mat3::Identity(); }
+
+// It ends where its normal goes along an axis of the world.
+AlignedBox3d bounds_of(const Plane& plane) {
+  const Vec3 n = plane.normal.normalized();
+  Vec3 lower = Vec3::Constant(-endless), upper = -lower;
+  for (int k = 0; k < 3; ++k) {
+    if (n[k] == 1) upper[k] = plane.point[k];
+    if (n[k] == -1) lower[k] = plane.point[k];
+  }
+  return {lower, upper};
+}
+
+TriangleMesh mesh_of(const Plane&) { return {}; }
+std::optional<UniformSolid> uniform_solid(const Plane&, double) { return std::nullopt; }
+double longest_edge(const Plane&) { return endless; }
+
+void check(const Plane& plane) {
+  require_place(plane.point, "plane: point must be finite");
+  require_direction(plane.normal, "plane: normal must have a length");
+}
+
+// ---- sphere
+
+constexpr Nature nature(const Sphere&) { return {"sphere", true, true}; }
 
 SurfacePoint closest(const Sphere& sphere, const Vec3& x) {
   const Vec3 r = x - sphere.centre;
   const double d = r.norm();
   return {d - sphere.radius, direction_or(r, d, Vec3::UnitY())};
 }
+
+Vec3 middle_of(const Sphere& sphere) { return sphere.centre; }
+void make_unit(Sphere&) {}
+Mat3 axes_of(const Sphere&) { return Mat3::Identity(); }
+
+AlignedBox3d bounds_of(const Sphere& sphere) {
+  return box_about(sphere.centre, [&](const Vec3&) { return sphere.radius; });
+}
+
+TriangleMesh mesh_of(const Sphere& sphere) {
+  return placed(drape::sphere(fineness, sphere.radius), Mat3::Identity(), sphere.centre);
+}
+
+std::optional<UniformSolid> uniform_solid(const Sphere& sphere, double mass) {
+  const double r = sphere.radius;
+  return solid(4 * pi / 3 * r * r * r, sphere.centre, axes_of(sphere), Vec3::Constant(0.4 * mass * r * r));
+}
+
+double longest_edge(const Sphere& sphere) { return sphere.radius; }
+
+void check(const Sphere& sphere) {
+  require_place(sphere.centre, "sphere: centre must be finite");
+  require_size(sphere.radius, "sphere: radius must be positive");
+}
+
+// ---- bowl
+
+constexpr Nature nature(const Bowl&) { return {"bowl", false, false}; }
 
 // The middle of the shell is half a sphere: below its rim the nearest point lies along the radius, above it
 // on the rim.
@@ -75,6 +176,39 @@ SurfacePoint closest(const Bowl& bowl, const Vec3& x) {
   return {d - bowl.thickness / 2, direction_or(offset, d, radial)};
 }
 
+Vec3 middle_of(const Bowl& bowl) { return bowl.centre; }
+void make_unit(Bowl& bowl) { bowl.axis.normalize(); }
+Mat3 axes_of(const Bowl& bowl) { return turn(Vec3::UnitX(), bowl.axis); }
+
+// Downwards the outer half sphere, upwards the ring that is its rim.
+AlignedBox3d bounds_of(const Bowl& bowl) {
+  const Vec3 axis = bowl.axis.normalized();
+  const double half = bowl.thickness / 2;
+  return box_about(bowl.centre, [&](const Vec3& u) {
+    const double up = axis.dot(u);
+    return up > 0 ? (bowl.radius + half) * across_part(up) + half : bowl.radius + bowl.thickness;
+  });
+}
+
+TriangleMesh mesh_of(const Bowl& bowl) {
+  return placed(drape::bowl(around, bowl.radius, bowl.thickness), turn(Vec3::UnitY(), bowl.axis),
+                bowl.centre);
+}
+
+std::optional<UniformSolid> uniform_solid(const Bowl&, double) { return std::nullopt; }
+double longest_edge(const Bowl&) { return endless; }
+
+void check(const Bowl& bowl) {
+  require_place(bowl.centre, "bowl: centre must be finite");
+  require_size(bowl.radius, "bowl: radius must be positive");
+  require_size(bowl.thickness, "bowl: thickness must be positive");
+  require_direction(bowl.axis, "bowl: axis must have a length");
+}
+
+// ---- box
+
+constexpr Nature nature(const Box&) { return {"box", true, true}; }
+
 SurfacePoint closest(const Box& box, const Vec3& x) {
   const Vec3 p = box.rotation.transpose() * (x - box.centre);
   const Vec3 depth = p.cwiseAbs() - box.size / 2;  // beyond each pair of faces
@@ -87,6 +221,39 @@ SurfacePoint closest(const Box& box, const Vec3& x) {
   return {inside, sign[nearest] * box.rotation.col(nearest)};
 }
 
+Vec3 middle_of(const Box& box) { return box.centre; }
+void make_unit(Box&) {}
+Mat3 axes_of(const Box& box) { return box.rotation; }
+
+AlignedBox3d bounds_of(const Box& box) {
+  return box_about(
+      box.centre, [&](const Vec3& u) { return (box.rotation.transpose() * u).cwiseAbs().dot(box.size / 2); });
+}
+
+TriangleMesh mesh_of(const Box& box) { return placed(drape::box(box.size), box.rotation, box.centre); }
+
+std::optional<UniformSolid> uniform_solid(const Box& box, double mass) {
+  const Vec3 squares = box.size.cwiseAbs2();
+  return solid(box.size.prod(), box.centre, axes_of(box),
+               mass / 12 * (Vec3::Constant(squares.sum()) - squares));
+}
+
+double longest_edge(const Box&) { return endless; }
+
+void check(const Box& box) {
+  require_place(box.centre, "box: centre must be finite");
+  for (int k = 0; k < 3; ++k) require_size(box.size[k], "box: size must be positive");
+  const double error = (box.rotation.transpose() * box.rotation - Mat3::Identity()).cwiseAbs().maxCoeff();
+  require(
+      error < 1e-6 && box.rotation.determinant() > 0,
+      "box: rotation must be orthonormal and right-handed, the largest entry of |R^T R - 1| shows how far",
+      error);
+}
+
+// ---- capsule
+
+constexpr Nature nature(const Capsule&) { return {"capsule", true, true}; }
+
 SurfacePoint closest(const Capsule& capsule, const Vec3& x) {
   const Vec3 ab = capsule.b - capsule.a, ax = x - capsule.a;
   const double squared = ab.squaredNorm();
@@ -97,234 +264,177 @@ SurfacePoint closest(const Capsule& capsule, const Vec3& x) {
   return {d - capsule.radius, direction_or(r, d, otherwise)};
 }
 
-SurfacePoint closest(const MeshBody& body, const Vec3& x) { return body->closest(x); }
+Vec3 middle_of(const Capsule& capsule) { return (capsule.a + capsule.b) / 2; }
+void make_unit(Capsule&) {}
+Mat3 axes_of(const Capsule& capsule) { return turn(Vec3::UnitX(), capsule.b - capsule.a); }
 
-SurfacePoint closest(const LevelSetBody& body, const Vec3& x) { return body->closest(x); }
-
-bool convex(const Shape& shape) {
-  return !std::holds_alternative<Bowl>(shape) && !std::holds_alternative<MeshBody>(shape) &&
-         !std::holds_alternative<DeformingBody>(shape) && !std::holds_alternative<LevelSetBody>(shape);
+AlignedBox3d bounds_of(const Capsule& capsule) {
+  const Vec3 reach = Vec3::Constant(capsule.radius);
+  return {capsule.a.cwiseMin(capsule.b) - reach, capsule.a.cwiseMax(capsule.b) + reach};
 }
 
-// f and f' at a place of the path.
-struct Station {
-  double s = 0, f = 0, slope = 0;
-  SurfacePoint surface{};
-};
-
-// direction: of the particle for a metre of s; a unit vector where the surface stands.
-struct Path {
-  const Shape& shape;
-  Vec3 start, direction;
-  double length, margin;
-
-  Station at(double s) const {
-    const Vec3 x = start + s * direction;
-    if (const auto* body = std::get_if<DeformingBody>(&shape)) {
-      Vec3 displacement;
-      const SurfacePoint surface = body->surface->closest(x, s / length, displacement);
-      return {s, surface.distance - margin, surface.normal.dot(direction - displacement / length), surface};
-    }
-    Station here{s, 0, 0, drape::closest(shape, x)};
-    here.f = here.surface.distance - margin;
-    here.slope = here.surface.normal.dot(direction);
-    return here;
-  }
-  Hit hit(const Station& here) const { return {length > 0 ? here.s / length : 0.0, here.surface}; }
-};
-
-bool nearer_still(const Station& here) { return here.f <= touch && here.slope < -sliding; }
-
-// Between `clear` (f > touch) and `met` (f <= touch): where f first falls to the touch, to rounding.
-Station meeting(const Path& path, Station clear, Station met) {
-  for (int i = 0; i < most_halvings && met.f < -touch && met.s - clear.s > touch; ++i) {
-    const double safe = clear.s + clear.f;
-    const Station middle = path.at(std::max(safe, 0.5 * (clear.s + met.s)));
-    (middle.f > touch ? clear : met) = middle;
-  }
-  return met;
+TriangleMesh mesh_of(const Capsule& capsule) {
+  const Vec3 along = capsule.b - capsule.a;
+  const double length = along.norm();
+  return placed(drape::capsule(around, capsule.radius, length),
+                length > 0 ? turn(Vec3::UnitY(), along) : Mat3(Mat3::Identity()), middle_of(capsule));
 }
 
-// f rises at `right`; clear at both ends, was it down to the touch between? Halves the part where the slope
-// turns until Lipschitz' bound shows it clear.
-std::optional<Station> dip(const Path& path, Station left, Station right) {
-  for (int i = 0; i < most_halvings && left.f + right.f < right.s - left.s; ++i) {
-    const Station middle = path.at(0.5 * (left.s + right.s));
-    if (middle.f <= touch) return meeting(path, left, middle);
-    (middle.slope < 0 ? left : right) = middle;
-  }
-  return std::nullopt;
+std::optional<UniformSolid> uniform_solid(const Capsule& capsule, double mass) {
+  const double r = capsule.radius, l = (capsule.b - capsule.a).norm();
+  const double cylinder = mass * l / (l + 4.0 / 3 * r), ends = mass - cylinder;
+  const double along = cylinder * r * r / 2 + 0.4 * ends * r * r;
+  const double across =
+      cylinder * (l * l / 12 + r * r / 4) + ends * (0.4 * r * r + l * l / 4 + 0.375 * l * r);
+  return solid(pi * r * r * (l + 4.0 / 3 * r), middle_of(capsule), axes_of(capsule), {along, across, across});
 }
 
-std::optional<Hit> first_hit_convex(const Path& path) {
-  Station here = path.at(0);
-  for (int i = 0; i < most_steps; ++i) {
-    if (here.slope >= -sliding) return std::nullopt;  // a convex f does not fall again
-    if (here.f <= touch) return path.hit(here);
-    const double s = here.s + here.f / -here.slope;
-    if (s > path.length) return std::nullopt;
-    here = path.at(s);
-    if (here.f <= touch) return path.hit(here);
-  }
-  return path.hit(here);
-}
+double longest_edge(const Capsule& capsule) { return capsule.radius; }
 
-double resolution_of(const Path& path) { return std::max(resolution, path.length / resolved_steps); }
-
-std::optional<Hit> first_hit_any(const Path& path) {
-  const double r = resolution_of(path);
-  Station here = path.at(0);
-  if (nearer_still(here)) return path.hit(here);
-  bool leaving = here.f <= touch;  // within the margin from the start, and not yet out of it
-  for (int i = 0; i < most_steps && here.s < path.length; ++i) {
-    const double newton = here.slope < -sliding ? std::min(here.f / -here.slope, r) : r;
-    const double step = std::max(std::abs(here.f), newton);
-    const Station there = path.at(std::min(here.s + step, path.length));
-    if (leaving) {
-      if (nearer_still(there)) return path.hit(there);
-      leaving = there.f <= touch;
-    } else if (there.f <= touch) {
-      return path.hit(meeting(path, here, there));
-    } else if (there.slope > sliding) {
-      if (const auto found = dip(path, here, there)) return path.hit(*found);
-    }
-    here = there;
-  }
-  if (here.s < path.length && here.f < r)
-    return path.hit(here);  // too long a way to follow: stop where it is near
-  return std::nullopt;
-}
-
-// The advancement along the distance, and what it may not see: a surface gone through within r, and one that
-// meets a path which starts within the margin and leaves.
-std::optional<Hit> first_hit_deforming(const SurfaceDistance& surface, const Path& path) {
-  const Station start = path.at(0);
-  if (start.f > touch &&
-      surface.stays_clear(path.start, path.start + path.length * path.direction, path.margin + touch))
-    return std::nullopt;
-  const std::optional<Hit> hit = first_hit_any(path);
-  const bool leaves = start.f <= touch;
-  const bool seen = 2 * path.margin >= resolution_of(path) && !leaves;
-  const bool too_far = std::abs(start.surface.distance) > path.length;
-  if (seen || too_far || (hit && hit->fraction == 0)) return hit;
-  const bool on_it = !surface.closed() && start.surface.distance <= touch;  // and not yet going through it
-  const double from = on_it ? 2 * touch / path.length : 0;
-  const auto s = surface.first_crossing(path.start, path.start + path.length * path.direction, from);
-  if (!s || (hit && hit->fraction <= *s)) return hit;
-  return path.hit(path.at(std::max(0.0, *s * path.length - touch)));  // on the side that it comes from
-}
-
-void require(bool fine, const char* message, double value) {
-  if (!fine) throw InputError(std::string(message) + ", it is " + std::to_string(value));
-}
-
-void require_size(double value, const char* message) {
-  require(std::isfinite(value) && value > 0, message, value);
-}
-
-void require_place(const Vec3& p, const char* message) {
-  if (!p.allFinite()) throw InputError(message);
-}
-
-void require_direction(const Vec3& n, const char* message) {
-  require(n.allFinite() && n.norm() > 0, message, n.norm());
-}
-
-void check_box(const Box& box) {
-  require_place(box.centre, "box: centre must be finite");
-  for (int k = 0; k < 3; ++k) require_size(box.size[k], "box: size must be positive");
-  const double error = (box.rotation.transpose() * box.rotation - Mat3::Identity()).cwiseAbs().maxCoeff();
-  require(
-      error < 1e-6 && box.rotation.determinant() > 0,
-      "box: rotation must be orthonormal and right-handed, the largest entry of |R^T R - 1| shows how far",
-      error);
-}
-
-void check_capsule(const Capsule& capsule) {
+void check(const Capsule& capsule) {
   require_place(capsule.a, "capsule: a must be finite");
   require_place(capsule.b, "capsule: b must be finite");
   require_size(capsule.radius, "capsule: radius must be positive");
 }
 
-void check_bowl(const Bowl& bowl) {
-  require_place(bowl.centre, "bowl: centre must be finite");
-  require_size(bowl.radius, "bowl: radius must be positive");
-  require_size(bowl.thickness, "bowl: thickness must be positive");
-  require_direction(bowl.axis, "bowl: axis must have a length");
+// ---- plate: a cylinder of radius - rim and half height - rim, the core, and all that is within `rim` of it
+
+constexpr Nature nature(const Plate&) { return {"plate", true, true}; }
+
+SurfacePoint closest(const Plate& plate, const Vec3& x) {
+  const Vec3 axis = plate.axis.normalized(), r = x - plate.centre;
+  const double height = axis.dot(r);
+  const Vec3 outwards = r - height * axis;
+  const double rho = outwards.norm();
+  const Vec3 radial = direction_or(outwards, rho, across(axis));
+  const Vec3 upwards = height < 0 ? Vec3(-axis) : axis;
+  const double beside = rho - (plate.radius - plate.rim);  // beyond the core's wall
+  const double above = std::abs(height) - (plate.height / 2 - plate.rim);
+  const double out = std::max(beside, 0.0), up = std::max(above, 0.0);
+  const double d = std::sqrt(out * out + up * up);
+  if (d > 0) return {d - plate.rim, (out * radial + up * upwards) / d};
+  return {std::max(beside, above) - plate.rim, beside > above ? radial : upwards};
 }
 
-void check_deforming(const DeformingBody& body) {
-  if (!body.surface) throw InputError("mesh: there is no surface");
-  if (!body.frames || body.frames->frame_count() == 0) throw InputError("mesh: there are no frames");
-  const int vertices = body.surface->mesh().vertex_count();
-  if (body.frames->vertex_count() != vertices)
-    throw InputError("mesh: it has " + std::to_string(vertices) + " vertices, its frames have " +
-                     std::to_string(body.frames->vertex_count()));
+Vec3 middle_of(const Plate& plate) { return plate.centre; }
+void make_unit(Plate& plate) { plate.axis.normalize(); }
+Mat3 axes_of(const Plate& plate) { return turn(Vec3::UnitX(), plate.axis); }
+
+AlignedBox3d bounds_of(const Plate& plate) {
+  const Vec3 axis = plate.axis.normalized();
+  return box_about(plate.centre, [&](const Vec3& u) {
+    const double along = std::abs(axis.dot(u));
+    return (plate.height / 2 - plate.rim) * along + (plate.radius - plate.rim) * across_part(along) +
+           plate.rim;
+  });
 }
 
-}  // namespace
-
-std::string_view name(const Shape& shape) {
-  constexpr std::string_view names[] = {"plane",   "sphere", "bowl", "box",
-                                        "capsule", "mesh",   "mesh", "level-set"};
-  static_assert(std::variant_size_v<Shape> == std::size(names));
-  return names[shape.index()];
+TriangleMesh mesh_of(const Plate& plate) {
+  constexpr int round_the_rim = 8;  // pieces of a quarter of a circle
+  const double half = plate.height / 2, wall = half - plate.rim, core = plate.radius - plate.rim;
+  Outline outline;
+  outline.emplace_back(0, -half);
+  if (plate.rim > 0) {
+    add_arc(outline, {core, -wall}, plate.rim, -pi / 2, 0, round_the_rim);
+    add_arc(outline, {core, wall}, plate.rim, 0, pi / 2, round_the_rim);
+  } else {
+    outline.emplace_back(plate.radius, -half);
+    outline.emplace_back(plate.radius, half);
+  }
+  if (outline.back()[0] > 0) outline.emplace_back(0, half);
+  return placed(turned(outline, around), turn(Vec3::UnitY(), plate.axis), plate.centre);
 }
+
+// The core's part of the axis is a cylinder. Beyond, at t in [0, r] past its end, rho = c + s, s = sqrt(r^2 - t^2),
+// c the core's radius and r the rim; the integrals of t^i s^j over t are in closed form.
+std::optional<UniformSolid> uniform_solid(const Plate& plate, double mass) {
+  const double R = plate.radius, r = plate.rim, c = R - r, H = plate.height / 2 - r;
+  const double r2 = r * r, r3 = r2 * r, r4 = r3 * r, r5 = r4 * r, c2 = c * c;
+  const double rho2 = c2 * r + c * pi * r2 / 2 + 2 * r3 / 3;  // int rho^2, and times t, and times t^2
+  const double t_rho2 = c2 * r2 / 2 + 2 * c * r3 / 3 + r4 / 4;
+  const double t2_rho2 = c2 * r3 / 3 + c * pi * r4 / 8 + 2 * r5 / 15;
+  const double rho4 =
+      c2 * c2 * r + c2 * c * pi * r2 + 4 * c2 * r3 + 3 * pi * c * r4 / 4 + 8 * r5 / 15;  // int rho^4
+  const double volume = 2 * pi * (R * R * H + rho2);
+  const double fourth = 2 * (R * R * R * R * H + rho4);  // over the whole axis
+  const double second = 2 * (R * R * H * H * H / 3 + H * H * rho2 + 2 * H * t_rho2 + t2_rho2);
+  const double along = mass / volume * pi / 2 * fourth, across = along / 2 + mass / volume * pi * second;
+  return solid(volume, plate.centre, axes_of(plate), {along, across, across});
+}
+
+double longest_edge(const Plate& plate) { return plate.radius; }
+
+void check(const Plate& plate) {
+  require_place(plate.centre, "plate: centre must be finite");
+  require_size(plate.radius, "plate: radius must be positive");
+  require_size(plate.height, "plate: height must be positive");
+  require_direction(plate.axis, "plate: axis must have a length");
+  const double most = std::min(plate.radius, plate.height / 2);
+  require(plate.rim >= 0 && plate.rim <= most,
+          "plate: rim must be from 0 to the radius, and at most half the height", plate.rim);
+}
+
+Nature nature_of(const Shape& shape) {
+  return std::visit([](const auto& kind) { return kinds::nature(kind); }, shape);
+}
+
+}  // namespace kinds
+
+std::string_view name(const Shape& shape) { return kinds::nature_of(shape).name; }
+bool convex(const Shape& shape) { return kinds::nature_of(shape).convex; }
+bool can_react(const Shape& shape) { return kinds::nature_of(shape).reacts; }
 
 SurfacePoint closest(const Shape& shape, const Vec3& x, double s) {
-  return std::visit(Match{[&](const DeformingBody& body) { return body.surface->closest(x, s); },
-                          [&](const auto& standing) { return closest(standing, x); }},
+  return std::visit(Match{[&](const DeformingBody& body) { return kinds::closest(body, x, s); },
+                          [&](const auto& standing) { return kinds::closest(standing, x); }},
                     shape);
 }
 
+Vec3 middle_of(const Shape& shape) {
+  return std::visit([](const auto& kind) { return kinds::middle_of(kind); }, shape);
+}
+
+Mat3 axes_of(const Shape& shape) {
+  return std::visit([](const auto& kind) { return kinds::axes_of(kind); }, shape);
+}
+
+Eigen::AlignedBox3d bounds_of(const Shape& shape) {
+  return std::visit([](const auto& kind) { return kinds::bounds_of(kind); }, shape);
+}
+
+void make_unit(Shape& shape) {
+  std::visit([](auto& kind) { kinds::make_unit(kind); }, shape);
+}
+
+TriangleMesh mesh_of(const Shape& shape) {
+  return std::visit([](const auto& kind) { return kinds::mesh_of(kind); }, shape);
+}
+
+std::optional<UniformSolid> uniform_solid(const Shape& shape, double mass) {
+  return std::visit([&](const auto& kind) { return kinds::uniform_solid(kind, mass); }, shape);
+}
+
+double longest_edge(const Shape& shape) {
+  return std::visit([](const auto& kind) { return kinds::longest_edge(kind); }, shape);
+}
+
+void check(const Shape& shape) {
+  std::visit([](const auto& kind) { kinds::check(kind); }, shape);
+}
+
 void move(Shape& shape, double t0, double t1) {
-  if (const auto* body = std::get_if<DeformingBody>(&shape)) body->surface->move(*body->frames, t0, t1);
+  if (const DeformingBody* const body = deforming(shape)) body->surface->move(*body->frames, t0, t1);
 }
 
 double largest_displacement(const Shape& shape) {
-  const auto* body = std::get_if<DeformingBody>(&shape);
+  const DeformingBody* const body = deforming(shape);
   return body ? body->surface->largest_displacement() : 0;
 }
 
 Vec3 carried(const Shape& shape, const Vec3& x, double s) {
-  const auto* body = std::get_if<DeformingBody>(&shape);
+  const DeformingBody* const body = deforming(shape);
   if (!body || body->surface->largest_displacement() == 0) return x;
   return body->surface->place(body->surface->anchor(x, s), 1);
-}
-
-std::optional<Hit> first_hit(const Shape& shape, const Vec3& x0, const Vec3& x1, double margin) {
-  const Vec3 way = x1 - x0;
-  if (const auto* body = std::get_if<DeformingBody>(&shape)) {
-    const SurfaceMotion& motion = body->surface->motion();
-    const double most = (way - motion.mean).norm() + motion.about_mean;
-    if (!(most > rounding)) return std::nullopt;
-    return first_hit_deforming(*body->surface, {shape, x0, way / most, most, margin});
-  }
-  const double length = way.norm();
-  if (!(length > 0)) return std::nullopt;
-  const Path path{shape, x0, way / length, length, margin};
-  return convex(shape) ? first_hit_convex(path) : first_hit_any(path);
-}
-
-void check(const Shape& shape) {
-  std::visit(Match{[](const Plane& plane) {
-                     require_place(plane.point, "plane: point must be finite");
-                     require_direction(plane.normal, "plane: normal must have a length");
-                   },
-                   [](const Sphere& sphere) {
-                     require_place(sphere.centre, "sphere: centre must be finite");
-                     require_size(sphere.radius, "sphere: radius must be positive");
-                   },
-                   [](const Bowl& bowl) { check_bowl(bowl); }, [](const Box& box) { check_box(box); },
-                   [](const Capsule& capsule) { check_capsule(capsule); },
-                   [](const MeshBody& body) {
-                     if (!body) throw InputError("mesh: there is no surface");
-                   },
-                   [](const DeformingBody& body) { check_deforming(body); },
-                   [](const LevelSetBody& body) {
-                     if (!body) throw InputError("level-set: there is no grid");
-                   }},
-             shape);
 }
 
 }  // namespace drape

@@ -142,6 +142,31 @@ inline Case capsule_case() {
           }};
 }
 
+inline Vec3 on_plate(const Plate& p, Random& r) {
+  const Vec3 axis = p.axis.normalized(), e = axis.unitOrthogonal(), g = axis.cross(e);
+  const double a = r(0, 2 * pi), core = p.radius - p.rim, wall = p.height / 2 - p.rim;
+  const Vec3 round = std::cos(a) * e + std::sin(a) * g, up = r.below(2) ? axis : Vec3(-axis);
+  const int part = r.below(3);
+  if (part == 0) return p.centre + r(0, core) * round + p.height / 2 * up;
+  if (part == 1) return p.centre + p.radius * round + r(0, wall) * up;
+  const double t = r(0, pi / 2);
+  return p.centre + (core + p.rim * std::cos(t)) * round + (wall + p.rim * std::sin(t)) * up;
+}
+
+// Inside it is at most as far from the axis as the outline at its height.
+inline Case plate_case(double rim) {
+  const Plate p{{0.2, -0.1, 0.1}, 0.9, 0.7, rim, {-1, 2, 0.5}};
+  return {p, [p](Random& r) { return on_plate(p, r); },
+          [p](const Vec3& x) {
+            const Vec3 d = x - p.centre, n = p.axis.normalized();
+            const double h = std::abs(n.dot(d)), over = h - (p.height / 2 - p.rim);
+            if (h >= p.height / 2) return false;
+            const double outline =
+                p.radius - p.rim + (over > 0 ? std::sqrt(p.rim * p.rim - over * over) : p.rim);
+            return n.cross(d).norm() < outline;
+          }};
+}
+
 inline Vec3 on_mesh(const TriangleMesh& m, Random& r) {
   const Triangle& t = m.triangles[r.below(m.triangle_count())];
   double u = r(0, 1), v = r(0, 1);
@@ -182,6 +207,9 @@ inline std::vector<Case> cases() {
           bowl_case(),
           box_case(),
           capsule_case(),
+          plate_case(0.2),
+          plate_case(0),
+          plate_case(0.35),
           mesh_case(lat_long_sphere(24, 30, 0.8, {0.1, 0, 0})),
           mesh_case(spun),
           {body(open_sheet()), [](Random& r) { return Vec3(r(-1, 1), 0, r(-1, 1)); },

@@ -206,8 +206,8 @@ TEST_CASE("a run gives the same bits with any number of threads", "[cli]") {
 
 TEST_CASE("a cloth is dropped onto shapes, meshes and the floor", "[cli]") {
   const Workshop shop;
-  for (const char* onto :
-       {"sphere:0.3", "sphere:30cm", "box:0.4x0.2x0.4", "capsule:0.1x0.4", "bowl:0.3", "plane", "ball.obj"}) {
+  for (const char* onto : {"sphere:0.3", "sphere:30cm", "box:0.4x0.2x0.4", "capsule:0.1x0.4", "bowl:0.3",
+                           "plate:0.2", "plate:0.2x4cm", "plate:0.2x0.04x1mm", "plane", "ball.obj"}) {
     INFO(onto);
     const Outcome run =
         shop.drape(std::string("drop sheet.obj --floor --duration 0.1 --out o --onto ") + onto);
@@ -222,6 +222,37 @@ TEST_CASE("a cloth is dropped onto shapes, meshes and the floor", "[cli]") {
                    "--scale 0.5 "
                    "--duration 0.05 --set obstacle.0.friction=0.2 --set cloth.0.bend='5 uN.m' --out p")
             .exit_code == 0);
+}
+
+TEST_CASE("a disc is draped over the plate of a drape test, and stays", "[cli]") {
+  const Workshop shop;
+  constexpr double radius = 0.15, plate = 0.09, rim = 0.005;  // m
+  const TriangleMesh disc = drape::disc(15, radius);
+  shop.write("disc.obj", format_obj(disc, disc.positions));
+  const Outcome run = shop.drape("drop disc.obj --onto plate:0.09 --out o");
+  REQUIRE(run.exit_code == 0);
+  const Json json = shop.json("o/run.json");
+  CHECK(json["simulated_seconds"].get<double>() < 3);  // has come to rest
+  CHECK(json["max_penetration"].get<double>() < 1e-9);
+  const TriangleMesh cloth = read_obj(shop.path / "o/disc.obj"),
+                     body = read_obj(shop.path / "o/bodies/plate.obj");
+  double top = -1, lowest = 1, farthest = 0, uneven = 0;
+  for (const Vec3& x : body.positions) top = std::max(top, x.y());
+  Vec3 middle = Vec3::Zero();
+  const double height = cloth.positions[0].y();  // over the centre of the plate
+  for (const Vec3& x : cloth.positions) {
+    const double from_axis = std::hypot(x.x(), x.z());
+    if (from_axis < plate - rim - 0.01) uneven = std::max(uneven, std::abs(x.y() - height));
+    lowest = std::min(lowest, x.y());
+    farthest = std::max(farthest, from_axis);
+    middle += x / cloth.vertex_count();
+  }
+  CHECK(height > top);
+  CHECK(height < top + 0.005);                       // lies on it, a margin above
+  CHECK(uneven < 1e-3);                              // flat
+  CHECK(lowest < height - 0.03);                     // hangs down
+  CHECK(farthest < radius - 0.01);                   // and in
+  CHECK(std::hypot(middle.x(), middle.z()) < 1e-3);  // has not slid off
 }
 
 TEST_CASE("a cloth that starts inside a body is warned of and brought out", "[cli]") {

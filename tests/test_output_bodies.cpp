@@ -7,7 +7,6 @@
 #include <string>
 
 #include "app/recording/body_files.h"
-#include "app/simulation/body_mesh.h"
 #include "mesh/obj/examine.h"
 #include "mesh/obj/obj.h"
 #include "mesh/triangles/generate.h"
@@ -91,10 +90,15 @@ TEST_CASE("built-in bodies are drawn where their surface is", "[output]") {
                                      Capsule{{1, 0, 0}, {0, 0.3, 1}, 0.2},
                                      Capsule{{1, 0, 0}, {1, 0, 0}, 0.2},
                                      Bowl{{1, 2, 3}, 0.4, 0.02, {1, -2, 0.5}},
-                                     Bowl{{0, 0, 0}, 0.4, 0.1, {0, -1, 0}}};
+                                     Bowl{{0, 0, 0}, 0.4, 0.1, {0, -1, 0}},
+                                     Plate{{1, 2, 3}, 0.09, 0.02, 0.005, {1, -2, 0.5}},
+                                     Plate{{0, 0, 0}, 0.2, 0.4, 0.2},
+                                     Plate{{0, 0, 0}, 0.2, 0.5, 0.2},
+                                     Plate{{0, 0, 0}, 0.2, 0.1, 0.05},
+                                     Plate{{0, 0, 0}, 0.2, 0.1, 0}};
   for (const Shape& shape : shapes) {
     INFO(name(shape));
-    const TriangleMesh mesh = drawn(shape);
+    const TriangleMesh mesh = mesh_of(shape);
     CHECK(examine(mesh).closed);
     CHECK(examine(mesh).defects.empty());
     for (const Vec3& x : mesh.positions) CHECK(std::abs(closest(shape, x).distance) < 1e-12);
@@ -105,7 +109,7 @@ TEST_CASE("built-in bodies are drawn where their surface is", "[output]") {
       CHECK((b - a).cross(c - a).normalized().dot(middle.normal) > 0.9);
     }
   }
-  CHECK(drawn(Plane()).positions.empty());
+  CHECK(mesh_of(Plane()).positions.empty());
 }
 
 TEST_CASE("bodies have files of their own names as far as these can be", "[output]") {

@@ -2,12 +2,19 @@
 // zero set, projection.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "mesh/base/errors.h"
 #include "tests/shapes.h"
 
 using namespace drape;
 using namespace drape::test;
+
+TEST_CASE("every kind of shape has a case here, or moves or is a grid", "[shapes]") {
+  std::set<std::size_t> kinds = {Shape(DeformingBody()).index(), Shape(LevelSetBody()).index()};
+  for (const Case& c : cases()) kinds.insert(c.shape.index());
+  CHECK(kinds.size() == std::variant_size_v<Shape>);
+}
 
 TEST_CASE("the normal is the unit gradient of the distance", "[shapes]") {
   for (const Case& c : cases()) {
@@ -66,6 +73,11 @@ TEST_CASE("where the normal is not defined a unit one is returned", "[shapes]") 
       {Box{}, Vec3(0.5, 0.5, 0.5)},
       {Capsule{}, Vec3(0, 0.3, 0)},
       {Capsule{.a = Vec3::Zero(), .b = Vec3::Zero()}, Vec3::Zero()},
+      {Plate{}, Vec3::Zero()},
+      {Plate{.radius = 1, .height = 3}, Vec3::Zero()},            // on its axis, nearest to the wall
+      {Plate{.radius = 1, .height = 2, .rim = 1}, Vec3::Zero()},  // a ball
+      {Plate{.radius = 1, .height = 3, .rim = 1}, Vec3::Zero()},  // a capsule
+      {Plate{.radius = 2, .height = 1, .rim = 0.5}, Vec3(1, 0, 0)},
       {body(box_mesh(Vec3::Ones())), Vec3::Zero()},
       {body(open_sheet()), Vec3(0.3, 0, 0.1)}};
   for (const auto& [shape, x] : places) {
@@ -76,15 +88,22 @@ TEST_CASE("where the normal is not defined a unit one is returned", "[shapes]") 
 }
 
 TEST_CASE("sizes that are none are refused by name", "[shapes]") {
-  const std::vector<std::pair<Shape, std::string>> bad = {{Plane{.normal = Vec3::Zero()}, "normal"},
-                                                          {Sphere{.radius = 0}, "radius"},
-                                                          {Sphere{.centre = {std::nan(""), 0, 0}}, "centre"},
-                                                          {Bowl{.thickness = -1}, "thickness"},
-                                                          {Bowl{.axis = Vec3::Zero()}, "axis"},
-                                                          {Box{.size = {1, 0, 1}}, "size"},
-                                                          {Box{.rotation = 2 * Mat3::Identity()}, "rotation"},
-                                                          {Capsule{.radius = std::nan("")}, "radius"},
-                                                          {MeshBody{}, "mesh"}};
+  const std::vector<std::pair<Shape, std::string>> bad = {
+      {Plane{.normal = Vec3::Zero()}, "normal"},
+      {Sphere{.radius = 0}, "radius"},
+      {Sphere{.centre = {std::nan(""), 0, 0}}, "centre"},
+      {Bowl{.thickness = -1}, "thickness"},
+      {Bowl{.axis = Vec3::Zero()}, "axis"},
+      {Box{.size = {1, 0, 1}}, "size"},
+      {Box{.rotation = 2 * Mat3::Identity()}, "rotation"},
+      {Capsule{.radius = std::nan("")}, "radius"},
+      {Plate{.height = 0}, "height"},
+      {Plate{.rim = -0.001}, "rim"},
+      {Plate{.rim = 0.011}, "rim"},
+      {Plate{.radius = 0.1, .height = 1, .rim = 0.2}, "rim"},
+      {Plate{.rim = std::nan("")}, "rim"},
+      {Plate{.axis = Vec3::Zero()}, "axis"},
+      {MeshBody{}, "mesh"}};
   for (const auto& [shape, field] : bad) CHECK_THROWS_WITH(check(shape), Catch::Contains(field));
   for (const Case& c : cases()) CHECK_NOTHROW(check(c.shape));
 }

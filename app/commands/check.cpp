@@ -114,32 +114,23 @@ void print_paths(const std::vector<PinEntry>& pins, const Cloth& cloth, const St
   }
 }
 
-// m, where it was drawn. The box of a level set is that of its grid, which was scaled but not placed.
-Vec3 middle_of(const ObstacleEntry& entry, const Obstacle& obstacle, const Body& body) {
-  if (entry.mesh.empty()) return middle(entry);
-  const Vec3 centre = body.report.box().center();
-  if (!std::holds_alternative<LevelSetBody>(obstacle.shape)) return centre;
-  return entry.placement.rotation * centre + entry.placement.translate;
-}
-
 void print_obstacle(const ObstacleEntry& entry, const Obstacle& o, const Body& body, double duration) {
   std::printf("obstacle %s: %s, friction %s / %s, margin %s mm\n", entry.name.c_str(),
               std::string(name(o.shape)).c_str(), rounded(o.friction.statics, 3).c_str(),
               rounded(o.friction.kinetic, 3).c_str(), rounded(1000 * o.margin, 3).c_str());
   if (body.report.triangles > 0) print_report("  mesh", body.report);
   if (!body.level_set.empty()) std::printf("  level set: %s\n", body.level_set.c_str());
-  const auto* const deforming = std::get_if<DeformingBody>(&o.shape);
-  if (deforming)
-    std::printf("  %s, %s to %s s\n", counted(deforming->frames->frame_count(), "frame").c_str(),
-                rounded(deforming->frames->first_time(), 4).c_str(),
-                rounded(deforming->frames->last_time(), 4).c_str());
+  const DeformingBody* const frames = deforming(o.shape);
+  if (frames)
+    std::printf("  %s, %s to %s s\n", counted(frames->frames->frame_count(), "frame").c_str(),
+                rounded(frames->frames->first_time(), 4).c_str(),
+                rounded(frames->frames->last_time(), 4).c_str());
   if (o.rigid)
     std::printf("  mass %s kg, moves by what acts on it: at first %s m/s, %s deg/s\n",
                 rounded(o.rigid->mass, 4).c_str(), rounded(o.rigid->velocity.norm(), 4).c_str(),
                 rounded(o.rigid->spin.norm() * 57.29577951308232, 4).c_str());
-  else if (!deforming || o.motion.moves())
-    std::printf("  %s\n",
-                one_line(described(o.motion, entry.source, middle_of(entry, o, body), duration)).c_str());
+  else if (!frames || o.motion.moves())
+    std::printf("  %s\n", one_line(described(o.motion, entry.source, middle_of(o.shape), duration)).c_str());
 }
 
 void check_scene(const std::filesystem::path& file) {

@@ -15,6 +15,7 @@
 #include "app/compare/compare.h"
 #include "app/export/export.h"
 #include "app/picture/picture.h"
+#include "app/run/drop.h"
 #include "app/stability/stability.h"
 #include "app/view/view.h"
 #include "mesh/base/errors.h"
@@ -99,9 +100,7 @@ void add_drop(CLI::App& app, const std::string& label, int& exit_code) {
   command->add_option("CLOTH", words->cloth, "OBJ file, starting where it stands")->required();
   command
       ->add_option("--onto", words->options.onto,
-                   "an OBJ file, where it stands, or a shape just under the cloth: sphere:0.3, box:1x0.5x1, "
-                   "capsule:0.1x0.6, "
-                   "bowl:0.3, plane")
+                   "an OBJ file, where it stands, or a shape just under the cloth: " + onto_examples())
       ->type_name("BODY");
   command->add_flag("--floor", words->options.floor, "a plane under the body, or 0.5 m under the cloth");
   command->add_option("--fabric", words->options.fabric, "see 'drape list' (cotton-poplin)")

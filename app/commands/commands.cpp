@@ -9,6 +9,7 @@
 #include "app/run/run.h"
 #include "app/scene/fabrics.h"
 #include "app/scene/level_set_cache.h"
+#include "app/scene/shape_table.h"
 #include "app/simulation/simulation.h"
 #include "mesh/obj/obj.h"
 
@@ -54,15 +55,18 @@ std::vector<Part> fabric_parts() {
 }
 
 std::vector<Part> shape_parts() {
-  return {{"plane", "point, normal"},
-          {"sphere", "centre, radius"},
-          {"bowl", "centre, inner radius, thickness, axis: a hemispherical shell open along the axis"},
-          {"box", "centre, size, rotate"},
-          {"capsule", "a, b, radius"},
-          {"mesh", "an OBJ file: a closed body, or a thick surface"},
-          {"level-set", has_openvdb()
-                            ? "a closed OBJ file or a .vdb file, as a grid of distances"
-                            : "a closed OBJ file, as a grid of distances (.vdb files: not in this build)"}};
+  std::vector<Part> parts;
+  for_each_built_in([&]<class Kind>(const Kind& standard) {
+    Names keys;
+    for_each_field<Kind>([&](const auto& field) { keys.emplace_back(field.key()); });
+    parts.push_back({std::string(name(standard)), listed(keys) + ": " + Described<Kind>::what});
+  });
+  parts.push_back({"mesh", "an OBJ file: a closed body, or a thick surface"});
+  parts.push_back(
+      {"level-set", has_openvdb()
+                        ? "a closed OBJ file or a .vdb file, as a grid of distances"
+                        : "a closed OBJ file, as a grid of distances (.vdb files: not in this build)"});
+  return parts;
 }
 
 std::vector<Part> force_parts() {

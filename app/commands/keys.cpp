@@ -7,12 +7,14 @@
 #include "app/pattern/pattern_read.h"
 #include "app/scene/fabrics.h"
 #include "app/scene/scene.h"
+#include "app/scene/shape_table.h"
 #include "mesh/base/errors.h"
 
 namespace drape {
 namespace {
 
-constexpr std::string_view every_kind = R"(
+// Before and after the tables of all built-in shapes.
+constexpr std::string_view before_shapes = R"(
 [simulation]
 
 [[cloth]]
@@ -34,25 +36,9 @@ spacing = 0.1
 shape    = "plane"
 friction = { static = 0.3, kinetic = 0.3 }
 motion   = { spin = { axis = [0, 1, 0], rate = 1 } }
+)";
 
-[[obstacle]]
-shape  = "sphere"
-radius = 1
-
-[[obstacle]]
-shape  = "bowl"
-radius = 1
-
-[[obstacle]]
-shape = "box"
-size  = [1, 1, 1]
-
-[[obstacle]]
-shape  = "capsule"
-a      = [0, 0, 0]
-b      = [1, 0, 0]
-radius = 1
-
+constexpr std::string_view after_shapes = R"(
 [[obstacle]]
 shape  = "mesh"
 mesh   = "body.obj"
@@ -113,13 +99,28 @@ void print_markdown(const KeySection& section) {
                 note.otherwise.empty() ? "**required**" : note.otherwise.c_str(), note.text.c_str());
 }
 
+std::string toml(double value) { return shortest(value); }
+std::string toml(const Vec3& v) {
+  return "[" + shortest(v[0]) + ", " + shortest(v[1]) + ", " + shortest(v[2]) + "]";
+}
+
 }  // namespace
 
-std::string_view scene_of_every_kind() { return every_kind; }
+std::string scene_of_every_kind() {
+  std::string text(before_shapes);
+  for_each_built_in([&]<class Kind>(const Kind& standard) {
+    text += "\n[[obstacle]]\nshape = \"" + std::string(name(standard)) + "\"\n";
+    for_each_field<Kind>([&](const auto& field) {
+      if constexpr (!std::is_same_v<std::decay_t<decltype(standard.*field.member)>, Mat3>)
+        if (field.required) text += std::string(field.key()) + " = " + toml(standard.*field.member) + "\n";
+    });
+  });
+  return text.append(after_shapes);
+}
 
 KeyNotes scene_keys() {
   KeyNotes notes;
-  read_scene(parse_toml(every_kind, "a scene of every kind"), {}, {}, "every kind", &notes);
+  read_scene(parse_toml(scene_of_every_kind(), "a scene of every kind"), {}, {}, "every kind", &notes);
   return notes;
 }
 

@@ -14,7 +14,7 @@ KeyNotes scene_keys();
 KeyNotes fabric_keys();
 KeyNotes pattern_keys();
 
-std::string_view scene_of_every_kind();  // TOML; the files that it names need not exist
+std::string scene_of_every_kind();  // TOML; the files that it names need not exist
 
 struct KeysWords {
   // A table such as "cloth"; or "scene", "fabric" or "pattern" for all tables of such a file;

@@ -4,7 +4,10 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cctype>
+
 #include "app/base/words.h"
+#include "app/scene/shape_table.h"
 
 namespace drape::python {
 namespace {
@@ -31,8 +34,54 @@ py::tuple closest_points(const py::object& shape_object, const py::object& place
   return py::make_tuple(copied(distances), copied_rows(normals));
 }
 
+std::string text(double value) { return rounded(value, 6); }
 std::string text(const Vec3& v) {
   return "(" + rounded(v[0], 6) + ", " + rounded(v[1], 6) + ", " + rounded(v[2], 6) + ")";
+}
+
+// "centre=(0, 0, 0) m"; a rotation is left out.
+template <class Kind, class Value>
+void add_text(Names& parts, const Field<Kind, Value>& field, const Kind& shape) {
+  if constexpr (!std::is_same_v<Value, Mat3>)
+    parts.push_back(std::string(field.name) + "=" + text(shape.*field.member) +
+                    (field.measure == Measure::direction ? "" : " m"));
+}
+
+// "(3,) [m], its middle"
+template <class Kind, class Value>
+std::string documented(const Field<Kind, Value>& field) {
+  std::string text;
+  if constexpr (std::is_same_v<Value, Vec3>) text = "(3,)";
+  if constexpr (std::is_same_v<Value, Mat3>) text = "(3, 3)";
+  const bool metres = field.measure != Measure::direction && field.measure != Measure::turn;
+  if (metres) text += text.empty() ? "m" : " [m]";
+  return text + ", " + field.about;
+}
+
+std::string sentence(std::string words) {
+  words.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(words.front())));
+  return words + ".";
+}
+
+template <class Kind, class... Values>
+void add_class(py::module_& m, const Field<Kind, Values>&... field) {
+  using About = Described<Kind>;
+  const Kind standard;
+  std::string members;
+  ((members += std::string(field.name) + ": " + documented(field) + "\n"), ...);
+  py::class_<Kind> shape(m, About::python, sentence(About::what).c_str());
+  shape.def(py::init([field...](const Values&... values) {
+              Kind made;
+              ((made.*field.member = values), ...);
+              return sound(made);
+            }),
+            (py::arg(field.name) = standard.*field.member)..., members.c_str());
+  (shape.def_readonly(field.name, field.member, documented(field).c_str()), ...);
+  shape.def("__repr__", [field...](const Kind& self) {
+    Names parts;
+    (add_text(parts, field, self), ...);
+    return About::python + ("(" + listed(parts)) + ")";
+  });
 }
 
 void add_mesh_bodies(py::module_& m) {
@@ -66,75 +115,23 @@ void add_mesh_bodies(py::module_& m) {
 }  // namespace
 
 Shape shape_of(const py::handle& object) {
-  if (py::isinstance<Plane>(object)) return object.cast<Plane>();
-  if (py::isinstance<Sphere>(object)) return object.cast<Sphere>();
-  if (py::isinstance<Bowl>(object)) return object.cast<Bowl>();
-  if (py::isinstance<Box>(object)) return object.cast<Box>();
-  if (py::isinstance<Capsule>(object)) return object.cast<Capsule>();
+  std::optional<Shape> shape;
+  Names classes;
+  for_each_built_in([&]<class Kind>(const Kind&) {
+    if (py::isinstance<Kind>(object)) shape = object.cast<Kind>();
+    classes.emplace_back(Described<Kind>::python);
+  });
+  if (shape) return *shape;
   if (py::isinstance<MeshSurface>(object)) return object.cast<const MeshSurface&>().surface;
   if (py::isinstance<LevelSetSurface>(object)) return object.cast<const LevelSetSurface&>().grid;
-  throw py::type_error(
-      "shape: expected a Plane, Sphere, Bowl, Box, Capsule, MeshBody or LevelSetBody, but got a " +
-      std::string(py::str(py::type::of(object).attr("__name__"))));
+  throw py::type_error("shape: expected a " + listed(classes) + ", MeshBody or LevelSetBody, but got a " +
+                       std::string(py::str(py::type::of(object).attr("__name__"))));
 }
 
 void add_shapes(py::module_& m) {
-  const Vec3 origin = Vec3::Zero(), up = Vec3::UnitY();
-  py::class_<Plane>(m, "Plane", "The half space that the normal points away from.")
-      .def(py::init([](const Vec3& point, const Vec3& normal) {
-             return sound(Plane{point, normal});
-           }),
-           "point"_a = origin, "normal"_a = up, "A point of it [m]; the normal has any length but zero.")
-      .def_readonly("point", &Plane::point, "(3,) [m]")
-      .def_readonly("normal", &Plane::normal, "(3,)")
-      .def("__repr__", [](const Plane& s) {
-        return "Plane(point=" + text(s.point) + " m, normal=" + text(s.normal) + ")";
-      });
-  py::class_<Sphere>(m, "Sphere", "A ball.")
-      .def(py::init([](const Vec3& centre, double radius) {
-             return sound(Sphere{centre, radius});
-           }),
-           "centre"_a = origin, "radius"_a = 1.0, "m")
-      .def_readonly("centre", &Sphere::centre, "(3,) [m]")
-      .def_readonly("radius", &Sphere::radius, "m")
-      .def("__repr__", [](const Sphere& s) {
-        return "Sphere(centre=" + text(s.centre) + " m, radius=" + rounded(s.radius, 6) + " m)";
-      });
-  py::class_<Bowl>(m, "Bowl", "A hemispherical shell with a rounded rim that opens along its axis.")
-      .def(py::init([](const Vec3& centre, double radius, double thickness, const Vec3& axis) {
-             return sound(Bowl{centre, radius, thickness, axis});
-           }),
-           "centre"_a = origin, "radius"_a = 1.0, "thickness"_a = 0.02, "axis"_a = up,
-           "m; radius: the inner one")
-      .def_readonly("centre", &Bowl::centre, "(3,) [m]")
-      .def_readonly("radius", &Bowl::radius, "m, inner")
-      .def_readonly("thickness", &Bowl::thickness, "m")
-      .def_readonly("axis", &Bowl::axis, "(3,)")
-      .def("__repr__", [](const Bowl& s) {
-        return "Bowl(centre=" + text(s.centre) + " m, radius=" + rounded(s.radius, 6) + " m)";
-      });
-  py::class_<Box>(m, "Box", "A box with sharp edges, turned.")
-      .def(py::init([](const Vec3& centre, const Vec3& size, const Mat3& rotation) {
-             return sound(Box{centre, size, rotation});
-           }),
-           "centre"_a = origin, "size"_a = Vec3(Vec3::Ones()), "rotation"_a = Mat3(Mat3::Identity()),
-           "centre (3,) and whole edge lengths (3,) [m]; rotation (3, 3), orthonormal")
-      .def_readonly("centre", &Box::centre, "(3,) [m]")
-      .def_readonly("size", &Box::size, "(3,) [m], whole edge lengths")
-      .def_readonly("rotation", &Box::rotation, "(3, 3)")
-      .def("__repr__",
-           [](const Box& s) { return "Box(centre=" + text(s.centre) + " m, size=" + text(s.size) + " m)"; });
-  py::class_<Capsule>(m, "Capsule", "All that is within a radius of the line from a to b.")
-      .def(py::init([](const Vec3& a, const Vec3& b, double radius) {
-             return sound(Capsule{a, b, radius});
-           }),
-           "a"_a, "b"_a, "radius"_a, "m")
-      .def_readonly("a", &Capsule::a, "(3,) [m]")
-      .def_readonly("b", &Capsule::b, "(3,) [m]")
-      .def_readonly("radius", &Capsule::radius, "m")
-      .def("__repr__", [](const Capsule& s) {
-        return "Capsule(a=" + text(s.a) + " m, b=" + text(s.b) + " m, radius=" + rounded(s.radius, 6) + " m)";
-      });
+  for_each_built_in([&]<class Kind>(const Kind&) {
+    std::apply([&](const auto&... field) { add_class<Kind>(m, field...); }, Described<Kind>::fields);
+  });
   add_mesh_bodies(m);
   m.def("closest", &closest_points, "shape"_a, "points"_a,
         "Of points (n, 3) [m]: signed distances (n,) [m], negative inside, and outward normals (n, 3).");

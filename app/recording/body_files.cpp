@@ -30,12 +30,12 @@ std::string file_name(std::string name) {
 
 bool moves_or_reacts(const MovingBody& body) { return body.obstacle().motion.moves() || body.reacting(); }
 
-bool deforms(const MovingBody& body) { return std::holds_alternative<DeformingBody>(body.obstacle().shape); }
+bool deforms(const MovingBody& body) { return deforming(body.obstacle().shape) != nullptr; }
 
 // None where a run has failed and left it at no place.
 bool has_shape(const MovingBody& body) {
   const bool somewhere = body.pose().rotation.allFinite() && body.pose().translation.allFinite();
-  return somewhere && drawn(body.obstacle().shape).vertex_count() > 0;
+  return somewhere && mesh_of(body.obstacle().shape).vertex_count() > 0;
 }
 
 Names file_names(const Simulation& simulation) {
@@ -105,7 +105,7 @@ void BodyFiles::open() {
   if (frames_ == Frames::pc2)
     for (std::size_t k = 0; k < entries_.size(); ++k)
       if (entries_[k].deforms)
-        entries_[k].cache.emplace(cache_path(entries_[k]), drawn(body(k).obstacle().shape).vertex_count());
+        entries_[k].cache.emplace(cache_path(entries_[k]), mesh_of(body(k).obstacle().shape).vertex_count());
   if (!has_poses()) return;
   poses_.emplace(folder_ / "bodies.csv");
   poses_->write("frame,time,body,x,y,z,qw,qx,qy,qz\n");

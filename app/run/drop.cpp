@@ -1,8 +1,11 @@
 #include "app/run/drop.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "app/base/table.h"
+#include "app/scene/shape_table.h"
 #include "app/simulation/simulation.h"
 #include "mesh/obj/examine.h"
 #include "mesh/obj/obj.h"
@@ -20,18 +23,12 @@ Node point(const Vec3& p) { return Node::of_list({number(p[0]), number(p[1]), nu
 // "box:1x0.5x1" -> box and its sizes [m].
 struct ShapeWord {
   std::string shape;
-  std::vector<double> sizes;
+  Sizes sizes;
 };
 
 ShapeWord parse_shape(const std::string& word) {
   const std::size_t colon = word.find(':');
   ShapeWord parsed{word.substr(0, colon), {}};
-  const Names known = {"sphere", "box", "capsule", "bowl", "plane"};
-  if (std::find(known.begin(), known.end(), parsed.shape) == known.end())
-    throw InputError("--onto " + word +
-                     ": there is no such file and no such shape; shapes are: " + listed(known) +
-                     ", as sphere:0.3, box:1x0.5x1, capsule:0.1x0.6 (radius x length), bowl:0.3x0.02 (radius "
-                     "x thickness)");
   if (colon == word.npos) return parsed;
   std::string rest = word.substr(colon + 1);
   for (std::size_t begin = 0; begin <= rest.size();) {
@@ -47,61 +44,48 @@ ShapeWord parse_shape(const std::string& word) {
   return parsed;
 }
 
-void want_sizes(const std::string& word, const ShapeWord& shape, std::size_t least, std::size_t most,
-                const char* example) {
-  if (shape.sizes.size() < least || shape.sizes.size() > most)
-    throw InputError("--onto " + word + ": expected " + shape.shape + " with its size in m, such as " +
-                     example);
+Node node(double value) { return number(value); }
+Node node(const Vec3& value) { return point(value); }
+
+// The shape with its top `gap` under `top`, the middle of the cloth's lowest height, as a scene has it. It stands as its
+// defaults say: what is turned there is not turned here.  bottom: its lowest height.
+template <class Kind>
+Node below(Kind shape, const Vec3& top, double gap, double& bottom) {
+  const Vec3 peak = top - gap * Vec3::UnitY();
+  const Eigen::AlignedBox3d box = bounds_of(shape);
+  const Vec3 move = peak - box.max().y() * Vec3::UnitY();
+  bottom = std::isfinite(box.min().y()) ? peak.y() - box.sizes().y() : peak.y();
+  Node table = Node::of_table("--onto");
+  table.members["shape"] = Node::of_text(std::string(name(shape)), "--onto");
+  for_each_field<Kind>([&](const auto& field) {
+    using Value = std::decay_t<decltype(shape.*field.member)>;
+    if constexpr (std::is_same_v<Value, Vec3>)
+      if (field.measure == Measure::place) shape.*field.member += move;
+    if constexpr (!std::is_same_v<Value, Mat3>) table.members[field.key()] = node(shape.*field.member);
+  });
+  return table;
 }
 
-// The built-in body with its top `gap` under `top`, the middle of the cloth's lowest height.  bottom: its
-// lowest height.
 Node built_in(const std::string& word, const Vec3& top, double gap, double& bottom) {
-  const ShapeWord shape = parse_shape(word);
-  Node node = Node::of_table("--onto");
-  auto& keys = node.members;
-  keys["shape"] = Node::of_text(shape.shape, "--onto");
-  const Vec3 peak = top - gap * Vec3::UnitY();
-  const auto down = [&](double depth) { return Vec3(peak - depth * Vec3::UnitY()); };
-  if (shape.shape == "plane") {
-    want_sizes(word, shape, 0, 0, "plane");
-    keys["point"] = point(peak);
-    bottom = peak[1];
-    return node;
-  }
-  want_sizes(word, shape,
-             shape.shape == "box"       ? 3
-             : shape.shape == "capsule" ? 2
-                                        : 1,
-             shape.shape == "box"      ? 3
-             : shape.shape == "sphere" ? 1
-                                       : 2,
-             shape.shape == "box"       ? "box:1x0.5x1"
-             : shape.shape == "capsule" ? "capsule:0.1x0.6"
-                                        : "sphere:0.3");
-  const double radius = shape.sizes[0];
-  if (shape.shape == "box") {
-    keys["centre"] = point(down(shape.sizes[1] / 2));
-    keys["size"] = point({shape.sizes[0], shape.sizes[1], shape.sizes[2]});
-    bottom = peak[1] - shape.sizes[1];
-    return node;
-  }
-  keys["radius"] = number(radius);
-  if (shape.shape == "capsule") {
-    const Vec3 half = 0.5 * shape.sizes[1] * Vec3::UnitX();
-    keys["a"] = point(down(radius) - half);
-    keys["b"] = point(down(radius) + half);
-    bottom = peak[1] - 2 * radius;
-  } else if (shape.shape == "bowl") {
-    const double thickness = shape.sizes.size() > 1 ? shape.sizes[1] : Bowl().thickness;
-    keys["thickness"] = number(thickness);
-    keys["centre"] = point(down(thickness / 2));  // its rim is rounded
-    bottom = peak[1] - 1.5 * thickness - radius;
-  } else {
-    keys["centre"] = point(down(radius));
-    bottom = peak[1] - 2 * radius;
-  }
-  return node;
+  const ShapeWord wanted = parse_shape(word);
+  std::optional<Node> made;
+  Names known, examples;
+  for_each_built_in([&]<class Kind>(const Kind& standard) {
+    constexpr Onto onto = Described<Kind>::onto;
+    known.emplace_back(name(standard));
+    examples.push_back(onto.example);
+    if (*onto.sizes) examples.back() += " (" + std::string(onto.sizes) + ")";
+    if (wanted.shape != name(standard)) return;
+    if (wanted.sizes.size() < onto.least || wanted.sizes.size() > onto.most)
+      throw InputError("--onto " + word + ": expected " + wanted.shape +
+                       (onto.most > 0 ? " with its size in m, such as " : " without a size: ") +
+                       onto.example);
+    made = below(Described<Kind>::of_sizes(wanted.sizes), top, gap, bottom);
+  });
+  if (!made)
+    throw InputError("--onto " + word + ": there is no such file and no such shape; shapes are: " +
+                     listed(known) + ", as " + listed(examples));
+  return *made;
 }
 
 class DropScene {
@@ -213,6 +197,12 @@ class DropScene {
 };
 
 }  // namespace
+
+std::string onto_examples() {
+  Names examples;
+  for_each_built_in([&]<class Kind>(const Kind&) { examples.emplace_back(Described<Kind>::onto.example); });
+  return listed(examples);
+}
 
 Scene drop_scene(const DropOptions& options, const std::vector<Setting>& settings, const std::string& label) {
   return DropScene(options, settings, label).make();

@@ -20,6 +20,8 @@ struct DropOptions {
   std::vector<std::string> pinned_groups;
 };
 
+std::string onto_examples();  // "sphere:0.3, box:1x0.5x1": the built-in shapes of --onto
+
 // Throws InputError.
 Scene drop_scene(const DropOptions& options, const std::vector<Setting>& settings, const std::string& label);
 

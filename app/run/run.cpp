@@ -46,9 +46,8 @@ double last_motion(const Scene& scene, const Simulation& simulation) {
       if (pin.motion) last = std::max(last, pin.motion->last_time());
   for (const MovingBody& body : constraints.bodies()) {
     last = std::max(last, body.obstacle().motion.last_time());
-    const auto* const deforming = std::get_if<DeformingBody>(&body.obstacle().shape);
-    if (deforming && deforming->frames->frame_count() > 1)
-      last = std::max(last, deforming->frames->last_time());
+    const DeformingBody* const deformed = deforming(body.obstacle().shape);
+    if (deformed && deformed->frames->frame_count() > 1) last = std::max(last, deformed->frames->last_time());
   }
   return last;
 }

@@ -3,6 +3,7 @@
 #include "app/scene/body_frames.h"
 #include "app/scene/motion_read.h"
 #include "app/scene/rigid_read.h"
+#include "app/scene/shape_table.h"
 #include "mesh/base/errors.h"
 
 namespace drape {
@@ -63,44 +64,38 @@ fs::path read_path(Table& table, const fs::path& folder, const About& about) {
 
 namespace {
 
-Shape read_plane(Table& table) {
-  Plane plane;
-  table.read("point", plane.point, dimension::length, "any point of it");
-  table.read("normal", plane.normal, dimension::number, "to the side of the cloth; of any length");
-  return plane;
+template <class Kind>
+void read_field(Table& table, const Field<Kind, double>& field, double& value) {
+  table.read(field.name, value, dimension::length,
+             field.measure == Measure::rounding ? Range::not_negative : Range::positive, field.about);
 }
 
-Shape read_sphere(Table& table) {
-  Sphere sphere;
-  table.read("centre", sphere.centre, dimension::length, "its middle");
-  table.read_required("radius", sphere.radius, dimension::length, Range::positive, "its size");
-  return sphere;
+template <class Kind>
+void read_field(Table& table, const Field<Kind, Vec3>& field, Vec3& value) {
+  const bool direction = field.measure == Measure::direction;
+  table.read(field.name, value, direction ? dimension::number : dimension::length, field.about);
 }
 
-Shape read_bowl(Table& table) {
-  Bowl bowl;
-  table.read("centre", bowl.centre, dimension::length, "of the half sphere");
-  table.read_required("radius", bowl.radius, dimension::length, Range::positive, "of its inside");
-  table.read("thickness", bowl.thickness, dimension::length, Range::positive, "of its wall, outwards");
-  table.read("axis", bowl.axis, dimension::number, "to the side that is open");
-  return bowl;
+template <class Kind>
+void read_field(Table& table, const Field<Kind, Mat3>&, Mat3& value) {
+  value = read_rotation(table);
 }
 
-Shape read_box(Table& table) {
-  Box box;
-  table.read("centre", box.centre, dimension::length, "its middle, about which it is turned");
-  table.read_required("size", box.size, dimension::length, "its edges");
-  box.rotation = read_rotation(table);
-  return box;
+template <class Kind>
+Kind read_built_in(Table& table) {
+  Kind shape;
+  for_each_field<Kind>([&](const auto& field) {
+    if (field.required) table.require(field.key());
+    read_field(table, field, shape.*field.member);
+  });
+  return shape;
 }
 
-Shape read_capsule(Table& table) {
-  Capsule capsule;
-  table.read_required("a", capsule.a, dimension::length, "one end of its axis");
-  table.read_required("b", capsule.b, dimension::length, "the other end");
-  table.read_required("radius", capsule.radius, dimension::length, Range::positive,
-                      "round the axis and of the half spheres beyond its ends");
-  return capsule;
+void read_mesh(Table& table, const fs::path& folder, ObstacleEntry& entry) {
+  entry.mesh = read_path(table, folder, "OBJ file; a closed body, any other is a thick surface");
+  entry.placement = read_placement(table);
+  entry.frames = read_frames(table, folder);
+  entry.obstacle.shape = MeshBody();
 }
 
 void read_level_set(Table& table, const fs::path& folder, ObstacleEntry& entry) {
@@ -138,13 +133,7 @@ Friction read_friction(Table& table) {
 }  // namespace
 
 Vec3 middle(const ObstacleEntry& entry) {
-  const Shape& shape = entry.obstacle.shape;
-  if (const Plane* const plane = std::get_if<Plane>(&shape)) return plane->point;
-  if (const Sphere* const sphere = std::get_if<Sphere>(&shape)) return sphere->centre;
-  if (const Bowl* const bowl = std::get_if<Bowl>(&shape)) return bowl->centre;
-  if (const Box* const box = std::get_if<Box>(&shape)) return box->centre;
-  if (const Capsule* const capsule = std::get_if<Capsule>(&shape)) return (capsule->a + capsule->b) / 2;
-  return entry.placement.translate;
+  return entry.mesh.empty() ? middle_of(entry.obstacle.shape) : entry.placement.translate;
 }
 
 ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
@@ -153,17 +142,10 @@ ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
   std::string shape;
   table.read_required("shape", shape, shape_names(), "what kind of body; each has keys of its own, below");
   table.only_of("with shape = \"" + shape + "\"");
-  if (shape == "plane") entry.obstacle.shape = read_plane(table);
-  if (shape == "sphere") entry.obstacle.shape = read_sphere(table);
-  if (shape == "bowl") entry.obstacle.shape = read_bowl(table);
-  if (shape == "box") entry.obstacle.shape = read_box(table);
-  if (shape == "capsule") entry.obstacle.shape = read_capsule(table);
-  if (shape == "mesh") {
-    entry.mesh = read_path(table, folder, "OBJ file; a closed body, any other is a thick surface");
-    entry.placement = read_placement(table);
-    entry.frames = read_frames(table, folder);
-    entry.obstacle.shape = MeshBody();
-  }
+  for_each_built_in([&]<class Kind>(const Kind& standard) {
+    if (shape == name(standard)) entry.obstacle.shape = read_built_in<Kind>(table);
+  });
+  if (shape == "mesh") read_mesh(table, folder, entry);
   if (shape == "level-set") read_level_set(table, folder, entry);
   table.only_of({});
   entry.name = !entry.mesh.empty() ? entry.mesh.filename().string() : shape;
@@ -187,7 +169,12 @@ ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
   return entry;
 }
 
-Names shape_names() { return {"plane", "sphere", "bowl", "box", "capsule", "mesh", "level-set"}; }
+Names shape_names() {
+  Names names;
+  for_each_built_in([&](const auto& standard) { names.emplace_back(name(standard)); });
+  names.insert(names.end(), {"mesh", "level-set"});
+  return names;
+}
 
 bool is_vdb(const fs::path& path) { return path.extension() == ".vdb"; }
 

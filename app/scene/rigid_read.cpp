@@ -1,9 +1,4 @@
-// Moments of inertia of a solid of uniform density about its own axes, m mass [kg]:
-//   sphere   2/5 m r^2
-//   box      m/12 (b^2 + c^2), a b c the edges
-//   capsule  a cylinder (mass m_c, length l) and two half spheres (m_s together), in the ratio of volumes:
-//            along  m_c r^2/2 + 2/5 m_s r^2
-//            across m_c (l^2/12 + r^2/4) + m_s (2/5 r^2 + l^2/4 + 3/8 l r)
+// The moments of a solid that the scene does not give are those of its shape (constraints/shape.h).
 #include "app/scene/rigid_read.h"
 
 #include <Eigen/Geometry>
@@ -16,38 +11,9 @@ namespace {
 
 constexpr double round_off = 1e-9;
 
-Vec3 solid_moments(const Sphere& sphere, double mass) {
-  return Vec3::Constant(0.4 * mass * sphere.radius * sphere.radius);
-}
-
-Vec3 solid_moments(const Box& box, double mass) {
-  const Vec3 squares = box.size.cwiseAbs2();
-  return mass / 12 * (Vec3::Constant(squares.sum()) - squares);
-}
-
-Vec3 solid_moments(const Capsule& capsule, double mass) {
-  const double r = capsule.radius, l = (capsule.b - capsule.a).norm();
-  const double cylinder = mass * l / (l + 4.0 / 3 * r), ends = mass - cylinder;
-  const double along = cylinder * r * r / 2 + 0.4 * ends * r * r;
-  const double across =
-      cylinder * (l * l / 12 + r * r / 4) + ends * (0.4 * r * r + l * l / 4 + 0.375 * l * r);
-  return {along, across, across};
-}
-
 // The body's own axes as columns.
 Mat3 own_axes(const ObstacleEntry& entry) {
-  const Shape& shape = entry.obstacle.shape;
-  if (const Box* const box = std::get_if<Box>(&shape)) return box->rotation;
-  if (const Capsule* const capsule = std::get_if<Capsule>(&shape))
-    return Eigen::Quaterniond::FromTwoVectors(Vec3::UnitX(), capsule->b - capsule->a).toRotationMatrix();
-  return entry.placement.rotation;
-}
-
-std::optional<Vec3> solid_moments(const Shape& shape, double mass) {
-  if (const Sphere* const sphere = std::get_if<Sphere>(&shape)) return solid_moments(*sphere, mass);
-  if (const Box* const box = std::get_if<Box>(&shape)) return solid_moments(*box, mass);
-  if (const Capsule* const capsule = std::get_if<Capsule>(&shape)) return solid_moments(*capsule, mass);
-  return std::nullopt;
+  return entry.mesh.empty() ? axes_of(entry.obstacle.shape) : entry.placement.rotation;
 }
 
 void check_moments(const Table& table, const Vec3& inertia) {
@@ -61,7 +27,7 @@ void read_inertia(Table& table, std::optional<Vec3>& inertia) {
   table.read(
       "inertia", moments, dimension::moment_of_inertia,
       {"three moments about the axes through its middle: of a box along its edges, of a capsule along a b "
-       "and twice across, else along x, y, z (a mesh's before rotate)",
+       "and of a plate along its axis and twice across, else along x, y, z (a mesh's before rotate)",
        "a solid's"});
   if (!table.has("inertia")) return;
   check_moments(table, moments);
@@ -81,9 +47,9 @@ void read_rigid(Table& table, ObstacleEntry& entry, const Vec3& middle) {
                  "is of a body that moves by what acts on it, which needs a mass; a body that is moved has "
                  "motion = { velocity = [...], spin = { ... } }");
   if (!table.has("mass")) return;
-  const std::string_view shape = name(entry.obstacle.shape);
-  if (shape == "plane" || shape == "bowl")
-    table.fail("mass", "a " + std::string(shape) + " cannot move by what acts on it; leave the mass out");
+  if (!can_react(entry.obstacle.shape))
+    table.fail("mass", "a " + std::string(name(entry.obstacle.shape)) +
+                           " cannot move by what acts on it; leave the mass out");
   if (table.has("motion"))
     table.fail("motion",
                "a body with a mass moves by what acts on it: give its first velocity and spin, or leave "
@@ -91,10 +57,8 @@ void read_rigid(Table& table, ObstacleEntry& entry, const Vec3& middle) {
   table.only_of("with a mass");
   table.read("velocity", rigid.velocity, dimension::speed, "of its centre of mass, at first");
   rigid.spin = read_spin(table);
-  std::optional<Vec3> inertia;
-  read_inertia(table, inertia);
+  read_inertia(table, rigid.inertia);
   table.only_of({});
-  rigid.inertia = inertia ? inertia : solid_moments(entry.obstacle.shape, rigid.mass);
   rigid.axes = own_axes(entry);
   rigid.centre = middle;
   entry.rigid = rigid;

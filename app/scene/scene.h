@@ -93,12 +93,10 @@ struct SoftEntry {
 // A rigid body that moves under the forces on it.
 struct RigidBodyEntry {
   double mass = 0;  // kg
-  // kg m^2, about the axes through the centre of mass. None: those of the mesh's solid.
+  // kg m^2, about the axes through the centre of mass. Unset: those of a solid of the shape.
   std::optional<Vec3> inertia;
-  Vec3 centre = Vec3::Zero();  // m, centre of mass at the start; a mesh's comes from its solid
-  // Axes of the inertia at the start, as columns: a box's edges; for a capsule, the
-  // direction a b and two across.
-  Mat3 axes = Mat3::Identity();
+  Vec3 centre = Vec3::Zero();    // m, the middle of the shape at the start; of mass where it is no solid
+  Mat3 axes = Mat3::Identity();  // axes of the shape at the start, as columns
   Vec3 velocity = Vec3::Zero();  // m/s, of the centre of mass at the start
   Vec3 spin = Vec3::Zero();      // rad/s, at the start
 };

@@ -2,9 +2,8 @@
 
 #include "app/scene/body_frames.h"
 #include "app/scene/level_set_cache.h"
-#include "app/simulation/body_mesh.h"
 #include "mesh/base/errors.h"
-#include "mesh/lattice/solid.h"
+#include "mesh/base/match.h"
 
 namespace drape {
 namespace {
@@ -26,18 +25,24 @@ Shape load_body(const ObstacleEntry& entry, Body& body, Names& messages) {
   return shape;
 }
 
-// The body that reacts. What the scene leaves to a mesh: the solid of uniform density within it.
+// The body that reacts. What the scene does not give is that of the solid of uniform density.
 RigidBody rigid_body(const ObstacleEntry& entry, const Obstacle& obstacle, const Vec3& gravity) {
   const RigidBodyEntry& given = *entry.rigid;
   RigidBody body{given.mass, Mat3::Identity(), given.centre, given.velocity, given.spin, gravity};
-  if (const auto* mesh = std::get_if<MeshBody>(&obstacle.shape)) {
-    if (!(*mesh)->closed())
+  const auto solid = uniform_solid(obstacle.shape, given.mass);
+  if (solid) {
+    body.centre = solid->centre;
+    body.inertia = solid->inertia;
+  } else if (deforming(obstacle.shape)) {
+    if (!given.inertia)
       throw InputError(
           entry.where + ": mass: " + entry.mesh.string() +
-          ": the mesh is not closed: it has no inside that could weigh; close it, or leave the mass out");
-    const Solid solid = solid_of((*mesh)->mesh());
-    body.centre = solid.centre;
-    body.inertia = given.mass / solid.volume * solid.inertia;
+          ": a mesh with frames changes its moments of inertia; give its `inertia`, or leave the "
+          "mass out");
+  } else {
+    throw InputError(
+        entry.where + ": mass: " + entry.mesh.string() +
+        ": the mesh is not closed: it has no inside that could weigh; close it, or leave the mass out");
   }
   if (given.inertia) body.inertia = given.axes * given.inertia->asDiagonal() * given.axes.transpose();
   return body;
@@ -66,9 +71,18 @@ LevelSetBody load_level_set(const ObstacleEntry& entry, bool keep, Body& body, N
   return std::make_shared<const LevelSet>(grid.moved(entry.placement.rotation, entry.placement.translate));
 }
 
+Shape loaded(const ObstacleEntry& entry, bool keep_level_sets, Body& body, Names& messages) {
+  return std::visit(Match{[&](const MeshBody&) { return load_body(entry, body, messages); },
+                          [&](const LevelSetBody&) {
+                            return Shape(load_level_set(entry, keep_level_sets, body, messages));
+                          },
+                          [](const auto& whole) { return Shape(whole); }},  // nothing of it is in a file
+                    entry.obstacle.shape);
+}
+
 // A built-in shape beyond all sense is a wrong unit, and nothing that could be written as floats.
 void check_extent(const ObstacleEntry& entry, const Shape& shape) {
-  for (const Vec3& x : drawn(shape).positions)
+  for (const Vec3& x : mesh_of(shape).positions)
     if (!(x.cwiseAbs().maxCoeff() <= largest_size))
       throw InputError(entry.where + ": the " + std::string(name(shape)) + " reaches " +
                        rounded(x.cwiseAbs().maxCoeff(), 3) + " m from the origin, more than " +
@@ -82,10 +96,7 @@ void add_obstacles(const Scene& scene, bool keep_level_sets, Simulation& simulat
     Obstacle obstacle = entry.obstacle;
     Body body;
     body.name = entry.name;
-    if (std::holds_alternative<MeshBody>(obstacle.shape))
-      obstacle.shape = load_body(entry, body, simulation.messages);
-    if (std::holds_alternative<LevelSetBody>(obstacle.shape))
-      obstacle.shape = load_level_set(entry, keep_level_sets, body, simulation.messages);
+    obstacle.shape = loaded(entry, keep_level_sets, body, simulation.messages);
     check_extent(entry, obstacle.shape);
     if (entry.rigid) obstacle.rigid = rigid_body(entry, obstacle, scene.simulation.gravity);
     try {

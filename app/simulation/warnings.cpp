@@ -51,24 +51,13 @@ void warn_if_heavy(const ClothEntry& entry, Names& messages) {
                      " kg/m^2 is heavier than any cloth: was it meant in g/m^2?");
 }
 
-// Half the least extent of a body: how round it is at best. 0 where it does not matter.
-double roundness(const Obstacle& obstacle, const Body& body) {
-  if (const auto* sphere = std::get_if<Sphere>(&obstacle.shape)) return sphere->radius;
-  if (const auto* capsule = std::get_if<Capsule>(&obstacle.shape)) return capsule->radius;
-  if (std::holds_alternative<MeshBody>(obstacle.shape) ||
-      std::holds_alternative<DeformingBody>(obstacle.shape) ||
-      std::holds_alternative<LevelSetBody>(obstacle.shape))
-    return 0.5 * body.report.box().sizes().minCoeff();
-  return 0;
-}
-
 // Contact holds vertices: an edge as long as a body is wide lets it through.
 void warn_if_coarse(const Scene& scene, Simulation& simulation) {
   const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
   for (const Cloth& cloth : simulation.cloths) {
     for (std::size_t k = 0; k < bodies.size(); ++k) {
-      const double radius = roundness(bodies[k].obstacle(), simulation.bodies[k]);
-      if (radius == 0 || cloth.report.median_edge <= radius) continue;
+      const double radius = longest_edge(bodies[k].obstacle().shape);
+      if (cloth.report.median_edge <= radius) continue;
       simulation.messages.push_back(
           "warning: cloth " + cloth.name + " is too coarse for " +
           body_name(bodies[k].obstacle(), scene.obstacles[k].name) + ": its edges (median " +

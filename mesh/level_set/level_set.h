@@ -62,9 +62,11 @@ class LevelSet {
   // May be called from several threads at once. The distance is NaN when x is not finite.
   SurfacePoint closest(const Vec3& x) const;
 
-  double voxel() const;                        // m
-  double band() const;                         // m
-  Vec3 lower() const, upper() const;           // m, box of the surface before it was moved
+  double voxel() const;               // m
+  double band() const;                // m
+  Vec3 lower() const, upper() const;  // m, box of the surface before it was moved
+  // The place of a point of the grid after the surface was moved [m].
+  Vec3 to_world(const Vec3& x) const { return rotation_ * x + translate_; }
   long voxels() const;                         // number of nodes near the surface
   std::size_t bytes() const;                   // memory of the grid
   std::optional<LevelSetError> error() const;  // none for a .vdb file of another program

@@ -33,21 +33,6 @@ void add_quad(TriangleMesh& mesh, int p, int q, int r, int s, bool along_pr) {
   }
 }
 
-using Outline = std::vector<Eigen::Vector2d>;
-
-// Points of an arc about `centre`, from one angle to another [rad, from the outwards radius upwards]; the end
-// that lies on the axis is set on it.
-void add_arc(Outline& outline, const Eigen::Vector2d& centre, double radius, double from, double to,
-             int pieces) {
-  for (int k = 0; k <= pieces; ++k) {
-    const double angle = from + (to - from) * k / pieces;
-    Eigen::Vector2d point = centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-    if (point[0] < 1e-9 * radius) point[0] = 0;
-    const bool repeated = !outline.empty() && (point - outline.back()).norm() < 1e-9 * radius;
-    if (!repeated) outline.push_back(point);
-  }
-}
-
 TriangleMesh icosahedron() {
   const double g = (1 + std::sqrt(5.0)) / 2;
   TriangleMesh mesh;
@@ -187,7 +172,18 @@ TriangleMesh box(const Vec3& size) {
   return mesh;
 }
 
-TriangleMesh turned(const std::vector<Eigen::Vector2d>& outline, int around) {
+void add_arc(Outline& outline, const Eigen::Vector2d& centre, double radius, double from, double to,
+             int pieces) {
+  for (int k = 0; k <= pieces; ++k) {
+    const double angle = from + (to - from) * k / pieces;
+    Eigen::Vector2d point = centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    if (point[0] < 1e-9 * radius) point[0] = 0;
+    const bool repeated = !outline.empty() && (point - outline.back()).norm() < 1e-9 * radius;
+    if (!repeated) outline.push_back(point);
+  }
+}
+
+TriangleMesh turned(const Outline& outline, int around) {
   require(around >= 3 && outline.size() >= 3, "a turned body needs an outline of 3 points and 3 around");
   require(outline.front()[0] == 0 && outline.back()[0] == 0, "an outline begins and ends on the axis");
   const int rings = static_cast<int>(outline.size()) - 2;

@@ -28,9 +28,17 @@ TriangleMesh tube(int around, int along, double radius, double height);
 // A closed box along the axes with these edge lengths [m], centred: eight vertices, normals outwards.
 TriangleMesh box(const Vec3& size);
 
-// A closed body made by turning an outline about y, with `around` vertices in each ring. The outline is a
-// list of (radius, height) [m] that begins and ends on the axis and has the outside on its right.
-TriangleMesh turned(const std::vector<Eigen::Vector2d>& outline, int around);
+// The outline of a turned body: points (radius, height) [m].
+using Outline = std::vector<Eigen::Vector2d>;
+
+// Adds the points of an arc about `centre`, from one angle to another [rad, from the outwards radius upwards].
+// An end of it that lies on the axis is set on it; a point that the outline ends with already is not repeated.
+void add_arc(Outline& outline, const Eigen::Vector2d& centre, double radius, double from, double to,
+             int pieces);
+
+// Turned about y, `around` vertices in each ring, closed. The outline, (radius, height) [m], begins and ends
+// on the axis and has the outside on its right.
+TriangleMesh turned(const Outline& outline, int around);
 
 // A cylinder along y of this length [m], centred, between two half balls of this radius [m], with normals
 // outwards. `around` is a multiple of 4.

@@ -70,6 +70,20 @@ class Views(unittest.TestCase):
         box = drape.Box(rotation=[[0, -1, 0], [1, 0, 0], [0, 0, 1]])
         np.testing.assert_array_equal(box.rotation, [[0, -1, 0], [1, 0, 0], [0, 0, 1]])
 
+    def test_shapes_are_made_of_their_members(self):
+        plate = drape.Plate(radius=0.09, height=0.02, rim=0.005, axis=[0, 0, 2])
+        self.assertEqual(repr(plate), "Plate(centre=(0, 0, 0) m, radius=0.09 m, height=0.02 m, rim=0.005 m, "
+                                      "axis=(0, 0, 2))")
+        distance, normal = drape.closest(plate, [[0.01, 0.02, 0.03], [0.2, 0, 0]])
+        np.testing.assert_allclose(distance, [0.02, 0.11])
+        np.testing.assert_allclose(normal, [[0, 0, 1], [1, 0, 0]], atol=1e-15)
+        with self.assertRaisesRegex(ValueError, "rim must be"):
+            drape.Plate(radius=0.09, height=0.02, rim=0.011)
+        capsule = drape.Capsule([0, 0, 0], [1, 0, 0], 0.5)
+        self.assertEqual((capsule.radius, list(capsule.b)), (0.5, [1, 0, 0]))
+        with self.assertRaisesRegex(TypeError, "Capsule, Plate, MeshBody or LevelSetBody, but got a str"):
+            drape.closest("plate", [[0, 0, 0]])
+
 
 class Copies(unittest.TestCase):
     def state(self):
