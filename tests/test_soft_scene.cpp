@@ -1,6 +1,5 @@
 // [[soft]] in a scene: its keys, what is written, pins, and every mistake in one line.
 #include "app/simulation/simulation.h"
-#include "app/simulation/soft_body.h"
 #include "mesh/lattice/solid.h"
 #include "tests/mistakes.h"
 #include "tests/tables.h"

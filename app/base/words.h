@@ -1,26 +1,4 @@
-// Helpers for messages: lists of names, the nearest known name, counts, numbers.
+// The words for messages, which the library has, too.
 #pragma once
 
-#include <string>
-#include <string_view>
-#include <vector>
-
-namespace drape {
-
-using Names = std::vector<std::string>;
-
-std::string listed(const Names& names);  // "a, b, c"; "(none)" for an empty list
-
-// The known name with the fewest changed letters, if it is near enough to be a misspelling; else empty.
-std::string nearest(std::string_view word, const Names& known);
-
-// "did you mean 'bend'? known are: ..." in one line.
-std::string suggestion(std::string_view word, const Names& known);
-
-std::string counted(long count, std::string_view noun);  // "1 vertex", "3 vertices", "2 cloths"
-
-std::string shortest(double value);             // the fewest digits that read back as the same number
-std::string rounded(double value, int digits);  // %.{digits}g
-std::string one_line(std::string text);         // line ends and other control characters become blanks
-
-}  // namespace drape
+#include "mesh/base/words.h"

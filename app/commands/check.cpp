@@ -4,11 +4,11 @@
 
 #include "app/base/toml_file.h"
 #include "app/pattern/pattern_read.h"
+#include "app/scene/load_mesh.h"
 #include "app/scene/obstacle_read.h"
 #include "app/simulation/motion_extent.h"
 #include "app/simulation/schedule.h"
 #include "app/simulation/simulation.h"
-#include "app/simulation/soft_body.h"
 #include "mesh/obj/obj.h"
 
 namespace drape {

@@ -10,6 +10,7 @@
 #include "app/scene/fabrics.h"
 #include "app/scene/level_set_cache.h"
 #include "app/scene/shape_table.h"
+#include "app/scene/load_mesh.h"
 #include "app/simulation/simulation.h"
 #include "mesh/obj/obj.h"
 

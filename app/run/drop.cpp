@@ -6,6 +6,7 @@
 
 #include "app/base/table.h"
 #include "app/scene/shape_table.h"
+#include "app/scene/load_mesh.h"
 #include "app/simulation/simulation.h"
 #include "mesh/obj/examine.h"
 #include "mesh/obj/obj.h"

@@ -1,8 +1,6 @@
 // The moments of a solid that the scene does not give are those of its shape (constraints/shape.h).
 #include "app/scene/rigid_read.h"
 
-#include <Eigen/Geometry>
-
 #include "app/scene/motion_read.h"
 #include "mesh/base/errors.h"
 

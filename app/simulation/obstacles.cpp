@@ -2,6 +2,7 @@
 
 #include "app/scene/body_frames.h"
 #include "app/scene/level_set_cache.h"
+#include "app/scene/load_mesh.h"
 #include "mesh/base/errors.h"
 #include "mesh/base/match.h"
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "app/simulation/assembly.h"
 #include "app/simulation/obstacles.h"
+#include "app/simulation/parts.h"
 #include "app/simulation/warnings.h"
 #include "mesh/base/errors.h"
 
@@ -35,57 +35,15 @@ void add_pins(const Scene& scene, Simulation& simulation) {
 
 }  // namespace
 
-StepReport Simulation::advance(double h) {
-  bool open = false;
-  for (Cloth& cloth : cloths)
-    for (Cloth::Stitched& stitched : cloth.seams) {
-      open = true;
-      if (!stitched.force) continue;
-      const double before = stitched.force->energy(state.x);
-      close_until(*stitched.force, stitched.seam, state.time + h);
-      const double more = stitched.force->energy(state.x) - before;
-      integrator->count_given(std::max(0.0, more));
-      given += more;
-    }
-  const StepReport report = integrator->advance(state, h);
-  if (!open || !report.done) return report;
-  const auto energy = [&] {
-    return system->kinetic_energy(state.v) + system->elastic_energy(state.x) +
-           system->gravity_energy(state.x);
-  };
-  const double before = energy();
-  if (merge_closed_seams(*this)) {
-    integrator = make_integrator(*system, *constraints);
-    given += energy() - before;
-  }
-  return report;
-}
-
-void Simulation::use(std::function<std::unique_ptr<Integrator>(System&, Constraints&)> make) {
-  make_integrator = std::move(make);
-  integrator = make_integrator(*system, *constraints);
-}
-
-const Cloth& Simulation::cloth_of(int particle) const {
-  const auto after =
-      std::find_if(cloths.begin(), cloths.end(), [&](const Cloth& c) { return particle < c.end_particle; });
-  return after == cloths.end() ? cloths.back() : *after;
-}
-
 Simulation make_simulation(const Scene& scene, bool keep_level_sets) {
-  Simulation simulation;
+  const SimulationOptions& options = scene.simulation;
+  Simulation simulation(options.gravity, options.contact);
   simulation.scene = std::make_shared<const Scene>(scene);
-  simulation.constraints = std::make_unique<Constraints>(scene.simulation.contact);
-  Particles particles = load_particles(scene, simulation);
+  load_parts(scene, simulation);
   add_obstacles(scene, keep_level_sets, simulation);
-  add_faces(scene, particles, simulation);
   add_pins(scene, simulation);  // some of them to bodies
-  assemble(simulation, std::move(particles.masses), simulation.messages);
+  simulation.use(options.integrator, options.linear_solver, options.step);
   add_warnings(scene, simulation);
-  simulation.use([options = scene.simulation](System& system, Constraints& constraints) {
-    return make_integrator(options.integrator, system, constraints, make_linear_solver(options.linear_solver),
-                           options.step);
-  });
   return simulation;
 }
 

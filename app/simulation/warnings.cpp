@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "app/simulation/schedule.h"
+#include "solver/forces/choi_ko.h"
 
 namespace drape {
 namespace {
@@ -49,6 +50,25 @@ void warn_if_heavy(const ClothEntry& entry, Names& messages) {
   messages.push_back("warning: cloth " + entry.name + ": an area density of " +
                      rounded(entry.fabric.area_density, 3) +
                      " kg/m^2 is heavier than any cloth: was it meant in g/m^2?");
+}
+
+void warn_if_limp(const Cloth& cloth, Names& messages) {
+  const double curvature = cloth.limp_below;
+  if (!(curvature > 2 * limp_curvature(cloth.fabric.bend, cloth.fabric.area_density))) return;
+  messages.push_back("warning: cloth " + cloth.name +
+                     ": the buckling clamp makes it limp below a curvature of " + rounded(curvature, 2) +
+                     " 1/m (a radius of " + rounded(100 / curvature, 2) +
+                     " cm): gentler folds have no bending stiffness; raise buckling_clamp, or leave it out");
+}
+
+void warn_if_long(const Cloth& cloth, Names& messages) {
+  if (cloth.model != ClothModel::choi_ko) return;
+  const bool of_fabric = !cloth.fabric.stretch_spring || !cloth.fabric.bend_spring;
+  const double longest = longest_cell(cloth.mesh, cloth.rest);
+  if (!of_fabric || longest <= std::sqrt(3.0)) return;
+  messages.push_back("warning: cloth " + cloth.name + ": has cells " + rounded(longest, 3) +
+                     " times as long as wide; beyond 1.73 the grid's springs make it stiffer across than "
+                     "along; use a grid of squares, or model = \"noh-jung\"");
 }
 
 // Contact holds vertices: an edge as long as a body is wide lets it through.
@@ -99,6 +119,11 @@ void tell_of_step(const SimulationOptions& options, Names& messages) {
 }  // namespace
 
 void add_warnings(const Scene& scene, Simulation& simulation) {
+  for (const Cloth& cloth : simulation.cloths) {
+    if (cloth.soft) continue;
+    warn_if_long(cloth, simulation.messages);
+    warn_if_limp(cloth, simulation.messages);
+  }
   for (const ClothEntry& cloth : scene.cloths) warn_if_heavy(cloth, simulation.messages);
   warn_of_vertices_inside(scene, simulation);
   warn_if_coarse(scene, simulation);

@@ -167,9 +167,10 @@ class Runner:
         folder = f"cpp-{block.line}"
         (self.folder / folder).mkdir()
         (self.folder / folder / "main.cpp").write_text(f'#line {block.line} "{self.page.path}"\n{block.text}')
+        scenes = "<drape/app.h>" in block.text
         (self.folder / folder / "CMakeLists.txt").write_text(
-            "cmake_minimum_required(VERSION 3.21)\nproject(app CXX)\nfind_package(drape REQUIRED)\n"
-            "add_executable(app main.cpp)\ntarget_link_libraries(app drape::drape)\n")
+            f"cmake_minimum_required(VERSION 3.21)\nproject(app CXX)\nfind_package(drape REQUIRED {'COMPONENTS app' if scenes else ''})\n"
+            f"add_executable(app main.cpp)\ntarget_link_libraries(app {'drape::app' if scenes else 'drape::drape'})\n")
         self.build_and_run(block, folder, "app")
 
     def cmake(self, block):

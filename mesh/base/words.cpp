@@ -1,4 +1,4 @@
-#include "app/base/words.h"
+#include "mesh/base/words.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,0 +1,93 @@
+#include "app/simulation/parts.h"
+
+#include <cmath>
+
+#include "app/pattern/pattern_read.h"
+#include "app/pattern/remarks.h"
+#include "app/scene/load_mesh.h"
+#include "app/simulation/sewing.h"
+#include "mesh/obj/obj.h"
+#include "mesh/pattern/flat_pattern.h"
+#include "mesh/triangles/topology.h"
+
+namespace drape {
+namespace {
+
+// As drape triangulate writes it and reads it again.
+TriangleMesh cut_pattern(const ClothEntry& entry, Names& messages) try {
+  Names notes;
+  PatternMesh cut = triangulate(read_pattern(entry.mesh, notes), entry.pattern);
+  for (const std::string& note : notes) messages.push_back("note: " + note);
+  for (std::string& line : remarks(cut, entry.pattern.min_angle, entry.mesh.string()))
+    messages.push_back(std::move(line));
+  return std::move(cut.mesh);
+} catch (const InputError& error) {
+  throw InputError(entry.where + ": mesh: " + error.what());
+}
+
+// Texture coordinates are often without a length: the rest shape has then nothing to do with the mesh.
+void warn_of_scale(const ClothEntry& entry, const TriangleMesh& mesh, const TriangleMesh& rest,
+                   Names& messages) {
+  if (!entry.rest_is_flat) return;
+  double area = 0, flat = 0;
+  for (const Triangle& t : mesh.triangles) area += triangle_area(mesh, t);
+  for (const Triangle& t : rest.triangles) flat += triangle_area(rest, t);
+  if (flat > 0.5 * area && flat < 2 * area) return;
+  messages.push_back("warning: cloth " + entry.name + ": rests with an area of " + rounded(flat, 3) +
+                     " m^2 by its uv, and its mesh has " + rounded(area, 3) +
+                     " m^2: was another uv_scale meant? (lengths would agree with " +
+                     rounded(entry.uv_scale * std::sqrt(area / flat), 4) + " m)");
+}
+
+// As the file has it, its panels placed; the rest shape is the flat pattern, or what the file has.
+ClothPart load_cloth(const ClothEntry& entry, Names& messages) {
+  require_file(entry.mesh, entry.where);
+  ClothPart part;
+  part.name = entry.name;
+  part.fabric = entry.fabric;
+  part.model = entry.model == "choi-ko" ? ClothModel::choi_ko : ClothModel::noh_jung;
+  part.mesh = placed(is_pattern(entry.mesh) ? cut_pattern(entry, messages) : read_obj(entry.mesh),
+                     {.scale = entry.placement.scale}, entry.mesh.string());
+  try {
+    part.rest =
+        entry.rest_is_flat ? flat_pattern(part.mesh, entry.uv_scale * entry.placement.scale) : part.mesh;
+  } catch (const InputError& error) {
+    throw InputError(entry.where + ": " + entry.mesh.string() + ": " + error.what());
+  }
+  warn_of_scale(entry, part.mesh, *part.rest, messages);
+  place_panels(entry, part.mesh, messages);
+  const Placement rest_of_it{.rotation = entry.placement.rotation, .translate = entry.placement.translate};
+  part.mesh = placed(std::move(part.mesh), rest_of_it, entry.mesh.string());
+  part.report = examine(part.mesh);
+  add_messages(*part.report, entry.mesh.string(), messages);
+  part.seams = seam_plans(entry, part.mesh);
+  return part;
+}
+
+void add_cloth(const ClothEntry& entry, Simulation& simulation) {
+  ClothPart part = load_cloth(entry, simulation.messages);
+  try {
+    for (const Cloth::Stitched& open : simulation.add(std::move(part)).seams)
+      tell_of_gathers(open.seam, simulation.messages);
+  } catch (const InputError& error) {
+    if (entry.model != "choi-ko") throw InputError(entry.where + ": " + error.what());
+    throw InputError(entry.where + ": model = \"choi-ko\": " + entry.mesh.string() + ": " + error.what() +
+                     "; use model = \"noh-jung\" for any other mesh");
+  }
+}
+
+}  // namespace
+
+void load_parts(const Scene& scene, Simulation& simulation) {
+  for (const ClothEntry& entry : scene.cloths) add_cloth(entry, simulation);
+  for (const SoftEntry& entry : scene.softs) {
+    SoftPart part = load_soft(entry, simulation.messages);
+    try {
+      simulation.add(std::move(part));
+    } catch (const InputError& error) {
+      throw InputError(entry.where + ": " + error.what());
+    }
+  }
+}
+
+}  // namespace drape

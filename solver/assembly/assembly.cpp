@@ -1,0 +1,229 @@
+#include "solver/assembly/assembly.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "mesh/base/errors.h"
+#include "mesh/lattice/solid.h"
+#include "solver/forces/choi_ko.h"
+#include "solver/forces/face_contact_force.h"
+#include "solver/forces/noh_jung.h"
+
+namespace drape {
+namespace {
+
+// The cloth's triangles between its particles, numbered from its first.
+TriangleMesh between_particles(const Cloth& cloth) {
+  TriangleMesh mesh = cloth.mesh;
+  for (Triangle& t : mesh.triangles)
+    for (int& v : t) v = cloth.embedding.particle(v) - cloth.first_particle;
+  mesh.positions.resize(static_cast<std::size_t>(cloth.end_particle - cloth.first_particle));
+  return mesh;
+}
+
+Connections connections_of(const Cloth& cloth, const TriangleMesh& mesh) {
+  return cloth.model == ClothModel::choi_ko ? choi_ko_connections(mesh, cloth.rest, cloth.fabric)
+                                            : noh_jung_connections(mesh, cloth.rest, cloth.fabric);
+}
+
+std::vector<double> masses_of(const Cloth& cloth, const Connections& connections) {
+  const double density = cloth.fabric.area_density;
+  std::vector<double> masses = cloth.model == ClothModel::choi_ko
+                                   ? choi_ko_mass(cloth.mesh, cloth.rest, density)
+                                   : lumped_mass(cloth.mesh, cloth.rest, density);
+  return cloth.fabric.neighbour_weighting ? neighbour_weighted(std::move(masses), connections) : masses;
+}
+
+void append(std::vector<std::unique_ptr<Force>> more, std::vector<std::unique_ptr<Force>>& forces) {
+  std::move(more.begin(), more.end(), std::back_inserter(forces));
+}
+
+void refuse(const MeshReport& report, const std::string& name) {
+  for (const Defect& defect : report.defects)
+    if (defect.severity == Severity::refusal) throw InputError(name + ": " + format(defect));
+}
+
+void check_rest(const Cloth& cloth) {
+  if (cloth.rest.triangles.size() == cloth.mesh.triangles.size()) return;
+  throw InputError(cloth.name + ": the rest shape has " + std::to_string(cloth.rest.triangles.size()) +
+                   " triangles and the mesh " + std::to_string(cloth.mesh.triangles.size()) +
+                   "; triangle k of the one is triangle k of the other");
+}
+
+void place(const Pose& pose, const std::string& name, std::vector<Vec3>& positions) {
+  for (Vec3& x : positions) {
+    x = pose.to_world(x);
+    if (!x.allFinite()) throw InputError(name + ": its place puts a vertex out of the range of numbers");
+  }
+}
+
+void add_edges(const std::vector<LatticePair>& pairs, const std::vector<Vec3>& positions, Cloth& cloth) {
+  for (const LatticePair& p : pairs)
+    cloth.edges.push_back(
+        {cloth.first_particle + p.i, cloth.first_particle + p.j,
+         (positions[static_cast<std::size_t>(p.i)] - positions[static_cast<std::size_t>(p.j)]).norm()});
+}
+
+}  // namespace
+
+Assembly::Assembly(const Vec3& gravity, ContactOptions contact)
+    : constraints(std::make_unique<Constraints>(contact)), gravity_(gravity) {}
+
+// The particles come after those that are there.
+Cloth& Assembly::take(Cloth cloth, const std::vector<Vec3>& positions, const std::vector<double>& masses) {
+  masses_.insert(masses_.end(), masses.begin(), masses.end());
+  const VecX own = stacked(positions);
+  state.x.conservativeResize(state.x.size() + own.size());
+  state.x.tail(own.size()) = own;
+  state.v = VecX::Zero(state.x.size());
+  cloths.push_back(std::move(cloth));
+  return cloths.back();
+}
+
+Cloth& Assembly::add(ClothPart part) {
+  if (system) throw InputError(part.name + ": is added after use(); add all cloths before it");
+  Cloth cloth;
+  cloth.name = std::move(part.name);
+  cloth.mesh = std::move(part.mesh);
+  cloth.rest = part.rest ? std::move(*part.rest) : cloth.mesh;
+  cloth.report = part.report ? std::move(*part.report) : examine(cloth.mesh);
+  refuse(cloth.report, cloth.name);
+  check_rest(cloth);
+  cloth.fabric = part.fabric;
+  cloth.model = part.model;
+  for (OpenSeam& seam : open_seams(part.seams, cloth.fabric, cloth.mesh, cloth.rest))
+    cloth.seams.push_back({std::move(seam), nullptr});
+  cloth.first_particle = state.particles();
+  cloth.end_particle = cloth.first_particle + cloth.mesh.vertex_count();
+  cloth.embedding = Embedding::each(cloth.first_particle, cloth.mesh.vertex_count());
+
+  const Connections connections = connections_of(cloth, cloth.mesh);
+  const std::vector<double> masses = masses_of(cloth, connections);
+  connect(cloth, connections, forces_);
+  const int first = cloth.first_particle;
+  for (const Triangle& t : cloth.mesh.triangles)
+    faces_.push_back({{first + t[0], first + t[1], first + t[2]},
+                      cloth.fabric.stretch_spring.value_or(cloth.fabric.stretch)});
+  const std::vector<Vec3> positions = cloth.mesh.positions;
+  return take(std::move(cloth), positions, masses);
+}
+
+Cloth& Assembly::add(SoftPart part) {
+  if (system) throw InputError(part.name + ": is added after use(); add all soft bodies before it");
+  Cloth cloth;
+  cloth.name = std::move(part.name);
+  cloth.lattice = std::make_shared<const Lattice>(std::move(part.lattice));
+  cloth.material = part.material;
+  const Lattice& lattice = *cloth.lattice;
+  const int first = state.particles();
+  cloth.first_particle = first;
+  cloth.end_particle = first + lattice.particle_count();
+  std::vector<int> on_surface;
+  const TriangleMesh surface = surface_of(lattice, on_surface);
+  std::optional<double> volume;
+  if (part.mesh) {
+    cloth.mesh = std::move(*part.mesh);
+    cloth.embedding = embedding_in(lattice, cloth.mesh.positions, first);
+    volume = solid_of(cloth.mesh).volume;
+  } else {
+    cloth.mesh = surface;
+    for (int p : on_surface) cloth.embedding.add_vertex(first + p);
+  }
+  const std::vector<double> masses = drape::masses(lattice, cloth.material, volume);
+  place(part.place, cloth.name, cloth.mesh.positions);
+  cloth.report = examine(cloth.mesh);
+  std::vector<Vec3> positions = lattice.positions;
+  place(part.place, cloth.name, positions);
+  cloth.soft = LatticeCounts{static_cast<int>(lattice.structural.size()),
+                             static_cast<int>(lattice.shear.size()), static_cast<int>(lattice.bend.size())};
+  for (const auto* pairs : {&lattice.structural, &lattice.shear, &lattice.bend})
+    add_edges(*pairs, lattice.positions, cloth);
+  connect(cloth, forces_);
+  const double stiffness =
+      cloth.material.young ? *cloth.material.young * lattice.spacing[0] : cloth.material.structural;
+  for (const Triangle& t : surface.triangles) {
+    const auto particle = [&](std::size_t k) { return first + on_surface[static_cast<std::size_t>(t[k])]; };
+    faces_.push_back({{particle(0), particle(1), particle(2)}, stiffness});
+  }
+  return take(std::move(cloth), positions, masses);
+}
+
+void Assembly::pin(const PinRule& rule, std::size_t k) {
+  constraints->pin(pinned_particles(rule, cloths.at(k), state.x));
+}
+
+void Assembly::connect(Cloth& cloth, Forces& forces) const {
+  if (!cloth.soft) return connect(cloth, connections_of(cloth, between_particles(cloth)), forces);
+  append(soft_body(*cloth.lattice, cloth.material, cloth.first_particle), forces);
+}
+
+void Assembly::connect(Cloth& cloth, const Connections& connections, Forces& forces) const {
+  cloth.limp_below = limp_below(connections, cloth.fabric);
+  cloth.edges.clear();
+  for (const StretchConnection& s : connections.stretch)
+    if (s.L > 0) cloth.edges.push_back({cloth.first_particle + s.i, cloth.first_particle + s.j, s.L});
+  append(forces_of(connections, cloth.fabric, cloth.first_particle), forces);
+  for (Cloth::Stitched& open : cloth.seams) {
+    std::unique_ptr<Force> force = stitches(open.seam, cloth.embedding, state.time);
+    open.force = force.get();
+    if (force) forces.push_back(std::move(force));
+  }
+}
+
+void Assembly::make_system(std::vector<double> masses, Forces forces) {
+  system = std::make_unique<System>(std::move(masses));
+  system->add(Gravity{gravity_});
+  system->add(std::move(forces));
+  if (!constraints->faces().all().empty()) system->add(face_contact_force(*constraints));
+}
+
+void Assembly::use(MakeIntegrator make) {
+  if (!system) {
+    if (!constraints->bodies().empty()) constraints->add_faces(faces_);
+    faces_ = {};
+    make_system(std::exchange(masses_, {}), std::exchange(forces_, {}));
+  }
+  make_integrator = std::move(make);
+  integrator = make_integrator(*system, *constraints);
+}
+
+void Assembly::use(const std::string& name, const std::string& linear_solver, const StepOptions& options) {
+  use([=](System& to_step, Constraints& within) {
+    return drape::make_integrator(name, to_step, within, make_linear_solver(linear_solver), options);
+  });
+}
+
+StepReport Assembly::advance(double h) {
+  bool open = false;
+  for (Cloth& cloth : cloths)
+    for (Cloth::Stitched& stitched : cloth.seams) {
+      open = true;
+      if (!stitched.force) continue;
+      const double before = stitched.force->energy(state.x);
+      close_until(*stitched.force, stitched.seam, state.time + h);
+      const double more = stitched.force->energy(state.x) - before;
+      integrator->count_given(std::max(0.0, more));
+      given += more;
+    }
+  const StepReport report = integrator->advance(state, h);
+  if (!open || !report.done) return report;
+  const auto energy = [&] {
+    return system->kinetic_energy(state.v) + system->elastic_energy(state.x) +
+           system->gravity_energy(state.x);
+  };
+  const double before = energy();
+  if (merge_closed_seams()) {
+    integrator = make_integrator(*system, *constraints);
+    given += energy() - before;
+  }
+  return report;
+}
+
+const Cloth& Assembly::cloth_of(int particle) const {
+  const auto after =
+      std::find_if(cloths.begin(), cloths.end(), [&](const Cloth& c) { return particle < c.end_particle; });
+  return after == cloths.end() ? cloths.back() : *after;
+}
+
+}  // namespace drape

@@ -1,0 +1,64 @@
+// Seams that have closed: their particles become one, and the system is made anew.
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "solver/assembly/assembly.h"
+
+namespace drape {
+
+// Momentum of the particles that become one, number[i] being what particle i becomes and masses [kg] those
+// that they have then. What is pinned stays where its first pin holds it.
+State Assembly::merged_state(const std::vector<double>& masses, const std::vector<int>& number) const {
+  const auto count = static_cast<Eigen::Index>(masses.size());
+  State merged{state.time, VecX::Zero(3 * count), VecX::Zero(3 * count)};
+  std::vector<int> parts(masses.size(), 0), pinned(masses.size(), -1);
+  for (int n : number) ++parts[static_cast<std::size_t>(n)];
+  for (int i : constraints->pinned()) {
+    int& first = pinned[static_cast<std::size_t>(number[static_cast<std::size_t>(i)])];
+    if (first < 0) first = i;
+  }
+  for (int i = 0; i < state.particles(); ++i) {
+    const int to = number[static_cast<std::size_t>(i)];
+    const auto n = static_cast<std::size_t>(to);
+    double share = 1;
+    if (pinned[n] >= 0)
+      share = pinned[n] == i ? 1 : 0;
+    else if (parts[n] > 1)
+      share = masses[n] > 0 ? system->masses()[static_cast<std::size_t>(i)] / masses[n] : 1.0 / parts[n];
+    merged.x.segment<3>(3 * to) += share * state.x.segment<3>(3 * i);
+    merged.v.segment<3>(3 * to) += share * state.v.segment<3>(3 * i);
+  }
+  return merged;
+}
+
+bool Assembly::merge_closed_seams() {
+  std::vector<int> number(static_cast<std::size_t>(state.particles()));
+  std::iota(number.begin(), number.end(), 0);
+  bool any = false;
+  for (Cloth& cloth : cloths) {
+    std::vector<const OpenSeam*> closed;
+    for (const Cloth::Stitched& open : cloth.seams)
+      if (open.seam.closed(cloth.embedding, state)) closed.push_back(&open.seam);
+    if (closed.empty()) continue;
+    any = true;
+    number = merged(number, closed, cloth.embedding);
+    std::erase_if(cloth.seams,
+                  [&](const Cloth::Stitched& open) { return open.seam.closed(cloth.embedding, state); });
+  }
+  if (!any) return false;
+  std::vector<double> masses(1 + static_cast<std::size_t>(*std::max_element(number.begin(), number.end())),
+                             0.0);
+  for (std::size_t i = 0; i < number.size(); ++i)
+    masses[static_cast<std::size_t>(number[i])] += system->masses()[i];
+  State fewer = merged_state(masses, number);
+  outgrown.push_back(std::exchange(state, std::move(fewer)));
+  constraints->merge(number);
+  Forces forces;
+  for (Cloth& cloth : cloths) cloth.renumber(number);
+  for (Cloth& cloth : cloths) connect(cloth, forces);
+  make_system(std::move(masses), std::move(forces));
+  return true;
+}
+
+}  // namespace drape

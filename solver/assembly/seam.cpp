@@ -1,0 +1,148 @@
+#include "solver/assembly/seam.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "mesh/base/errors.h"
+#include "mesh/pattern/panels.h"
+#include "solver/forces/pair_force.h"
+#include "solver/forces/seam_spring.h"
+
+namespace drape {
+namespace {
+
+using SeamForce = PairForce<SeamSpring>;
+
+const Vec3& at(const std::vector<Vec3>& positions, int v) { return positions[static_cast<std::size_t>(v)]; }
+
+// Where the vertices rest; one that lies in several panels has one of its places.
+std::vector<Vec3> rest_places(const TriangleMesh& mesh, const TriangleMesh& rest) {
+  std::vector<Vec3> places = mesh.positions;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      places[static_cast<std::size_t>(mesh.triangles[t][k])] = at(rest.positions, rest.triangles[t][k]);
+  return places;
+}
+
+void check(const SeamPlan& plan, int vertices) {
+  const std::string name = "seam " + plan.name + ": ";
+  if (plan.pairs.empty()) throw InputError(name + "has no pairs of vertices; give at least one");
+  for (const auto& [a, b] : plan.pairs)
+    if (std::min(a, b) < 0 || std::max(a, b) >= vertices)
+      throw InputError(name + "sews vertex " + std::to_string(a) + " to " + std::to_string(b) +
+                       ", but the mesh has the vertices 0 to " + std::to_string(vertices - 1));
+  if (!(plan.close >= 0) || !std::isfinite(plan.close))
+    throw InputError(name + "closes at " + std::to_string(plan.close) +
+                     " s; a time is a finite number and not negative");
+  if (plan.stiffness && !(*plan.stiffness > 0 && std::isfinite(*plan.stiffness)))
+    throw InputError(name + "has a stiffness of " + std::to_string(*plan.stiffness) +
+                     " N/m; a stiffness is a finite number greater than zero");
+}
+
+OpenSeam open_seam(const SeamPlan& plan, const Fabric& fabric, const TriangleMesh& mesh,
+                   const std::vector<Vec3>& places) {
+  check(plan, mesh.vertex_count());
+  OpenSeam seam;
+  seam.name = plan.name;
+  for (std::size_t k = 0; k < plan.pairs.size(); ++k) {
+    const auto& [a, b] = plan.pairs[k];
+    if (k > 0) {
+      const auto& [a_before, b_before] = plan.pairs[k - 1];
+      seam.length_one += (at(places, a) - at(places, a_before)).norm();
+      seam.length_two += (at(places, b) - at(places, b_before)).norm();
+    }
+    if (a == b) continue;  // where both curves begin or end
+    seam.pairs.emplace_back(a, b);
+    seam.apart.push_back((at(mesh.positions, a) - at(mesh.positions, b)).norm());
+  }
+  const std::size_t edges = std::max<std::size_t>(plan.pairs.size(), 2) - 1;
+  seam.edge = 0.5 * (seam.length_one + seam.length_two) / static_cast<double>(edges);
+  seam.close = plan.close;
+  seam.merge = plan.merge;
+  // As stiff as the cloth while it closes; what is kept for good is held much harder.
+  constexpr double kept = 1000;
+  const double cloth = std::max(fabric.stretch_spring.value_or(fabric.stretch), 1e-3);
+  seam.stiffness = plan.stiffness.value_or(seam.merge ? cloth : kept * cloth);
+  return seam;
+}
+
+}  // namespace
+
+std::vector<SeamPlan> declared_seam_plans(const TriangleMesh& mesh, double close) {
+  std::vector<SeamPlan> plans;
+  const std::vector<Polyline> lines = polylines(mesh);
+  for (const Seam& seam : declared_seams(mesh))
+    plans.push_back({.name = seam.a + " / " + seam.b, .pairs = seam_pairs(lines, seam), .close = close});
+  return plans;
+}
+
+double OpenSeam::gap(const Embedding& embedding, const VecX& x) const {
+  double widest = 0;
+  for (const auto& [a, b] : pairs) {
+    const double wide =
+        (x.segment<3>(3 * embedding.particle(a)) - x.segment<3>(3 * embedding.particle(b))).norm();
+    if (!(wide <= widest)) widest = wide;  // what is no number is not closed
+  }
+  return widest;
+}
+
+bool OpenSeam::closed(const Embedding& embedding, const State& state) const {
+  return merge && state.time >= close * (1 - 1e-9) && gap(embedding, state.x) <= near_enough * edge;
+}
+
+std::vector<OpenSeam> open_seams(const std::vector<SeamPlan>& plans, const Fabric& fabric,
+                                 const TriangleMesh& mesh, const TriangleMesh& rest) {
+  std::vector<OpenSeam> seams;
+  if (plans.empty()) return seams;
+  const std::vector<Vec3> places = rest_places(mesh, rest);
+  for (const SeamPlan& plan : plans) seams.push_back(open_seam(plan, fabric, mesh, places));
+  return seams;
+}
+
+std::unique_ptr<Force> stitches(const OpenSeam& seam, const Embedding& embedding, double t) {
+  std::vector<SeamForce::Element> elements;
+  for (std::size_t k = 0; k < seam.pairs.size(); ++k) {
+    const int i = embedding.particle(seam.pairs[k].first), j = embedding.particle(seam.pairs[k].second);
+    SeamSpring::Rest rest;
+    rest.k = seam.stiffness;
+    rest.L_0 = seam.apart[k];
+    if (i != j) elements.push_back({i, j, rest});
+  }
+  if (elements.empty()) return nullptr;
+  auto force = std::make_unique<SeamForce>(std::move(elements));
+  close_until(*force, seam, t);
+  return force;
+}
+
+void close_until(Force& force, const OpenSeam& seam, double t) {
+  const double open = SeamSpring::open(t, seam.close);
+  static_cast<SeamForce&>(force).change_rest([&](SeamSpring::Rest& r) { r.L = open * r.L_0; });
+}
+
+std::vector<int> merged(const std::vector<int>& number, const std::vector<const OpenSeam*>& seams,
+                        const Embedding& embedding) {
+  std::vector<int> lower(number.size());  // union-find among the numbers, towards the lowest
+  std::iota(lower.begin(), lower.end(), 0);
+  const auto root = [&](int i) {
+    while (lower[static_cast<std::size_t>(i)] != i) i = lower[static_cast<std::size_t>(i)];
+    return i;
+  };
+  const auto root_of = [&](int vertex) {
+    return root(number[static_cast<std::size_t>(embedding.particle(vertex))]);
+  };
+  for (const OpenSeam* seam : seams)
+    for (const auto& [a, b] : seam->pairs) {
+      const auto [low, high] = std::minmax({root_of(a), root_of(b)});
+      lower[static_cast<std::size_t>(high)] = low;
+    }
+  const int before = number.empty() ? 0 : 1 + *std::max_element(number.begin(), number.end());
+  std::vector<int> again(lower.size()), result = number;
+  int count = 0;
+  for (int i = 0; i < before; ++i)
+    again[static_cast<std::size_t>(i)] = root(i) == i ? count++ : again[static_cast<std::size_t>(root(i))];
+  for (int& n : result) n = again[static_cast<std::size_t>(n)];
+  return result;
+}
+
+}  // namespace drape
