@@ -9,8 +9,8 @@
 #include "app/run/run.h"
 #include "app/scene/fabrics.h"
 #include "app/scene/level_set_cache.h"
-#include "app/scene/shape_table.h"
 #include "app/scene/load_mesh.h"
+#include "app/scene/shape_table.h"
 #include "app/simulation/simulation.h"
 #include "mesh/obj/obj.h"
 

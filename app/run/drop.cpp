@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "app/base/table.h"
-#include "app/scene/shape_table.h"
 #include "app/scene/load_mesh.h"
+#include "app/scene/shape_table.h"
 #include "app/simulation/simulation.h"
 #include "mesh/obj/examine.h"
 #include "mesh/obj/obj.h"

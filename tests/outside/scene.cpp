@@ -17,8 +17,8 @@ int main(int count, char** words) {
     simulation.state.time = static_cast<double>(step) * scene.simulation.time_step;
   }
   const std::string hash = drape::state_hash(simulation.state);
-  std::printf("%s: %d particles, %zu open seams, state %s, expected %s\n", words[1], simulation.state.particles(),
-              simulation.cloths[0].seams.size(), hash.c_str(), words[2]);
+  std::printf("%s: %d particles, %zu open seams, state %s, expected %s\n", words[1],
+              simulation.state.particles(), simulation.cloths[0].seams.size(), hash.c_str(), words[2]);
   if (hash != words[2]) return 1;
   return drape::run(scene, {.out = words[3], .frames = drape::Frames::none, .quiet = true});
 }
