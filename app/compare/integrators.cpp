@@ -11,11 +11,6 @@
 namespace drape {
 namespace {
 
-double total_energy(const Simulation& s) {
-  return s.system->kinetic_energy(s.state.v) + s.system->elastic_energy(s.state.x) +
-         s.system->gravity_energy(s.state.x);
-}
-
 struct Run {
   IntegratorRow row;
   VecX x;  // m, at the end; empty when it did not get there
@@ -60,14 +55,14 @@ Run run_one(const Scene& scene, const std::string& integrator, double h, const S
     simulation.use([&](System& system, Constraints& constraints) {
       return make_integrator(integrator, system, constraints, make_linear_solver(solver.name), options);
     });
-    const double start = total_energy(simulation);
+    const double start = simulation.system->total_energy(simulation.state);
     TimeLoop loop(simulation, Schedule(StepGrid(h), 0, duration));  // no frames: steps as they were asked for
     {
       const Stopwatch watch(run.row.wall_ms);
       march(loop, [&](const StepReport& report) { return count(report, run.row); });
     }
     run.row.end = simulation.state.time;
-    run.end_energy = total_energy(simulation);
+    run.end_energy = simulation.system->total_energy(simulation.state);
     run.row.energy_drift = run.end_energy - start;
     if (run.row.failure.empty()) run.x = vertices_of(simulation);
   } catch (const std::exception& error) {  // a row, and the others go on

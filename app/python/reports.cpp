@@ -72,7 +72,9 @@ void add_reports_of_steps(py::module_& m) {
       .def_readonly("step", &RunStep::step, "from 1")
       .def_readonly("time", &RunStep::time, "s, at its end")
       .def_readonly("kinetic_energy", &RunStep::kinetic_energy, "J")
-      .def_readonly("elastic_energy", &RunStep::elastic_energy, "J")
+      .def_readonly("elastic_energy", &RunStep::elastic_energy, "J, stored in the cloth: of its shape alone")
+      .def_readonly("contact_energy", &RunStep::contact_energy,
+                    "J, stored where faces of the cloth give way to bodies")
       .def_readonly("gravity_energy", &RunStep::gravity_energy, "J, zero at the origin")
       .def_readonly("max_speed", &RunStep::max_speed, "m/s, of a particle")
       .def_readonly("max_edge_strain", &RunStep::max_edge_strain, "l / L - 1 of the most stretched edge")

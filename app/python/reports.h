@@ -9,7 +9,7 @@ namespace drape::python {
 // A row of steps.csv as one object.
 struct RunStep : StepReport {
   long step;
-  double time, kinetic_energy, elastic_energy, gravity_energy, max_speed, max_edge_strain;
+  double time, kinetic_energy, elastic_energy, gravity_energy, contact_energy, max_speed, max_edge_strain;
 
   explicit RunStep(const StepRow& row)
       : StepReport(row.report),
@@ -18,6 +18,7 @@ struct RunStep : StepReport {
         kinetic_energy(row.kinetic_energy),
         elastic_energy(row.elastic_energy),
         gravity_energy(row.gravity_energy),
+        contact_energy(row.contact_energy),
         max_speed(row.max_speed),
         max_edge_strain(row.max_edge_strain) {}
 };

@@ -37,9 +37,7 @@ void add(System& system, Forces& forces) {
   forces.all.clear();
 }
 
-double energy(const System& system, const State& state) {
-  return system.elastic_energy(state.x) + system.kinetic_energy(state.v) + system.gravity_energy(state.x);
-}
+double energy(const System& system, const State& state) { return system.total_energy(state); }
 
 // With the state looked over first.
 template <class F>
@@ -91,13 +89,16 @@ void add_systems(py::module_& m) {
       .def("elastic_energy",
            with_state([](const System& s, const State& at) { return s.elastic_energy(at.x); }),
            py::arg("state"), "J")
+      .def("contact_energy",
+           with_state([](const System& s, const State& at) { return s.contact_energy(at.x); }),
+           py::arg("state"), "J, of the contacts of faces in the step under way or just done")
       .def("kinetic_energy",
            with_state([](const System& s, const State& at) { return s.kinetic_energy(at.v); }),
            py::arg("state"), "J")
       .def("gravity_energy",
            with_state([](const System& s, const State& at) { return s.gravity_energy(at.x); }),
            py::arg("state"), "J, zero at the origin")
-      .def("energy", with_state(&energy), py::arg("state"), "J, the sum of the three")
+      .def("energy", with_state(&energy), py::arg("state"), "J, the sum of these")
       .def("force",
            with_state([](const System& s, const State& at) { return copied_rows(s.force(at.x, at.v)); }),
            py::arg("state"), "(n, 3) [N], gravity included")

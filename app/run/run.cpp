@@ -110,6 +110,7 @@ const StepRow& Run::step() {
   row_.time = state.time;
   row_.kinetic_energy = simulation_.system->kinetic_energy(state.v);
   row_.elastic_energy = simulation_.system->elastic_energy(state.x);
+  row_.contact_energy = simulation_.system->contact_energy(state.x);
   row_.gravity_energy = simulation_.system->gravity_energy(state.x);
   row_.max_speed = max_speed(state.v);
   row_.max_edge_strain = largest_strain(simulation_.cloths, state.x);

@@ -30,7 +30,7 @@ class EnergyWatch {
  public:
   EnergyWatch(const Simulation& simulation, double h) : s_(simulation) {
     start_gravity_ = lowest_ = s_.system->gravity_energy(s_.state.x);
-    given_ = s_.system->kinetic_energy(s_.state.v) + s_.system->elastic_energy(s_.state.x);
+    given_ = s_.system->kinetic_energy(s_.state.v) + s_.system->stored_energy(s_.state.x);
     start_ = given_ + start_gravity_;
     const double mass = std::accumulate(s_.system->masses().begin(), s_.system->masses().end(), 0.0);
     const double fall = h * s_.system->gravity_acceleration().norm();
@@ -44,8 +44,7 @@ class EnergyWatch {
     work_ += work;
     given_ += std::max(0.0, work);
     lowest_ = std::min(lowest_, gravity);
-    const double now =
-        s_.system->kinetic_energy(s_.state.v) + s_.system->elastic_energy(s_.state.x) + gravity;
+    const double now = s_.system->kinetic_energy(s_.state.v) + s_.system->stored_energy(s_.state.x) + gravity;
     const double made = now - work_ - start_, given = given_ + start_gravity_ - lowest_;
     return made <= 0 && given == 0 ? 0 : made / given;
   }

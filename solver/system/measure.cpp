@@ -2,20 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstdio>
+
+#include "mesh/base/hash.h"
 
 namespace drape {
-namespace {
-
-std::uint64_t fnv1a(std::uint64_t hash, const VecX& numbers) {
-  const auto* const bytes = reinterpret_cast<const unsigned char*>(numbers.data());
-  const std::size_t count = static_cast<std::size_t>(numbers.size()) * sizeof(double);
-  for (std::size_t i = 0; i < count; ++i) hash = (hash ^ bytes[i]) * 1099511628211u;
-  return hash;
-}
-
-}  // namespace
 
 double max_speed(const VecX& v) {
   double squared = 0;
@@ -24,11 +14,6 @@ double max_speed(const VecX& v) {
   return std::sqrt(squared);
 }
 
-std::string state_hash(const State& state) {
-  char text[17];
-  const std::uint64_t hash = fnv1a(fnv1a(14695981039346656037u, state.x), state.v);
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
-}
+std::string state_hash(const State& state) { return Fnv1a().add_all(state.x).add_all(state.v).text(); }
 
 }  // namespace drape
