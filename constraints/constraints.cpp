@@ -82,8 +82,7 @@ std::vector<double> Constraints::penetration(const VecX& x) const {
   for_chunks(n, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
       for (const MovingBody& body : bodies_)
-        depth[static_cast<std::size_t>(i)] =
-            std::max(depth[static_cast<std::size_t>(i)], -body.distance(x.segment<3>(3 * i)));
+        depth[i] = std::max(depth[i], -body.distance(x.segment<3>(3 * i)));
   });
   return depth;
 }

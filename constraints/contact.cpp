@@ -37,7 +37,7 @@ void check(const Obstacle& obstacle) {
 Mat3 Contact::locked_directions() const {
   Mat3 Q = Mat3::Zero();
   for (int k = 0; k < planes; ++k) {
-    Vec3 n = plane[static_cast<std::size_t>(k)].normal;
+    Vec3 n = plane[k].normal;
     for (int j = 0; j < k; ++j) n -= Q.col(j).dot(n) * Q.col(j);
     Q.col(k) = n.normalized();
   }
@@ -53,7 +53,7 @@ void add_plane(Contact& contact, const ContactPlane& plane) {
     if (contact.planes == 1 && plane.gap < contact.plane[0].gap) contact.plane[0] = plane;
     return;
   }
-  contact.plane[static_cast<std::size_t>(contact.planes++)] = plane;
+  contact.plane[contact.planes++] = plane;
   for (auto k = static_cast<std::size_t>(contact.planes) - 1;
        k > 0 && contact.plane[k].gap < contact.plane[k - 1].gap; --k)
     std::swap(contact.plane[k], contact.plane[k - 1]);
@@ -63,25 +63,22 @@ void add_plane(Contact& contact, const ContactPlane& plane) {
 static Mat3 gram(const Contact& contact) {
   Mat3 G = Mat3::Identity();
   for (int i = 0; i < contact.planes; ++i)
-    for (int j = 0; j < contact.planes; ++j)
-      G(i, j) = contact.plane[static_cast<std::size_t>(i)].normal.dot(
-          contact.plane[static_cast<std::size_t>(j)].normal);
+    for (int j = 0; j < contact.planes; ++j) G(i, j) = contact.plane[i].normal.dot(contact.plane[j].normal);
   return G;
 }
 
 Vec3 along_planes(const Contact& contact, const std::array<double, 3>& components) {
   Vec3 t = Vec3::Zero(), sum = Vec3::Zero();
-  for (int k = 0; k < contact.planes; ++k) t[k] = components[static_cast<std::size_t>(k)];
+  for (int k = 0; k < contact.planes; ++k) t[k] = components[k];
   if (contact.planes == 1) return t[0] * contact.plane[0].normal;
   const Vec3 weights = gram(contact).inverse() * t;
-  for (int k = 0; k < contact.planes; ++k)
-    sum += weights[k] * contact.plane[static_cast<std::size_t>(k)].normal;
+  for (int k = 0; k < contact.planes; ++k) sum += weights[k] * contact.plane[k].normal;
   return sum;
 }
 
 std::array<double, 3> multipliers(const Contact& contact, const Vec3& r) {
   Vec3 t = Vec3::Zero();
-  for (int k = 0; k < contact.planes; ++k) t[k] = contact.plane[static_cast<std::size_t>(k)].normal.dot(r);
+  for (int k = 0; k < contact.planes; ++k) t[k] = contact.plane[k].normal.dot(r);
   if (contact.planes > 1) t = gram(contact).inverse() * t;
   return {t[0], t[1], t[2]};
 }

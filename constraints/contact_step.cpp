@@ -30,8 +30,8 @@ void ContactStep::push(int body, int particle, const Vec3& v, const Vec3& body_v
                        const Vec3& impulse) {
   const StepMotion& step = constraints_->step_;
   constraints_->step_.work += body_velocity.dot(impulse);
-  constraints_->bodies_[static_cast<std::size_t>(body)].push(
-      -impulse, step.place(particle) + step.h * v, (body_velocity - step.velocity(particle)).norm());
+  constraints_->bodies_[body].push(-impulse, step.place(particle) + step.h * v,
+                                   (body_velocity - step.velocity(particle)).norm());
 }
 
 void ContactStep::receive(const VecX& v, const VecX& r) {
@@ -41,8 +41,8 @@ void ContactStep::receive(const VecX& v, const VecX& r) {
     Vec3 rest = r.segment<3>(3 * c.particle);
     const std::array<double, 3> lambda = multipliers(c, rest);
     for (int k = 1; k < c.planes; ++k) {  // of several bodies each has its plane's part
-      const ContactPlane& p = c.plane[static_cast<std::size_t>(k)];
-      const Vec3 part = lambda[static_cast<std::size_t>(k)] * p.normal;
+      const ContactPlane& p = c.plane[k];
+      const Vec3 part = lambda[k] * p.normal;
       push(p.obstacle, c.particle, v.segment<3>(3 * c.particle), p.body_velocity, part);
       rest -= part;
     }
@@ -74,8 +74,7 @@ void ContactStep::receive_faces(const VecX& v) {
   faces.take_impulse(step.h, x_new, v);
   for (const FaceContact& c : faces.touching()) {
     constraints_->step_.work += c.body_velocity.dot(c.impulse);
-    constraints_->bodies_[static_cast<std::size_t>(c.body)].push(-c.impulse, c.at(x_new),
-                                                                 (c.at(step.v) - c.body_velocity).norm());
+    constraints_->bodies_[c.body].push(-c.impulse, c.at(x_new), (c.at(step.v) - c.body_velocity).norm());
   }
 }
 
@@ -117,7 +116,7 @@ void ContactStep::respond(ContactMode mode, const VecX& x, const VecX& v, const 
     clear_impulses();
     constraints_->contacts_.each_response([&](const ContactResponse& r) {
       constraints_->step_.work += r.body_velocity.dot(r.impulse);
-      constraints_->bodies_[static_cast<std::size_t>(r.body)].push(-r.impulse, r.place, r.approach);
+      constraints_->bodies_[r.body].push(-r.impulse, r.place, r.approach);
     });
     receive_faces(v_new);
     for (const MovingPin& pin : moving_pins()) {

@@ -90,7 +90,7 @@ void FaceContacts::add(const std::vector<ClothFace>& faces) {
 
 void FaceContacts::renumber(const std::vector<int>& particle_of) {
   for (ClothFace& face : faces_)
-    for (int& i : face.particles) i = particle_of[static_cast<std::size_t>(i)];
+    for (int& i : face.particles) i = particle_of[i];
   std::erase_if(faces_, [](const ClothFace& face) {
     const auto& [a, b, c] = face.particles;
     return a == b || b == c || c == a;
@@ -103,14 +103,13 @@ void FaceContacts::renumber(const std::vector<int>& particle_of) {
 void FaceContacts::measure_travel(const MovingBody& body, const VecX& x, const VecX& x_new) {
   travel_.resize(static_cast<std::size_t>(x.size() / 3));
   for_chunks(static_cast<int>(travel_.size()), [&](int begin, int end) {
-    for (int i = begin; i < end; ++i)
-      travel_[static_cast<std::size_t>(i)] = body.travel(x.segment<3>(3 * i), x_new.segment<3>(3 * i));
+    for (int i = begin; i < end; ++i) travel_[i] = body.travel(x.segment<3>(3 * i), x_new.segment<3>(3 * i));
   });
 }
 
 double FaceContacts::travel(const ClothFace& face) const {
   double most = 0;
-  for (int i : face.particles) most = std::max(most, travel_[static_cast<std::size_t>(i)]);
+  for (int i : face.particles) most = std::max(most, travel_[i]);
   return most;
 }
 
@@ -129,7 +128,7 @@ void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const VecX&
   for (const MovingBody& body : bodies) {
     measure_travel(body, x, x_new);
     parallel_for(chunk_count(n), n < serial_below, [&](int k) {
-      auto& found = found_[static_cast<std::size_t>(k)];
+      auto& found = found_[k];
       found.clear();
       for (int f = k * chunk_size; f < std::min(n, (k + 1) * chunk_size); ++f)
         look(f, body, x, x_new, recovery, found);
@@ -142,7 +141,7 @@ void FaceContacts::limit_dampers(const std::vector<double>& masses, double h) {
   for (FaceContact& c : touching_) {
     double mobility = 0;  // 1/kg
     for (std::size_t k = 0; k < 3; ++k)
-      if (const double m = masses[static_cast<std::size_t>(c.particles[k])]; m > 0)
+      if (const double m = masses[c.particles[k]]; m > 0)
         mobility += c.weights[static_cast<int>(k)] * c.weights[static_cast<int>(k)] / m;
     c.most_damper = 0.125 / (h * mobility);
     c.damper = std::min(c.damper, c.most_damper);
@@ -161,7 +160,7 @@ void FaceContacts::take_impulse(double h, const VecX& x_new, const VecX& v_new) 
 
 void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX& x_new, double recovery,
                         std::vector<FaceContact>& found) {
-  const ClothFace& face = faces_[static_cast<std::size_t>(f)];
+  const ClothFace& face = faces_[f];
   const std::size_t entry =
       static_cast<std::size_t>(body.number()) * faces_.size() + static_cast<std::size_t>(f);
   double& room = room_[entry];
@@ -205,7 +204,7 @@ const FaceContact* FaceContacts::before(int body, int face) const {
 
 void FaceContacts::follow(const std::vector<MovingBody>& bodies) {
   for (FaceContact& c : touching_) {
-    const MovingBody& body = bodies[static_cast<std::size_t>(c.body)];
+    const MovingBody& body = bodies[c.body];
     const Vec3 before = c.body_velocity;
     c.changes = 0;
     c.body_velocity = body.velocity(c.place);
@@ -238,7 +237,7 @@ void FaceContacts::end_step(const std::vector<MovingBody>& bodies, const VecX& x
     measure_travel(body, x, x_new);
     double* const room = &room_[static_cast<std::size_t>(body.number()) * faces_.size()];
     for_chunks(static_cast<int>(faces_.size()), [&](int begin, int end) {
-      for (int f = begin; f < end; ++f) room[f] -= travel(faces_[static_cast<std::size_t>(f)]);
+      for (int f = begin; f < end; ++f) room[f] -= travel(faces_[f]);
     });
   }
 }

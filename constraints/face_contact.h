@@ -49,8 +49,7 @@ struct FaceContact {
   template <class Vector>
   Vec3 at(const Vector& x) const {
     Vec3 sum = Vec3::Zero();
-    for (int k = 0; k < 3; ++k)
-      sum += weights[k] * x.template segment<3>(3 * particles[static_cast<std::size_t>(k)]);
+    for (int k = 0; k < 3; ++k) sum += weights[k] * x.template segment<3>(3 * particles[k]);
     return sum;
   }
   // Of a place p [m] and of a velocity [m/s] of the point of the triangle.

@@ -5,7 +5,7 @@
 namespace drape {
 
 void Filter::renumber(const std::vector<int>& number) {
-  for (FilterEntry& e : entries_) e.particle = number[static_cast<std::size_t>(e.particle)];
+  for (FilterEntry& e : entries_) e.particle = number[e.particle];
   std::sort(entries_.begin(), entries_.end(),
             [](const FilterEntry& a, const FilterEntry& b) { return a.particle < b.particle; });
 }

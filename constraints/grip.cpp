@@ -20,15 +20,15 @@ Vec3 tangential(const Contact& contact, const Vec3& v) {
 }
 
 const Friction& friction_of(const ParticleContacts::Bodies& bodies, const Contact& contact) {
-  return bodies[static_cast<std::size_t>(contact.plane[0].obstacle)].obstacle().friction;
+  return bodies[contact.plane[0].obstacle].obstacle().friction;
 }
 
 // The speeds along the normals that the planes ask for at the end of the step [m/s].
 std::array<double, 3> normal_speeds(const Contact& contact, double h) {
   std::array<double, 3> speeds = {};
   for (int k = 0; k < contact.planes; ++k) {
-    const ContactPlane& p = contact.plane[static_cast<std::size_t>(k)];
-    speeds[static_cast<std::size_t>(k)] = p.body_velocity.dot(p.normal) - std::max(p.gap, 0.0) / h;
+    const ContactPlane& p = contact.plane[k];
+    speeds[k] = p.body_velocity.dot(p.normal) - std::max(p.gap, 0.0) / h;
   }
   return speeds;
 }
@@ -37,12 +37,11 @@ std::array<double, 3> normal_speeds(const Contact& contact, double h) {
 double arrival_impulse(const Contact& contact, const StepMotion& step) {
   std::array<double, 3> change = normal_speeds(contact, step.h);
   for (int k = 0; k < contact.planes; ++k)
-    change[static_cast<std::size_t>(k)] -=
-        step.velocity(contact.particle).dot(contact.plane[static_cast<std::size_t>(k)].normal);
+    change[k] -= step.velocity(contact.particle).dot(contact.plane[k].normal);
   const std::array<double, 3> pushes =
       multipliers(contact, step.mass(contact.particle) * along_planes(contact, change));
   double sum = 0;
-  for (int k = 0; k < contact.planes; ++k) sum += std::max(pushes[static_cast<std::size_t>(k)], 0.0);
+  for (int k = 0; k < contact.planes; ++k) sum += std::max(pushes[k], 0.0);
   return sum;
 }
 
@@ -117,8 +116,7 @@ bool ParticleContacts::update_grip(const Bodies& bodies, const StepMotion& step,
   const auto weakest =
       static_cast<std::size_t>(std::min_element(lambda.begin(), lambda.begin() + c.planes) - lambda.begin());
   if (lambda[weakest] < -noise) {  // it would pull the particle towards the body: let go
-    for (auto k = static_cast<int>(weakest); k + 1 < c.planes; ++k)
-      c.plane[static_cast<std::size_t>(k)] = c.plane[static_cast<std::size_t>(k) + 1];
+    for (auto k = static_cast<int>(weakest); k + 1 < c.planes; ++k) c.plane[k] = c.plane[k + 1];
     --c.planes;
     c.arrival_impulse = arrival_impulse(c, step);
     if (!c.active()) return true;
@@ -129,7 +127,7 @@ bool ParticleContacts::update_grip(const Bodies& bodies, const StepMotion& step,
   }
   const Friction& mu = friction_of(bodies, c);
   double normal = 0;
-  for (int k = 0; k < c.planes; ++k) normal += std::max(lambda[static_cast<std::size_t>(k)], 0.0);
+  for (int k = 0; k < c.planes; ++k) normal += std::max(lambda[k], 0.0);
   const double rubbed = mu.kinetic * c.normal_impulse;
   c.normal_impulse = normal;
   if (c.changes >= most_changes) return false;

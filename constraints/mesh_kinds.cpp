@@ -14,7 +14,7 @@ namespace {
 Eigen::AlignedBox3d box_of(const TriangleMesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const Triangle& t : mesh.triangles)
-    for (const int v : t) box.extend(mesh.positions[static_cast<std::size_t>(v)]);
+    for (const int v : t) box.extend(mesh.positions[v]);
   return box;
 }
 

@@ -10,8 +10,7 @@ namespace {
 const ContactPlane* plane_with(const Contact* contact, int obstacle) {
   if (!contact) return nullptr;
   for (int k = 0; k < contact->planes; ++k)
-    if (const ContactPlane& p = contact->plane[static_cast<std::size_t>(k)]; p.obstacle == obstacle)
-      return &p;
+    if (const ContactPlane& p = contact->plane[k]; p.obstacle == obstacle) return &p;
   return nullptr;
 }
 
@@ -52,7 +51,7 @@ void ParticleContacts::look_again() { std::fill(clearance_.begin(), clearance_.e
 
 void ParticleContacts::open() {
   for (const Contact& c : trial_) {
-    contact_of_[static_cast<std::size_t>(c.particle)] = -1;
+    contact_of_[c.particle] = -1;
     correction_.segment<3>(3 * c.particle).setZero();
   }
   trial_.clear();
@@ -70,7 +69,7 @@ void ParticleContacts::find(const Bodies& bodies, const StepMotion& step) {
 void ParticleContacts::take_found(double h) {
   for (const auto& found : found_) {
     for (const Contact& c : found) {
-      contact_of_[static_cast<std::size_t>(c.particle)] = static_cast<int>(trial_.size());
+      contact_of_[c.particle] = static_cast<int>(trial_.size());
       trial_.push_back(c);
       std::array<double, 3> out = {};
       for (int k = 0; k < c.planes; ++k) {
@@ -85,11 +84,11 @@ void ParticleContacts::take_found(double h) {
 void ParticleContacts::look_for(int particle, const Bodies& bodies, const StepMotion& step,
                                 std::vector<Contact>& found, double& deepest) {
   const Vec3 x = step.place(particle), v = step.velocity(particle);
-  const int old = committed_of_[static_cast<std::size_t>(particle)];
-  const Contact* before = old < 0 ? nullptr : &committed_[static_cast<std::size_t>(old)];
+  const int old = committed_of_[particle];
+  const Contact* before = old < 0 ? nullptr : &committed_[old];
   Contact contact{.particle = particle, .plane = {}};
   for (int o = 0; o < static_cast<int>(bodies.size()); ++o) {
-    const MovingBody& body = bodies[static_cast<std::size_t>(o)];
+    const MovingBody& body = bodies[o];
     const double margin = body.obstacle().margin;
     const Vec3 x_new = step.foresight == Foresight::ahead ? Vec3(x + step.h * v) : body.carried(x);
     const double travel = body.travel(x, x_new);
@@ -115,8 +114,7 @@ void ParticleContacts::look_for(int particle, const Bodies& bodies, const StepMo
 bool ParticleContacts::find_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new) {
   for (auto& found : found_) found.clear();
   for_free(step, [&](int i, std::size_t k) {
-    if (contact_of_[static_cast<std::size_t>(i)] < 0)
-      look_along(i, bodies, step, x_new.segment<3>(3 * i), found_[k]);
+    if (contact_of_[i] < 0) look_along(i, bodies, step, x_new.segment<3>(3 * i), found_[k]);
   });
   const std::size_t before = trial_.size();
   take_found(step.h);
@@ -128,7 +126,7 @@ void ParticleContacts::look_along(int particle, const Bodies& bodies, const Step
   const Vec3 x = step.place(particle);
   Contact contact{.particle = particle, .plane = {}};
   for (int o = 0; o < static_cast<int>(bodies.size()); ++o) {
-    const MovingBody& body = bodies[static_cast<std::size_t>(o)];
+    const MovingBody& body = bodies[o];
     if (clearance(o, particle) > body.obstacle().margin + body.travel(x, x_new)) continue;
     if (const auto met = body.meeting(x, x_new)) add_plane(contact, *met);
   }
@@ -141,8 +139,8 @@ void ParticleContacts::follow(const Bodies& bodies, const StepMotion& step) {
   for (Contact& c : trial_) {
     c.changes = 0;
     for (int k = 0; k < c.planes; ++k) {
-      ContactPlane& p = c.plane[static_cast<std::size_t>(k)];
-      p.body_velocity = bodies[static_cast<std::size_t>(p.obstacle)].velocity(step.place(c.particle));
+      ContactPlane& p = c.plane[k];
+      p.body_velocity = bodies[p.obstacle].velocity(step.place(c.particle));
     }
   }
 }
@@ -161,7 +159,7 @@ void ParticleContacts::guard(int particle, const Bodies& bodies, const StepMotio
                              VecX& v_new, int& guarded) {
   const Vec3 x = step.place(particle);
   for (int o = 0; o < static_cast<int>(bodies.size()); ++o) {
-    const MovingBody& body = bodies[static_cast<std::size_t>(o)];
+    const MovingBody& body = bodies[o];
     Vec3 end = x_new.segment<3>(3 * particle);
     const double travel = body.travel(x, end), clear = clearance(o, particle);
     clearance(o, particle) = std::max(0.0, clear - travel);
@@ -176,11 +174,11 @@ void ParticleContacts::guard(int particle, const Bodies& bodies, const StepMotio
 }
 
 void ParticleContacts::commit() {
-  for (const Contact& c : committed_) committed_of_[static_cast<std::size_t>(c.particle)] = -1;
+  for (const Contact& c : committed_) committed_of_[c.particle] = -1;
   committed_.clear();
   for (const Contact& c : trial_) {
     if (!c.active()) continue;
-    committed_of_[static_cast<std::size_t>(c.particle)] = static_cast<int>(committed_.size());
+    committed_of_[c.particle] = static_cast<int>(committed_.size());
     committed_.push_back(c);
     if (c.grip == Grip::breaking_loose) committed_.back().grip = Grip::slide;
   }

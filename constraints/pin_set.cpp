@@ -28,13 +28,11 @@ void PinSet::pin_along(const std::vector<int>& particles, const Motion& motion, 
 }
 
 void PinSet::renumber(const std::vector<int>& number_of) {
-  const auto number = [&](int i) { return number_of[static_cast<std::size_t>(i)]; };
+  const auto number = [&](int i) { return number_of[i]; };
   std::vector<int> first(number_of.size(), -1);  // pin of a number
   for (int i : pinned_)
-    if (int& owner = first[static_cast<std::size_t>(number(i))]; owner < 0) owner = i;
-  std::erase_if(moving_, [&](const MovingPin& pin) {
-    return first[static_cast<std::size_t>(number(pin.particle))] != pin.particle;
-  });
+    if (int& owner = first[number(i)]; owner < 0) owner = i;
+  std::erase_if(moving_, [&](const MovingPin& pin) { return first[number(pin.particle)] != pin.particle; });
   for (MovingPin& pin : moving_) pin.particle = number(pin.particle);
   for (int& i : pinned_) i = number(i);
   std::sort(pinned_.begin(), pinned_.end());
@@ -45,9 +43,8 @@ void PinSet::move(const std::vector<MovingBody>& bodies, const StepMotion& step)
   if (moving_.empty()) return;
   velocity_.setZero(step.x.size());
   for (const MovingPin& pin : moving_) {
-    const Vec3 end =
-        pin.body < 0 ? paths_[static_cast<std::size_t>(pin.path)].at(step.t + step.h).to_world(pin.mark.place)
-                     : bodies[static_cast<std::size_t>(pin.body)].carried(pin.mark);
+    const Vec3 end = pin.body < 0 ? paths_[pin.path].at(step.t + step.h).to_world(pin.mark.place)
+                                  : bodies[pin.body].carried(pin.mark);
     velocity_.segment<3>(3 * pin.particle) = (end - step.place(pin.particle)) / step.h;
   }
 }

@@ -23,7 +23,7 @@ std::vector<int> chosen(const PinBox& rule, const TriangleMesh& mesh) {
   const Eigen::AlignedBox3d box(rule.lower, rule.upper);
   Eigen::AlignedBox3d cloth;
   for (int i = 0; i < mesh.vertex_count(); ++i) {
-    const Vec3& x = mesh.positions[static_cast<std::size_t>(i)];
+    const Vec3& x = mesh.positions[i];
     cloth.extend(x);
     if (box.contains(x)) inside.push_back(i);
   }

@@ -25,8 +25,8 @@ struct StepMotion {
   std::vector<double> masses;  // kg
   std::vector<char> held;      // of each particle: pinned, or without mass
 
-  bool is_held(int particle) const { return held[static_cast<std::size_t>(particle)] != 0; }
-  double mass(int particle) const { return masses[static_cast<std::size_t>(particle)]; }
+  bool is_held(int particle) const { return held[particle] != 0; }
+  double mass(int particle) const { return masses[particle]; }
   Vec3 place(int particle) const { return x.segment<3>(3 * particle); }
   Vec3 velocity(int particle) const { return v.segment<3>(3 * particle); }
 };

@@ -83,8 +83,7 @@ struct Tailor : Folder {
     for (int j = 0; j < panels.ny; ++j)
       for (int p : {0, 1}) {
         const int left = panels.vertex(p, 0, j), right = panels.vertex(1 - p, panels.nx - 1, j);
-        widest =
-            std::max(widest, (x[static_cast<std::size_t>(left)] - x[static_cast<std::size_t>(right)]).norm());
+        widest = std::max(widest, (x[left] - x[right]).norm());
       }
     return widest;
   }

@@ -123,12 +123,12 @@ inline State fine_reference(const Course& m, int steps = 4000) {
   State s = m.start;
   const double h = m.duration / steps;
   std::vector<char> held(static_cast<std::size_t>(s.particles()), 0);
-  for (int i : m.constraints.pinned()) held[static_cast<std::size_t>(i)] = 1;
+  for (int i : m.constraints.pinned()) held[i] = 1;
   const auto acceleration = [&](const VecX& x, const VecX& v) {
     VecX a = m.system.force(x, v);
     for (int i = 0; i < s.particles(); ++i) {
-      const double mass = m.system.masses()[static_cast<std::size_t>(i)];
-      const bool fixed = mass == 0 || held[static_cast<std::size_t>(i)] != 0;
+      const double mass = m.system.masses()[i];
+      const bool fixed = mass == 0 || held[i] != 0;
       a.segment<3>(3 * i) *= fixed ? 0 : 1 / mass;
     }
     return a;

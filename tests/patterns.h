@@ -86,9 +86,7 @@ inline const std::vector<int>& curve(const std::vector<Polyline>& curves, const 
 inline std::vector<double> fractions(const TriangleMesh& mesh, const std::vector<int>& vertices) {
   std::vector<double> sums = {0};
   for (std::size_t i = 1; i < vertices.size(); ++i)
-    sums.push_back(sums.back() + (mesh.positions[static_cast<std::size_t>(vertices[i])] -
-                                  mesh.positions[static_cast<std::size_t>(vertices[i - 1])])
-                                     .norm());
+    sums.push_back(sums.back() + (mesh.positions[vertices[i]] - mesh.positions[vertices[i - 1]]).norm());
   for (double& s : sums) s /= sums.back();
   return sums;
 }

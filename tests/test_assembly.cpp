@@ -47,8 +47,7 @@ double mass(const Assembly& a) {
 
 Vec3 momentum(const Assembly& a) {
   Vec3 sum = Vec3::Zero();
-  for (int i = 0; i < a.state.particles(); ++i)
-    sum += a.system->masses()[static_cast<std::size_t>(i)] * a.state.v.segment<3>(3 * i);
+  for (int i = 0; i < a.state.particles(); ++i) sum += a.system->masses()[i] * a.state.v.segment<3>(3 * i);
   return sum;
 }
 

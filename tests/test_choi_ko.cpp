@@ -67,7 +67,7 @@ Vec3 affine(const std::vector<StretchConnection>& all, const std::vector<Vec3>& 
   Vec3 C = Vec3::Zero();
   for (const StretchConnection& s : all) {
     if (s.i != centre && s.j != centre) continue;
-    const Vec3 d = x[static_cast<std::size_t>(s.j)] - x[static_cast<std::size_t>(s.i)];
+    const Vec3 d = x[s.j] - x[s.i];
     const double l2 = d.squaredNorm(), tx = d.x() * d.x() / l2, tz = d.z() * d.z() / l2;
     C += 0.5 * s.k * l2 * Vec3(tx * tx, tz * tz, tx * tz);  // each connection belongs to both its ends
   }
@@ -105,16 +105,15 @@ TEST_CASE("a grid of quads has its rows and diagonals, whatever the order of ver
     for (auto& face : faces) {
       std::rotate(face.begin(), face.begin() + static_cast<std::ptrdiff_t>(random() % 4), face.end());
       if (random() % 2 == 0) std::reverse(face.begin(), face.end());  // wound either way
-      for (int& v : face) v = number[static_cast<std::size_t>(v)];
+      for (int& v : face) v = number[v];
     }
     const std::vector<Vec3> points = grid_points(nx, nz, 1, 1);
     std::vector<Vec3> placed(points.size());
-    for (std::size_t v = 0; v < points.size(); ++v) placed[static_cast<std::size_t>(number[v])] = points[v];
+    for (std::size_t v = 0; v < points.size(); ++v) placed[number[v]] = points[v];
     const QuadGrid shuffled = quad_grid(mesh_of(placed, faces));
     const auto renamed = [&](const Pairs& pairs) {
       Pairs out;
-      for (const auto& [a, c] : pairs)
-        out.insert(std::minmax(number[static_cast<std::size_t>(a)], number[static_cast<std::size_t>(c)]));
+      for (const auto& [a, c] : pairs) out.insert(std::minmax(number[a], number[c]));
       return out;
     };
     CHECK(ends(shuffled.rows) == renamed(rows));
@@ -195,7 +194,7 @@ TEST_CASE("a grid that is rolled up has the fabric's bending energy, whichever w
       // Rolled onto a cylinder about an axis in the plane: u runs round it.
       const Vec3 along(std::cos(direction), 0, std::sin(direction)), axis(-along.z(), 0, along.x());
       const auto rolled = [&](int v) {
-        const Vec3& x = mesh.positions[static_cast<std::size_t>(v)];
+        const Vec3& x = mesh.positions[v];
         const double u = x.dot(along) / R;
         return Vec3(R * std::sin(u) * along + R * (1 - std::cos(u)) * Vec3::UnitY() + x.dot(axis) * axis);
       };
@@ -204,7 +203,7 @@ TEST_CASE("a grid that is rolled up has the fabric's bending energy, whichever w
       const int m = n / 2 * n + n / 2;
       double energy = 0;
       for (const BendConnection& s : c.bend) {
-        const auto at = [&](int v) { return mesh.positions[static_cast<std::size_t>(v)]; };
+        const auto at = [&](int v) { return mesh.positions[v]; };
         if ((0.5 * (at(s.i) + at(s.j)) - at(m)).norm() > 1e-9) continue;
         const Vec3 one = (rolled(s.i) - rolled(m)).normalized(), two = (rolled(s.j) - rolled(m)).normalized();
         const double l = ((at(s.i) - at(m)).norm() * one - (at(s.j) - at(m)).norm() * two).norm();

@@ -323,7 +323,7 @@ TEST_CASE("a solver looks the same in every plot", "[compare]") {
       INFO(plot.title << ": " << series.name);
       if (series.dashed) continue;
       REQUIRE(series.look >= 0);
-      CHECK(comparison.solvers[static_cast<std::size_t>(series.look)] == series.name);
+      CHECK(comparison.solvers[series.look] == series.name);
     }
   CHECK(plots[1].series.size() == 2);  // a direct solver has no iterations to show
 }

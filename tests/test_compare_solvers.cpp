@@ -182,7 +182,7 @@ TEST_CASE("a row holds what dense algebra says of its solution", "[compare]") {
   CHECK(rows[1].residual == Approx(r_best));
   CHECK(rows[0].difference == Approx(apart(worst)));
   CHECK(*rows[0].allowed == Approx(g.norm() * reference * (1.05e-4 + r_best)).epsilon(1e-4));
-  const int particle = pattern.particle_of()[static_cast<std::size_t>(worst)];
+  const int particle = pattern.particle_of()[worst];
   CHECK(rows[0].cloth == (particle == 0 ? "upper" : "lower"));
   CHECK(rows[0].vertex == (particle == 0 ? 0 : particle - 1));
 

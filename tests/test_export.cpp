@@ -184,13 +184,13 @@ TEST_CASE("a vertex with two uv is doubled after the others, and no uv is lost",
   CHECK(uv_by_vertex(faces, 7).empty());
   const Corners split = split_corners(mesh, faces, M_PI);
   REQUIRE(split.origin.size() == 9);
-  for (int v = 0; v < 7; ++v) CHECK(split.origin[static_cast<std::size_t>(v)] == v);
+  for (int v = 0; v < 7; ++v) CHECK(split.origin[v] == v);
   REQUIRE(split.triangles.size() == mesh.triangles.size());
   for (std::size_t t = 0; t < split.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
       const auto v = static_cast<std::size_t>(split.triangles[t][k]);
       CHECK(split.origin[v] == mesh.triangles[t][k]);
-      const double x = mesh.positions[static_cast<std::size_t>(split.origin[v])][0];
+      const double x = mesh.positions[split.origin[v]][0];
       const double right = t < 2 ? 0.5 * x : 0.6 + 0.4 * (x - 1);
       CHECK(split.uv[v][0] == Approx(right));
     }
@@ -206,11 +206,9 @@ TEST_CASE("hard edges of a body keep a normal on each side, smooth ones share it
   CHECK(hard.size() == 24);
   const std::vector<Vec3> normals = normals_of(hard, cube.positions);
   for (const Triangle& t : hard.triangles) {
-    const auto x = [&](int v) {
-      return cube.positions[static_cast<std::size_t>(hard.origin[static_cast<std::size_t>(v)])];
-    };
+    const auto x = [&](int v) { return cube.positions[hard.origin[v]]; };
     const Vec3 face = (x(t[1]) - x(t[0])).cross(x(t[2]) - x(t[0])).normalized();
-    for (const int v : t) CHECK((normals[static_cast<std::size_t>(v)] - face).norm() < 1e-12);
+    for (const int v : t) CHECK((normals[v] - face).norm() < 1e-12);
   }
   const Corners smooth = split_corners(cube, faces_of(cube), crease_of(false));
   CHECK(smooth.size() == 8);
@@ -227,8 +225,7 @@ TEST_CASE("a normal does not break where the uv do", "[export]") {
   const Corners split = split_corners(bent, faces_of(bent), crease_of(false));
   REQUIRE(split.size() == 8);
   const std::vector<Vec3> normals = normals_of(split, bent.positions);
-  for (std::size_t v = 6; v < 8; ++v)
-    CHECK((normals[v] - normals[static_cast<std::size_t>(split.origin[v])]).norm() == 0);
+  for (std::size_t v = 6; v < 8; ++v) CHECK((normals[v] - normals[split.origin[v]]).norm() == 0);
 }
 
 TEST_CASE("a polygon of more corners than a byte counts is kept", "[export]") {

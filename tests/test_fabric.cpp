@@ -26,7 +26,7 @@ VecX rolled(const TriangleMesh& mesh, double fold) {
   Vec3 at = mesh.positions.front();
   double row = at.z(), slope = 0;
   for (Eigen::Index i = 0; i < x.size() / 3; ++i) {
-    const double z = mesh.positions[static_cast<std::size_t>(i)].z();
+    const double z = mesh.positions[i].z();
     if (z > row + 1e-9) {
       at += (z - row) * Vec3(0, std::sin(slope), std::cos(slope));
       slope += fold;
@@ -169,8 +169,7 @@ TEST_CASE("neighbour weighting is masses, so momentum and symmetry survive it", 
   to_rows(*pattern, y, y_rows);
   A.multiply(y_rows, product);
   to_particles(*pattern, product, Ky);
-  for (int i = 0; i < 36; ++i)
-    Ky.segment<3>(3 * i) -= weighted[static_cast<std::size_t>(i)] * y.segment<3>(3 * i);
+  for (int i = 0; i < 36; ++i) Ky.segment<3>(3 * i) -= weighted[i] * y.segment<3>(3 * i);
   CHECK((Ky + c * (b_with - b_without)).norm() <= 1e-12 * Ky.norm());
 }
 

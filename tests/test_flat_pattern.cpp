@@ -53,7 +53,7 @@ TEST_CASE("where the pattern is cut the cloth is joined as if it were not", "[se
   for (std::size_t t = 0; t < whole.triangles.size(); ++t) {
     const double angle = 0.7 * static_cast<double>(t);
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& x = whole.positions[static_cast<std::size_t>(whole.triangles[t][k])];
+      const Vec3& x = whole.positions[whole.triangles[t][k]];
       cut.positions.emplace_back(std::cos(angle) * x.x() - std::sin(angle) * x.z() + angle, 0,
                                  std::sin(angle) * x.x() + std::cos(angle) * x.z());
     }

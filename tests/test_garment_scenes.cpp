@@ -19,16 +19,15 @@ TEST_CASE("a panel that is wrapped keeps its lengths along and round the cylinde
   for (int p : {0, 1})
     for (int j = 0; j < tailor.panels.ny; ++j)
       for (int i = 0; i < tailor.panels.nx; ++i) {
-        Vec3 on = x[static_cast<std::size_t>(tailor.panels.vertex(p, i, j))];
+        Vec3 on = x[tailor.panels.vertex(p, i, j)];
         on.z() -= p == 0 ? 0.02 : -0.02;
         CHECK(std::hypot(on.x(), on.z()) == Approx(0.16));
         CHECK(on.z() * (p == 0 ? 1 : -1) > -0.01);  // in front, or behind
         CHECK(on.y() == Approx(0.4 * j / (tailor.panels.ny - 1) - 0.2));
         if (i == 0) continue;
-        const Vec3& before = x[static_cast<std::size_t>(tailor.panels.vertex(p, i - 1, j))];
+        const Vec3& before = x[tailor.panels.vertex(p, i - 1, j)];
         const double chord = 2 * 0.16 * std::sin(0.5 * 0.05 / 0.16);
-        CHECK((x[static_cast<std::size_t>(tailor.panels.vertex(p, i, j))] - before).norm() ==
-              Approx(chord).epsilon(1e-5));
+        CHECK((x[tailor.panels.vertex(p, i, j)] - before).norm() == Approx(chord).epsilon(1e-5));
       }
 }
 

@@ -41,7 +41,7 @@ std::complex<double> root_per_step(std::string_view name, double z) {
   const int settled = order_of(name) == 2 && !is_explicit(name) ? 14 : 0;  // the other roots have died out
   std::array<double, 4> y{};
   for (int n = 0; n < settled + 4; ++n) {
-    if (n >= settled) y[static_cast<std::size_t>(n - settled)] = o.state.x[3] - 100;
+    if (n >= settled) y[n - settled] = o.state.x[3] - 100;
     REQUIRE(stepper->advance(o.state, z).done);
   }
   Eigen::Matrix2d Y;
@@ -170,8 +170,8 @@ TEST_CASE("an oscillator loses what its scheme takes, and runs as late", "[integ
       if (name == "explicit-euler") column = 11;
       double amplitude = 0, phase = 0;
       if (column > 0) {
-        amplitude = row[static_cast<std::size_t>(column)];
-        phase = row[static_cast<std::size_t>(column) + 1];
+        amplitude = row[column];
+        phase = row[column + 1];
       } else if (name == "midpoint") {  // the explicit one: 1 + iz - z^2/2
         amplitude = std::sqrt(1 + z * z * z * z / 4);
         phase = std::atan2(z, 1 - z * z / 2);
@@ -223,7 +223,7 @@ TEST_CASE("order 1 is Baraff & Witkin's step", "[integrators]") {
         -(m.system.force(m.start.x, m.start.v + e) - m.system.force(m.start.x, m.start.v - e)) / (2 * d);
   }
   Eigen::MatrixXd A = h * D + h * h * K;
-  for (Eigen::Index k = 0; k < n; ++k) A(k, k) += m.system.masses()[static_cast<std::size_t>(k / 3)];
+  for (Eigen::Index k = 0; k < n; ++k) A(k, k) += m.system.masses()[k / 3];
   VecX b = h * (m.system.force(m.start.x, m.start.v) - h * K * m.start.v);
   for (int i : m.constraints.pinned())
     for (int k = 3 * i; k < 3 * i + 3; ++k) {

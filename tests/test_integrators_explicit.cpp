@@ -42,7 +42,7 @@ struct Taut {
     double lambda = 0;
     for (int n = 0; n < 4000; ++n) {
       y = times(K, y);
-      for (Eigen::Index i = 0; i < y.size(); ++i) y[i] /= system.masses()[static_cast<std::size_t>(i / 3)];
+      for (Eigen::Index i = 0; i < y.size(); ++i) y[i] /= system.masses()[i / 3];
       lambda = y.norm();
       y /= lambda;
     }
@@ -126,8 +126,7 @@ TEST_CASE("the explicit schemes are stable up to their limits on a cloth, to 2 %
   const int side = 12;
   TriangleMesh mesh = grid(side, side, 0.4, 0.4);
   const VecX uneven = random_vector(3 * side * side, 0.008, 4);
-  for (int i = 0; i < side * side; ++i)
-    mesh.positions[static_cast<std::size_t>(i)] += Vec3(uneven[3 * i], 0, uneven[3 * i + 2]);
+  for (int i = 0; i < side * side; ++i) mesh.positions[i] += Vec3(uneven[3 * i], 0, uneven[3 * i + 2]);
   Taut cloth{System(lumped_mass(mesh, 0.2)), Constraints(), at_rest(mesh)};
   cloth.system.add(noh_jung(mesh, {.area_density = 0.2, .stretch = 30, .bend = 1e-5}));
   cloth.constraints.pin(rim(side));

@@ -25,9 +25,8 @@ struct Problem {
     std::uniform_real_distribution<double> uniform(-1, 1);
     A.set_to_mass(std::vector<double>(static_cast<std::size_t>(n), 0.3));
     for (int r = 0; r < n; ++r) {
-      for (int s = pattern->row_start()[static_cast<std::size_t>(r)];
-           s < pattern->row_start()[static_cast<std::size_t>(r) + 1]; ++s) {
-        const int c = pattern->column()[static_cast<std::size_t>(s)];
+      for (int s = pattern->row_start()[r]; s < pattern->row_start()[r + 1]; ++s) {
+        const int c = pattern->column()[s];
         if (c <= r) continue;
         Mat3 G, H;  // |G x_r - H x_c|^2: semidefinite, with off-diagonal blocks that are not symmetric
         for (int k = 0; k < 9; ++k) G(k) = 3 * uniform(engine), H(k) = 3 * uniform(engine);
@@ -61,9 +60,8 @@ struct Problem {
   Eigen::MatrixXd dense() const {
     Eigen::MatrixXd D = Eigen::MatrixXd::Zero(b.size(), b.size());
     for (int r = 0; r < A.rows(); ++r)
-      for (int s = pattern->row_start()[static_cast<std::size_t>(r)];
-           s < pattern->row_start()[static_cast<std::size_t>(r) + 1]; ++s) {
-        const int c = pattern->column()[static_cast<std::size_t>(s)];
+      for (int s = pattern->row_start()[r]; s < pattern->row_start()[r + 1]; ++s) {
+        const int c = pattern->column()[s];
         D.block<3, 3>(3 * r, 3 * c) = A.at(s);
         D.block<3, 3>(3 * c, 3 * r) = A.at(s).transpose();
       }
@@ -324,8 +322,8 @@ TEST_CASE("the product is that of the whole symmetric matrix, the same bits on a
     A.at(s) = Eigen::Map<const Mat3>(numbers.data() + 9 * static_cast<std::ptrdiff_t>(s));
   VecX expected = VecX::Zero(x.size()), y = random_vector(static_cast<int>(x.size()), 1, 7);
   for (int r = 0; r < A.rows(); ++r)
-    for (int s = pattern.diagonal(r); s < pattern.row_start()[static_cast<std::size_t>(r) + 1]; ++s) {
-      const int c = pattern.column()[static_cast<std::size_t>(s)];
+    for (int s = pattern.diagonal(r); s < pattern.row_start()[r + 1]; ++s) {
+      const int c = pattern.column()[s];
       expected.segment<3>(3 * r) += A.at(s) * x.segment<3>(3 * c);
       if (c > r) expected.segment<3>(3 * c) += A.at(s).transpose() * x.segment<3>(3 * r);
     }
@@ -344,12 +342,10 @@ TEST_CASE("a pattern knows every pair once, in chunks that only neighbours share
   const Problem p(500, 21, false);
   const BlockPattern& pattern = *p.pattern;
   for (int r = 0; r < pattern.rows(); ++r) {
-    CHECK(pattern.particle_of()[static_cast<std::size_t>(pattern.row_of()[static_cast<std::size_t>(r)])] ==
-          r);
-    CHECK(pattern.column()[static_cast<std::size_t>(pattern.diagonal(r))] == r);
-    for (int s = pattern.row_start()[static_cast<std::size_t>(r)];
-         s < pattern.row_start()[static_cast<std::size_t>(r) + 1]; ++s) {
-      const int c = pattern.column()[static_cast<std::size_t>(s)];
+    CHECK(pattern.particle_of()[pattern.row_of()[r]] == r);
+    CHECK(pattern.column()[pattern.diagonal(r)] == r);
+    for (int s = pattern.row_start()[r]; s < pattern.row_start()[r + 1]; ++s) {
+      const int c = pattern.column()[s];
       CHECK(c >= r);
       CHECK(c / pattern.chunk_rows() - r / pattern.chunk_rows() <= 1);
     }

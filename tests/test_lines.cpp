@@ -140,7 +140,7 @@ struct Small {
     A.set_to_mass(std::vector<double>(static_cast<std::size_t>(n), 1.0));
     const auto& row = A.pattern().row_of();
     for (const auto& p : pairs) {
-      const int i = row[static_cast<std::size_t>(p.i)], j = row[static_cast<std::size_t>(p.j)];
+      const int i = row[p.i], j = row[p.j];
       A.at(A.pattern().diagonal(i)) += Mat3::Identity();
       A.at(A.pattern().diagonal(j)) += Mat3::Identity();
       A.at(A.pattern().slot(std::min(i, j), std::max(i, j))) -= Mat3::Identity();

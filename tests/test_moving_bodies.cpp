@@ -157,7 +157,7 @@ TEST_CASE("pins follow a body, and a path of their own", "[moving-bodies]") {
     const int steps = static_cast<int>(std::lround(0.1 / step));
     for (int n = 0; n < steps; ++n) REQUIRE(integrator->advance(state, step).done);
     const auto at = [&](int i) { return Vec3(state.x.segment<3>(3 * i)); };
-    const auto rest = [&](int i) { return mesh.positions[static_cast<std::size_t>(i)]; };
+    const auto rest = [&](int i) { return mesh.positions[i]; };
     for (int i : {0, 1}) CHECK((at(i) - turn.at(0.1).to_world(rest(i))).norm() < 1e-9);
     CHECK((at(5) - rest(5) - Vec3(0, 0.02, 0)).norm() < 1e-9);
   }
@@ -195,7 +195,7 @@ Turning turning(double mu, double rate) {
   double spin = 0, inertia = 0;  // of the cloth about the vertical
   for (int i = 0; i < state.particles(); ++i) {
     const Vec3 x = state.x.segment<3>(3 * i), v = state.v.segment<3>(3 * i);
-    const double m = system.masses()[static_cast<std::size_t>(i)];
+    const double m = system.masses()[i];
     spin += m * (x[2] * v[0] - x[0] * v[2]);
     inertia += m * (x[0] * x[0] + x[2] * x[2]);
   }
@@ -234,8 +234,7 @@ TEST_CASE("a rope drawn over a drum slips at the capstan's ratio of tensions", "
   std::vector<PairForce<TensionSpring>::Element> springs;
   std::vector<PairDamping::Element> dampers;
   for (int k = 0; k + 1 < n; ++k) {
-    const double length =
-        (places[static_cast<std::size_t>(k) + 1] - places[static_cast<std::size_t>(k)]).norm();
+    const double length = (places[k + 1] - places[k]).norm();
     const bool end = k == 0 || k + 2 == n;
     springs.push_back({k, k + 1, {end ? rest : length / (1 + pull / stiff), end ? soft : stiff}});
     if (!end) dampers.push_back({k, k + 1});

@@ -235,7 +235,7 @@ TEST_CASE("the answers do not depend on the number of threads", "[moving]") {
           const auto& c = *static_cast<const Context*>(given);
           Random r{std::mt19937(static_cast<unsigned>(k))};
           const SurfacePoint p = c.surface.closest(r.point(1.5), r(0, 1));
-          c.found[static_cast<std::size_t>(k)] = p.distance * p.normal;
+          c.found[k] = p.distance * p.normal;
         },
         &context);
     if (first.empty()) first = found;

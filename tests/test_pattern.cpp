@@ -15,7 +15,7 @@ using namespace drape::test;
 
 namespace {
 
-Vec2 flat(const TriangleMesh& mesh, int v) { return mesh.positions[static_cast<std::size_t>(v)].head<2>(); }
+Vec2 flat(const TriangleMesh& mesh, int v) { return mesh.positions[v].head<2>(); }
 
 PatternMesh made(const PatternCase& c, double degrees = 28) {
   return triangulate(cm_pattern(c.text), {.edge = c.edge, .min_angle = degrees * kDegree});
@@ -119,9 +119,8 @@ TEST_CASE("an OBJ of a pattern has panels, flat coordinates and curves", "[patte
   REQUIRE(read.document->texcoords.size() == read.positions.size());
   for (const ObjCorner& corner : read.document->corners) {
     double x = 0, y = 0;
-    REQUIRE(std::sscanf(std::string(read.document->texcoords[static_cast<std::size_t>(corner.vt)]).c_str(),
-                        "%lf %lf", &x, &y) == 2);
-    REQUIRE(Vec3(x, y, 0) == read.positions[static_cast<std::size_t>(corner.v)]);
+    REQUIRE(std::sscanf(std::string(read.document->texcoords[corner.vt]).c_str(), "%lf %lf", &x, &y) == 2);
+    REQUIRE(Vec3(x, y, 0) == read.positions[corner.v]);
   }
   std::map<std::pair<int, int>, int> shared;
   for (const Edge& e : edges(read)) shared[{e.a, e.b}] = e.triangles;

@@ -101,8 +101,7 @@ TEST_CASE("sides, holes, lines and seams of a drawing", "[pattern]") {
   const std::vector<Polyline> curves = polylines(m.mesh);
   REQUIRE(curves.size() == 4);
   CHECK(curve(curves, "a.l").size() == curve(curves, "a.r").size());
-  for (const int v : curve(curves, "a.fold"))
-    CHECK(m.mesh.positions[static_cast<std::size_t>(v)].x() == Approx(0.03));
+  for (const int v : curve(curves, "a.fold")) CHECK(m.mesh.positions[v].x() == Approx(0.03));
   CHECK(m.panels[0].area == Approx(0.0064 - 0.0001).epsilon(1e-9));
   CHECK(curve(curves, "a.top").size() == group(m.mesh, "a.top").size());
 }

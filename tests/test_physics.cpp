@@ -105,8 +105,7 @@ TEST_CASE("a strip under its own weight is longer by sigma g L^2 / (2 Y), to sec
     State state = at_rest(mesh);
     settle(system, constraints, state, 0.05, 2000, 1e-10);
     double mean = 0;
-    for (int i = 3 * cells; i < 3 * cells + 3; ++i)
-      mean += (state.x[3 * i + 2] - mesh.positions[static_cast<std::size_t>(i)].z()) / 3;
+    for (int i = 3 * cells; i < 3 * cells + 3; ++i) mean += (state.x[3 * i + 2] - mesh.positions[i].z()) / 3;
     error.push_back(std::abs(mean / (sigma * 9.81 * L * L / (2 * Y)) - 1));
   }
   INFO(error[0] << " " << error[1] << " " << error[2]);

@@ -45,8 +45,7 @@ struct Cloth {
   static Fabric fabric() { return {.area_density = 0.2, .stretch = 1000, .bend = 1e-5, .damping = 0.02}; }
   Vec3 momentum() const {
     Vec3 p = Vec3::Zero();
-    for (int i = 0; i < state.particles(); ++i)
-      p += system.masses()[static_cast<std::size_t>(i)] * state.v.segment<3>(3 * i);
+    for (int i = 0; i < state.particles(); ++i) p += system.masses()[i] * state.v.segment<3>(3 * i);
     return p;
   }
   void pin_corners() { constraints.pin({0, 12, 156, 168}); }
@@ -98,7 +97,7 @@ TEST_CASE("the solid of a surface does not depend on how its triangles are wound
     mixed.triangles.push_back(Triangle(mixed.triangles[t]));
   TriangleMesh seamed = ball;  // its first triangle has vertices of its own
   for (int& v : seamed.triangles[0]) {
-    seamed.positions.push_back(ball.positions[static_cast<std::size_t>(v)]);
+    seamed.positions.push_back(ball.positions[v]);
     v = seamed.vertex_count() - 1;
   }
   for (const TriangleMesh& mesh : {mixed, seamed}) {

@@ -111,7 +111,7 @@ TEST_CASE("a sheet on a ball stays with friction and slides off without, never i
     CHECK(guarded == 0);
     double height = 0;
     for (int i = 0; i < state.particles(); ++i) height += state.x[3 * i + 1] / state.particles();
-    fallen[static_cast<std::size_t>(rough)] = -height;
+    fallen[rough] = -height;
     if (rough) CHECK(max_speed(state) < 0.05);
   }
   INFO("mean depth " << fallen[0] << " m without friction, " << fallen[1] << " m with");

@@ -19,8 +19,7 @@ void advance(Simulation& s, double until) {
 
 Vec3 momentum(const Simulation& s) {
   Vec3 sum = Vec3::Zero();
-  for (int i = 0; i < s.state.particles(); ++i)
-    sum += s.system->masses()[static_cast<std::size_t>(i)] * s.state.v.segment<3>(3 * i);
+  for (int i = 0; i < s.state.particles(); ++i) sum += s.system->masses()[i] * s.state.v.segment<3>(3 * i);
   return sum;
 }
 double mass(const Simulation& s) {
@@ -48,7 +47,7 @@ TEST_CASE("seams close, become one, and the garment is a tube without a cut", "[
     sewn.positions = s.cloths[0].embedding.positions(s.state.x);
     const std::vector<int> weld = welded(sewn.positions);
     for (Triangle& t : sewn.triangles)
-      for (int& v : t) v = weld[static_cast<std::size_t>(v)];
+      for (int& v : t) v = weld[v];
     CHECK(boundary_loops(sewn).size() == 2);  // top and bottom
     CHECK(holes(s.cloths[0].mesh).size() == 2);
     double longest = 0;

@@ -50,8 +50,7 @@ TEST_CASE("a cube of 10 x 10 x 10 particles has 2700 structural, 7776 shear and 
   forces.back()->list_pairs(pairs);
   CHECK(pairs.size() == 12876);
   for (const LatticePair& p : cube.structural)
-    CHECK((cube.positions[static_cast<std::size_t>(p.i)] - cube.positions[static_cast<std::size_t>(p.j)])
-              .norm() == Approx(0.1).epsilon(1e-12));
+    CHECK((cube.positions[p.i] - cube.positions[p.j]).norm() == Approx(0.1).epsilon(1e-12));
 }
 
 TEST_CASE("spring counts of a box: closed forms, each pair once", "[soft]") {
@@ -173,13 +172,11 @@ TEST_CASE("the surface of a lattice is closed, outwards, and bounds its cells", 
     const TriangleMesh surface = surface_of(lattice, particles);
     CHECK(solid_of(surface).volume == Approx(volume_of(lattice)).epsilon(1e-12));
     for (std::size_t v = 0; v < particles.size(); ++v)
-      CHECK(surface.positions[v] == lattice.positions[static_cast<std::size_t>(particles[v])]);
+      CHECK(surface.positions[v] == lattice.positions[particles[v]]);
     double signed_volume = 0;
     for (const Triangle& t : surface.triangles)
-      signed_volume += surface.positions[static_cast<std::size_t>(t[0])].dot(
-                           surface.positions[static_cast<std::size_t>(t[1])].cross(
-                               surface.positions[static_cast<std::size_t>(t[2])])) /
-                       6;
+      signed_volume +=
+          surface.positions[t[0]].dot(surface.positions[t[1]].cross(surface.positions[t[2]])) / 6;
     CHECK(signed_volume > 0);
   }
   surface_of(box_lattice({4, 3, 5}, Vec3::Constant(0.1)), particles);

@@ -35,9 +35,7 @@ struct Cube {
     std::vector<int> particles;
     std::vector<ClothFace> faces;
     for (const Triangle& t : surface_of(lattice, particles).triangles)
-      faces.push_back({{particles[static_cast<std::size_t>(t[0])], particles[static_cast<std::size_t>(t[1])],
-                        particles[static_cast<std::size_t>(t[2])]},
-                       1500});
+      faces.push_back({{particles[t[0]], particles[t[1]], particles[t[2]]}, 1500});
     constraints.add_faces(faces);
   }
 

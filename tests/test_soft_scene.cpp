@@ -136,7 +136,7 @@ TEST_CASE("mass, placement and pins of soft bodies in a scene", "[soft]") {
   const Simulation s = make_simulation(scene);
   REQUIRE(s.cloths.size() == 2);
   double mass = 0;
-  for (int i = 0; i < s.cloths[0].end_particle; ++i) mass += s.system->masses()[static_cast<std::size_t>(i)];
+  for (int i = 0; i < s.cloths[0].end_particle; ++i) mass += s.system->masses()[i];
   CHECK(mass == Approx(100 * 8 * solid_of(ball).volume).epsilon(1e-9));  // the mesh's, not the cells'
   const std::vector<Vec3> at = s.cloths[0].embedding.positions(s.state.x);
   const Mat3 R = rotation(1, {1, 2, 3});

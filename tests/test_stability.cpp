@@ -29,9 +29,7 @@ struct Net {
   Net(const std::vector<Vec3>& x, double m, Springs springs, double k_d)
       : system(std::vector<double>(x.size(), m)),
         rest{0, stacked(x), VecX::Zero(3 * static_cast<int>(x.size()))} {
-    for (auto& s : springs)
-      s.rest.L =
-          (x[static_cast<std::size_t>(s.particles[0])] - x[static_cast<std::size_t>(s.particles[1])]).norm();
+    for (auto& s : springs) s.rest.L = (x[s.particles[0]] - x[s.particles[1]]).norm();
     system.add(std::make_unique<PairForce<LinearSpring>>(std::move(springs), k_d));
   }
   Spectrum spectrum(int count = 6) { return stiffest_modes(system, constraints, rest, count); }

@@ -312,5 +312,5 @@ TEST_CASE("what is added to the diagonal replaces what was added before, to the 
   CHECK(A.at(A.pattern().diagonal(4)) == before);
   A.set_diagonal_additions({});
   CHECK(A.at(A.pattern().diagonal(7)) ==
-        Mat3(system.masses()[static_cast<std::size_t>(A.pattern().particle_of()[7])] * Mat3::Identity()));
+        Mat3(system.masses()[A.pattern().particle_of()[7]] * Mat3::Identity()));
 }

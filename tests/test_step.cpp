@@ -176,9 +176,9 @@ TEST_CASE("more Newton iterations solve the nonlinear equation", "[step]") {
     double residual = 0;
     for (int i = 0; i < 100; ++i) {
       if (i == 0 || i == 9) continue;
-      const Vec3 r = sheet.system.masses()[static_cast<std::size_t>(i)] *
-                         (sheet.state.v.segment<3>(3 * i) - before.v.segment<3>(3 * i)) -
-                     0.01 * f.segment<3>(3 * i);
+      const Vec3 r =
+          sheet.system.masses()[i] * (sheet.state.v.segment<3>(3 * i) - before.v.segment<3>(3 * i)) -
+          0.01 * f.segment<3>(3 * i);
       residual = std::max(residual, r.norm());
     }
     INFO(newton << " iterations, residual " << residual);

@@ -79,8 +79,7 @@ Vec3 vector(const Node& node, const Dimension& dimension) {
   if (node.kind != Node::Kind::array || node.items.size() != 3)
     throw InputError("expected a list of three, each " + std::string(dimension.noun));
   Vec3 value;
-  for (int i = 0; i < 3; ++i)
-    value[i] = quantity(node.items[static_cast<std::size_t>(i)], dimension, Range::any);
+  for (int i = 0; i < 3; ++i) value[i] = quantity(node.items[i], dimension, Range::any);
   return value;
 }
 

@@ -73,8 +73,7 @@ void print_seams(const Cloth& cloth, const VecX& x) {
 void print_soft(const SoftEntry& entry, const Cloth& cloth, const System& system) {
   print_report("soft body " + cloth.name, cloth.report);
   double mass = 0;
-  for (int i = cloth.first_particle; i < cloth.end_particle; ++i)
-    mass += system.masses()[static_cast<std::size_t>(i)];
+  for (int i = cloth.first_particle; i < cloth.end_particle; ++i) mass += system.masses()[i];
   const SoftMaterial& m = entry.material;
   std::printf("  %s, springs: %d structural, %d shear, %d bend; %s kg, %s\n",
               counted(cloth.end_particle - cloth.first_particle, "particle").c_str(), cloth.soft->structural,
@@ -90,8 +89,7 @@ void print_pins(const Scene& scene, const Simulation& simulation) {
   const Constraints& constraints = *simulation.constraints;
   std::vector<long> carried(scene.obstacles.size());
   long along = 0;
-  for (const MovingPin& pin : constraints.moving_pins())
-    ++(pin.body < 0 ? along : carried[static_cast<std::size_t>(pin.body)]);
+  for (const MovingPin& pin : constraints.moving_pins()) ++(pin.body < 0 ? along : carried[pin.body]);
   std::string text = counted(static_cast<long>(constraints.pinned().size()), "vertex") + " pinned";
   for (std::size_t k = 0; k < carried.size(); ++k)
     if (carried[k] > 0) text += ", " + std::to_string(carried[k]) + " to " + scene.obstacles[k].name;

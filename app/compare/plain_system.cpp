@@ -17,8 +17,7 @@ PlainSystem plain(const LinearSystem& system, const Filter& filter) {
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> to_particle(3 * system.A.rows());
   for (int row = 0; row < system.A.rows(); ++row)
     for (int k = 0; k < 3; ++k)
-      to_particle.indices()[3 * row + k] =
-          3 * system.A.pattern().particle_of()[static_cast<std::size_t>(row)] + k;
+      to_particle.indices()[3 * row + k] = 3 * system.A.pattern().particle_of()[row] + k;
   PlainMatrix unsorted;
   unsorted = projected.matrix().selfadjointView<Eigen::Lower>().twistedBy(to_particle);
   return {unsorted.transpose(),
@@ -35,8 +34,8 @@ PlainFilter plain_filter(const LinearSystem& system) {
   PlainFilter plain{std::vector<Mat3>(static_cast<std::size_t>(system.A.rows()), Mat3::Identity()),
                     VecX::Zero(system.b.size())};
   for (const FilterEntry& e : system.filter.entries()) {
-    const int particle = system.A.pattern().particle_of()[static_cast<std::size_t>(e.particle)];
-    plain.S[static_cast<std::size_t>(particle)] = e.S;
+    const int particle = system.A.pattern().particle_of()[e.particle];
+    plain.S[particle] = e.S;
     plain.z.segment<3>(3 * particle) = e.z;
   }
   return plain;

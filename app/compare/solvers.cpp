@@ -203,7 +203,7 @@ void SolverBench::find_difference(SolverRow& row, const VecX& difference, const 
   const Vec3 u = difference.segment<3>(3 * worst);
   if (u.isZero(0)) return;
   row.difference = u.norm();
-  const int particle = system.A.pattern().particle_of()[static_cast<std::size_t>(worst)];
+  const int particle = system.A.pattern().particle_of()[worst];
   const Cloth& cloth = simulation.cloth_of(particle);
   row.vertex = cloth.embedding.vertex(particle);
   row.cloth = cloth.name;

@@ -71,8 +71,7 @@ PlainMatrix block_diagonal(const std::vector<Mat3>& blocks) {
   PlainMatrix all(n, n);
   all.reserve(Eigen::VectorXi::Constant(n, 3));
   for (int i = 0; i < n; ++i)
-    for (int row = i - i % 3; row < i - i % 3 + 3; ++row)
-      all.insert(row, i) = blocks[static_cast<std::size_t>(i / 3)](row % 3, i % 3);
+    for (int row = i - i % 3; row < i - i % 3 + 3; ++row) all.insert(row, i) = blocks[i / 3](row % 3, i % 3);
   all.makeCompressed();
   return all;
 }

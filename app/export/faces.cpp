@@ -38,8 +38,7 @@ Faces faces_of_document(const ObjDocument& document) {
   std::vector<Uv> entries;
   for (std::size_t i = 0; i < document.texcoords.size(); ++i)
     entries.push_back(read_uv(document.texcoords[i]));
-  for (const ObjCorner& corner : document.corners)
-    faces.uv.push_back(entries[static_cast<std::size_t>(corner.vt)]);
+  for (const ObjCorner& corner : document.corners) faces.uv.push_back(entries[corner.vt]);
   return faces;
 }
 
@@ -85,16 +84,16 @@ std::vector<int> smooth_parts(const TriangleMesh& mesh, double crease) {
   if (crease >= M_PI) return part;  // that of the vertex
   std::iota(part.begin(), part.end(), 0);
   const auto root = [&part](int corner) {
-    while (part[static_cast<std::size_t>(corner)] != corner) corner = part[static_cast<std::size_t>(corner)];
+    while (part[corner] != corner) corner = part[corner];
     return corner;
   };
   const auto corner_at = [&mesh](int t, int v) {
-    const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(t)];
+    const Triangle& triangle = mesh.triangles[t];
     return 3 * t + static_cast<int>(std::find(triangle.begin(), triangle.end(), v) - triangle.begin());
   };
   const auto normal = [&mesh](int t) {
-    const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(t)];
-    const auto x = [&mesh](int v) { return mesh.positions[static_cast<std::size_t>(v)]; };
+    const auto& [a, b, c] = mesh.triangles[t];
+    const auto x = [&mesh](int v) { return mesh.positions[v]; };
     return twice_area_normal(x(a), x(b), x(c));
   };
   for (const Hinge& hinge : hinges(mesh)) {
@@ -102,11 +101,10 @@ std::vector<int> smooth_parts(const TriangleMesh& mesh, double crease) {
     if (one.dot(other) < std::cos(crease) * one.norm() * other.norm()) continue;
     for (const int v : {hinge.a, hinge.b}) {
       const int first = root(corner_at(hinge.tc, v)), second = root(corner_at(hinge.td, v));
-      part[static_cast<std::size_t>(std::max(first, second))] = std::min(first, second);
+      part[std::max(first, second)] = std::min(first, second);
     }
   }
-  for (int corner = 0; corner < static_cast<int>(part.size()); ++corner)
-    part[static_cast<std::size_t>(corner)] = root(corner);
+  for (int corner = 0; corner < static_cast<int>(part.size()); ++corner) part[corner] = root(corner);
   return part;
 }
 
@@ -176,13 +174,13 @@ Corners split_corners(const TriangleMesh& mesh, const Faces& faces, double creas
 }
 
 std::vector<Vec3> normals_of(const Corners& corners, const std::vector<Vec3>& positions) {
-  const auto at = [](const auto& list, int i) -> const auto& { return list[static_cast<std::size_t>(i)]; };
+  const auto at = [](const auto& list, int i) -> const auto& { return list[i]; };
   std::vector<Vec3> sums(static_cast<std::size_t>(corners.normals), Vec3::Zero());
   for (const Triangle& t : corners.triangles) {
     const Vec3 normal =
         twice_area_normal(at(positions, at(corners.origin, t[0])), at(positions, at(corners.origin, t[1])),
                           at(positions, at(corners.origin, t[2])));
-    for (const int v : t) sums[static_cast<std::size_t>(at(corners.normal, v))] += normal;
+    for (const int v : t) sums[at(corners.normal, v)] += normal;
   }
   std::vector<Vec3> normals;
   for (const int number : corners.normal) {

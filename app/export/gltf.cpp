@@ -194,7 +194,7 @@ class GltfWriter {
   static void write_doubled(AtomicFile& file, const Shape& shape, const std::vector<Vec3>& vectors) {
     std::vector<Vec3> all;
     all.reserve(shape.corners.size());
-    for (const int v : shape.corners.origin) all.push_back(vectors[static_cast<std::size_t>(v)]);
+    for (const int v : shape.corners.origin) all.push_back(vectors[v]);
     write_vectors(file, all);
   }
 

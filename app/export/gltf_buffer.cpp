@@ -32,7 +32,7 @@ int GltfBuffer::add(GltfUse use, std::size_t count, const std::string& kind) {
 }
 
 void GltfBuffer::set_range(int accessor, const std::vector<double>& low, const std::vector<double>& high) {
-  auto& members = std::get<Json::Members>(accessors_[static_cast<std::size_t>(accessor)].value);
+  auto& members = std::get<Json::Members>(accessors_[accessor].value);
   members.emplace_back("min", low);
   members.emplace_back("max", high);
 }

@@ -272,8 +272,7 @@ class SvgReader {
       int in = 0, out = 0;
       for (const Segment& s : shapes_[k].chain.segments)
         for (const double t : {0.17, 0.5, 0.83}) ++(holds(shapes_[i], point(s, t)) ? in : out);
-      if (in > out && (best < 0 || shapes_[i].area < shapes_[static_cast<std::size_t>(best)].area))
-        best = static_cast<int>(i);
+      if (in > out && (best < 0 || shapes_[i].area < shapes_[best].area)) best = static_cast<int>(i);
     }
     return best;
   }
@@ -284,7 +283,7 @@ class SvgReader {
     for (std::size_t k = 0; k < shapes_.size(); ++k) parent[k] = around(k);
     const auto depth = [&](std::size_t k) {
       int d = 0;
-      for (int p = parent[k]; p >= 0; p = parent[static_cast<std::size_t>(p)]) ++d;
+      for (int p = parent[k]; p >= 0; p = parent[p]) ++d;
       return d;
     };
     for (std::size_t k = 0; k < shapes_.size(); ++k) {
@@ -297,13 +296,13 @@ class SvgReader {
     for (std::size_t k = 0; k < shapes_.size(); ++k) {
       if (panel_of[k] >= 0) continue;
       Shape& shape = shapes_[k];
-      const int owner = parent[k] < 0 ? -1 : panel_of[static_cast<std::size_t>(parent[k])];
+      const int owner = parent[k] < 0 ? -1 : panel_of[parent[k]];
       if (owner < 0)
         throw InputError(shape.chain.where +
                          (shape.closed ? ": this hole is in no panel"
                                        : ": this path is open and in no panel; close it (z), or draw "
                                          "it inside a panel as a line"));
-      Panel& panel = pattern_.panels[static_cast<std::size_t>(owner)];
+      Panel& panel = pattern_.panels[owner];
       if (!shape.closed) name_line(shape);
       (shape.closed ? panel.holes : panel.lines).push_back(shape.chain);
     }

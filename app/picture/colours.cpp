@@ -59,7 +59,7 @@ Pixel between(const std::array<Pixel, N>& map, double share) {
 Light light(const Pixel& pixel) {
   Light linear;
   for (int k = 0; k < 3; ++k) {
-    const float s = static_cast<float>(pixel[static_cast<std::size_t>(k)]) / 255;
+    const float s = static_cast<float>(pixel[k]) / 255;
     linear[k] = s <= 0.04045F ? s / 12.92F : std::pow((s + 0.055F) / 1.055F, 2.4F);
   }
   return linear;
@@ -70,7 +70,7 @@ Pixel pixel(const Light& light) {
   for (int k = 0; k < 3; ++k) {
     const float l = std::clamp(light[k], 0.0F, 1.0F);
     const float s = l <= 0.0031308F ? 12.92F * l : 1.055F * std::pow(l, 1 / 2.4F) - 0.055F;
-    result[static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(std::lround(255 * s));
+    result[k] = static_cast<std::uint8_t>(std::lround(255 * s));
   }
   return result;
 }
@@ -86,8 +86,7 @@ std::optional<Field> field_named(const std::string& name) {
 
 Pixel colour_of(const Scale& scale, double value) {
   if (!std::isfinite(value)) return unknown;
-  if (scale.field == Field::contact)
-    return touches[static_cast<std::size_t>(std::clamp(std::lround(value), 0L, 2L))];
+  if (scale.field == Field::contact) return touches[std::clamp(std::lround(value), 0L, 2L)];
   const double share = (value - scale.low) / (scale.high - scale.low);
   return scale.field == Field::strain ? between(red_blue, share) : between(viridis, share);
 }

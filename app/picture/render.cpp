@@ -94,7 +94,7 @@ class Painter {
     bool empty = true;
     for (int j = 0; j < tile_samples; ++j)
       for (int i = 0; i < tile_samples; ++i) {
-        Sample& sample = samples[static_cast<std::size_t>(j * tile_samples + i)];
+        Sample& sample = samples[j * tile_samples + i];
         look_through(sample, 2 * x - margin + i, 2 * y - margin + j);
         empty = empty && sample.seen.part == -1;
       }
@@ -105,7 +105,7 @@ class Painter {
         bool nothing = true;
         for (int k = 0; k < 4; ++k) {
           const int at = (margin + 2 * py + k / 2) * tile_samples + margin + 2 * px + k % 2;
-          nothing = nothing && samples[static_cast<std::size_t>(at)].seen.part == -1;
+          nothing = nothing && samples[at].seen.part == -1;
           sum += lit(samples, at);
         }
         if (!nothing) image_.at(left_ + x + px, top_ + y + py) = pixel(sum / 4);
@@ -137,14 +137,14 @@ class Painter {
 
   // What a sample shows, with what it and its neighbours on the same surface have learnt.
   Light lit(const Samples& samples, int at) const {
-    const Seen& seen = samples[static_cast<std::size_t>(at)].seen;
+    const Seen& seen = samples[at].seen;
     static const Light nothing = light(background);
     if (seen.part == -1) return nothing;
     const double thick = 6 * camera_.slope * seen.distance;  // m
     float shadow = 0, occlusion = 0, count = 0;
     for (int j = -window_ / 2; j < window_ / 2; ++j)
       for (int i = -window_ / 2; i < window_ / 2; ++i) {
-        const Sample& other = samples[static_cast<std::size_t>(at + j * tile_samples + i)];
+        const Sample& other = samples[at + j * tile_samples + i];
         if (other.seen.part != seen.part || other.seen.normal.dot(seen.normal) < 0.75F ||
             std::abs((other.seen.point - seen.point).dot(seen.normal.cast<double>())) > thick)
           continue;
@@ -152,7 +152,7 @@ class Painter {
       }
     shadow /= count, occlusion /= count;
     if (seen.part <= -2) return on_ground(seen, shadow, occlusion);
-    const bool explained = look_.scale && !still_.parts[static_cast<std::size_t>(seen.part)].values.empty();
+    const bool explained = look_.scale && !still_.parts[seen.part].values.empty();
     const Lights& lights = explained ? legible : plain;
     const Eigen::Vector3f l = key_.cast<float>(), e = (camera_.eye - seen.point).normalized().cast<float>();
     const float from_above = 0.8F + 0.2F * seen.normal.y();

@@ -55,7 +55,7 @@ Light Surface::colour(const Piece& piece, int triangle, const Vec3& weights, boo
   if (look_.scale->field == Field::contact) {  // no vertex touches by half
     Eigen::Index nearest = 0;
     weights.maxCoeff(&nearest);
-    return light(colour_of(*look_.scale, values[t[static_cast<std::size_t>(nearest)]]));
+    return light(colour_of(*look_.scale, values[t[nearest]]));
   }
   return light(colour_of(*look_.scale,
                          weights[0] * values[t[0]] + weights[1] * values[t[1]] + weights[2] * values[t[2]]));
@@ -76,11 +76,11 @@ void Surface::meet(Seen& seen, const Vec3& direction, const TriangleTree::Hit& h
   Vec3 normal = Vec3::Zero();
   seen.from = seen.point;
   for (int k = 0; k < 3; ++k) {
-    const Vec3 n = side * normals[static_cast<std::size_t>(k)].cast<double>();
+    const Vec3 n = side * normals[k].cast<double>();
     normal += hit.weights[k] * n;
     // Out of the flat triangle onto the round surface that its normals tell of: else its own neighbours would
     // shade it along their edges [Hanika 2021, Hacking the shadow terminator].
-    const double below = (seen.point - positions_[t[static_cast<std::size_t>(k)]]).dot(n);
+    const double below = (seen.point - positions_[t[k]]).dot(n);
     seen.from -= hit.weights[k] * std::min(0.0, below) * n;
   }
   const double towards = normal.dot(direction);
@@ -93,8 +93,7 @@ void Surface::meet(Seen& seen, const Vec3& direction, const TriangleTree::Hit& h
   if (!look_.edges) return;
   const double pixel = slope * hit.distance;  // m
   for (int k = 0; k < 3; ++k) {
-    const Vec3 edge = positions_[t[static_cast<std::size_t>((k + 2) % 3)]] -
-                      positions_[t[static_cast<std::size_t>((k + 1) % 3)]];
+    const Vec3 edge = positions_[t[(k + 2) % 3]] - positions_[t[(k + 1) % 3]];
     if (hit.weights[k] * twice_area.norm() < 0.5 * line_width * pixel * edge.norm()) {
       seen.colour = (1 - line_share) * seen.colour + line_share * line_light;
       return;

@@ -47,14 +47,13 @@ py::tuple bsr(const LinearSystem& system) {
   const BlockPattern& pattern = system.A.pattern();
   std::vector<std::map<int, Mat3>> rows(static_cast<std::size_t>(pattern.rows()));
   for (int row = 0; row < pattern.rows(); ++row)
-    for (int slot = pattern.diagonal(row); slot < pattern.row_start()[static_cast<std::size_t>(row) + 1];
-         ++slot) {
-      const int column = pattern.column()[static_cast<std::size_t>(slot)];
-      const int i = pattern.particle_of()[static_cast<std::size_t>(row)];
-      const int j = pattern.particle_of()[static_cast<std::size_t>(column)];
+    for (int slot = pattern.diagonal(row); slot < pattern.row_start()[row + 1]; ++slot) {
+      const int column = pattern.column()[slot];
+      const int i = pattern.particle_of()[row];
+      const int j = pattern.particle_of()[column];
       const Mat3 block = system.A.at(slot);
-      rows[static_cast<std::size_t>(i)][j] = block;
-      rows[static_cast<std::size_t>(j)][i] = block.transpose();
+      rows[i][j] = block;
+      rows[j][i] = block.transpose();
     }
   std::vector<int> columns, starts = {0};
   std::vector<double> values;

@@ -37,14 +37,12 @@ void FrameFields::add(const Cloth& cloth, const State& state, const Constraints&
   for (const RestEdge& e : cloth.edges) {
     const auto strain =
         static_cast<float>((state.x.segment<3>(3 * e.j) - state.x.segment<3>(3 * e.i)).norm() / e.L - 1);
-    for (const int i : {e.i, e.j})
-      particle_strain_[static_cast<std::size_t>(i)] =
-          std::max(particle_strain_[static_cast<std::size_t>(i)], strain);
+    for (const int i : {e.i, e.j}) particle_strain_[i] = std::max(particle_strain_[i], strain);
   }
   particle_contact_.assign(static_cast<std::size_t>(state.particles()), 0);
   for (const Contact& contact : constraints.contacts())
     if (contact.active())
-      particle_contact_[static_cast<std::size_t>(contact.particle)] =
+      particle_contact_[contact.particle] =
           static_cast<std::uint8_t>(contact.grip == Grip::stick ? Touch::sticks : Touch::slides);
 
   const int vertices = cloth.embedding.vertices();

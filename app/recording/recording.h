@@ -52,7 +52,7 @@ class Recording {
   const RecordedSteps& steps() const { return steps_; }
 
   int frames() const { return static_cast<int>(times_.size()); }
-  double time(int frame) const { return times_[static_cast<std::size_t>(frame)]; }  // s
+  double time(int frame) const { return times_[frame]; }  // s
   double frame_rate() const;  // 1/s, mean over the run; 0 when there is a single frame
 
   const std::vector<RecordedShape>& shapes() const { return shapes_; }  // cloths, soft bodies, then bodies

@@ -314,7 +314,7 @@ void Recording::settle_frames() {
   }
   times_.resize(static_cast<std::size_t>(frames));
   if (!times_told_)
-    for (int k = 0; k < frames; ++k) times_[static_cast<std::size_t>(k)] = k / usual_rate;
+    for (int k = 0; k < frames; ++k) times_[k] = k / usual_rate;
 }
 
 }  // namespace drape

@@ -23,7 +23,7 @@ double seconds_since(Clock::time_point start) {
 // The force that pulls hardest at a particle: the term to look at when the solve itself names none.
 std::string strongest_term(const System& system, const State& state, int particle) {
   std::string strongest = "gravity";
-  double largest = system.masses()[static_cast<std::size_t>(particle)] * system.gravity_acceleration().norm();
+  double largest = system.masses()[particle] * system.gravity_acceleration().norm();
   for (const auto& force : system.forces()) {
     VecX f = VecX::Zero(state.x.size());
     force->add_force(state.x, state.v, f);

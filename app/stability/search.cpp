@@ -20,8 +20,7 @@ void shake(const Simulation& simulation, double speed, State& state) {
     for (int k = 0; k < 3; ++k) {
       const double random = static_cast<double>(engine()) / 2147483648.0 - 1;
       const bool held = std::binary_search(constraints.pinned().begin(), constraints.pinned().end(), i);
-      if (!held && simulation.system->masses()[static_cast<std::size_t>(i)] > 0)
-        state.v[3 * i + k] += speed * random;
+      if (!held && simulation.system->masses()[i] > 0) state.v[3 * i + k] += speed * random;
     }
 }
 

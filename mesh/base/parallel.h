@@ -55,9 +55,9 @@ auto sum_chunks(int n, const F& f) {
     const int here = std::min(max_partials, chunks - base);
     parallel_for(here, n < serial_below, [&](int k) {
       const int begin = (base + k) * chunk_size;
-      partial[static_cast<std::size_t>(k)] = f(begin, std::min(n, begin + chunk_size));
+      partial[k] = f(begin, std::min(n, begin + chunk_size));
     });
-    for (int k = 0; k < here; ++k) total += partial[static_cast<std::size_t>(k)];
+    for (int k = 0; k < here; ++k) total += partial[k];
   }
   return total;
 }
@@ -68,7 +68,7 @@ inline double dot_in_order(const double* a, const double* b, std::ptrdiff_t n) {
   std::array<double, 8> sum = {};
   std::ptrdiff_t i = 0;
   for (; i + 8 <= n; i += 8)
-    for (std::ptrdiff_t k = 0; k < 8; ++k) sum[static_cast<std::size_t>(k)] += a[i + k] * b[i + k];
+    for (std::ptrdiff_t k = 0; k < 8; ++k) sum[k] += a[i + k] * b[i + k];
   for (; i < n; ++i) sum[0] += a[i] * b[i];
   return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
 }

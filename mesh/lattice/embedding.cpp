@@ -21,8 +21,8 @@ void Embedding::add_vertex(const std::vector<Share>& shares) {
 }
 
 int Embedding::particle(int vertex) const {
-  const std::size_t begin = start_[static_cast<std::size_t>(vertex)];
-  const bool alone = start_[static_cast<std::size_t>(vertex) + 1] == begin + 1;
+  const std::size_t begin = start_[vertex];
+  const bool alone = start_[vertex + 1] == begin + 1;
   return alone ? shares_[begin].particle : -1;
 }
 
@@ -35,7 +35,7 @@ int Embedding::vertex(int particle) const {
 }
 
 void Embedding::renumber(const std::vector<int>& number) {
-  for (Share& share : shares_) share.particle = number[static_cast<std::size_t>(share.particle)];
+  for (Share& share : shares_) share.particle = number[share.particle];
 }
 
 std::vector<Vec3> Embedding::positions(const VecX& x) const {

@@ -29,8 +29,8 @@ class Embedding {
 
   int vertices() const { return static_cast<int>(start_.size()) - 1; }
   std::span<const Share> shares(int vertex) const {
-    const std::size_t begin = start_[static_cast<std::size_t>(vertex)];
-    return {shares_.data() + begin, start_[static_cast<std::size_t>(vertex) + 1] - begin};
+    const std::size_t begin = start_[vertex];
+    return {shares_.data() + begin, start_[vertex + 1] - begin};
   }
   // The particle that the vertex is, or -1 when the vertex lies between several particles.
   int particle(int vertex) const;

@@ -127,10 +127,7 @@ void fill_along_surface(Lattice& lattice, const TriangleMesh& surface) {
     std::array<Vec3, 3> t;
     Eigen::AlignedBox3d box;
     for (std::size_t k = 0; k < 3; ++k) {
-      t[k] =
-          surface
-              .positions[static_cast<std::size_t>(surface.triangles[static_cast<std::size_t>(counted)][k])] -
-          lattice.origin;
+      t[k] = surface.positions[surface.triangles[counted][k]] - lattice.origin;
       box.extend(t[k]);
     }
     Cell first, end;
@@ -161,8 +158,7 @@ void fill_inside(Lattice& lattice, const SurfaceDistance& surface) {
 void surround(Lattice& lattice, const TriangleMesh& surface, double spacing) {
   Eigen::AlignedBox3d box;
   for (int counted : counted_triangles(surface))
-    for (int v : surface.triangles[static_cast<std::size_t>(counted)])
-      box.extend(surface.positions[static_cast<std::size_t>(v)]);
+    for (int v : surface.triangles[counted]) box.extend(surface.positions[v]);
   lattice.spacing.setConstant(spacing);
   for (std::size_t a = 0; a < 3; ++a) {
     const auto k = static_cast<Eigen::Index>(a);
@@ -234,8 +230,7 @@ LatticeSize lattice_size(const TriangleMesh& surface, double spacing) {
   Lattice box;
   surround(box, surface, spacing);
   double area = 0, corner_count = 1;
-  for (int counted : counted_triangles(surface))
-    area += triangle_area(surface, surface.triangles[static_cast<std::size_t>(counted)]);
+  for (int counted : counted_triangles(surface)) area += triangle_area(surface, surface.triangles[counted]);
   for (int cells : box.cells) corner_count *= cells + 1.0;
   const double inside = solid_of(surface).volume / (spacing * spacing * spacing);
   return {std::min(corner_count, inside + 1.5 * area / (spacing * spacing)), corner_count};
@@ -268,7 +263,7 @@ TriangleMesh surface_of(const Lattice& lattice, std::vector<int>& particles) {
   });
   std::vector<int> vertex(lattice.positions.size(), -1);
   for (const Triangle& t : triangles)
-    for (int p : t) vertex[static_cast<std::size_t>(p)] = 0;
+    for (int p : t) vertex[p] = 0;
   TriangleMesh mesh;
   particles.clear();
   for (std::size_t p = 0; p < vertex.size(); ++p) {
@@ -278,7 +273,7 @@ TriangleMesh surface_of(const Lattice& lattice, std::vector<int>& particles) {
     mesh.positions.push_back(lattice.positions[p]);
   }
   for (Triangle& t : triangles)
-    for (int& p : t) p = vertex[static_cast<std::size_t>(p)];
+    for (int& p : t) p = vertex[p];
   mesh.triangles = std::move(triangles);
   return mesh;
 }

@@ -13,14 +13,13 @@ std::vector<Triangle> wound(TriangleMesh surface) {
   const std::vector<Face> anew = surface_faces(surface).faces;
   const std::vector<int> weld = welded(surface.positions);
   for (Triangle& t : surface.triangles)
-    for (int& v : t) v = weld[static_cast<std::size_t>(v)];
+    for (int& v : t) v = weld[v];
   const std::vector<Edge> all = edges(surface);
   const bool one_way =
       std::all_of(all.begin(), all.end(), [](const Edge& e) { return e.triangles == 2 && e.forward == 1; });
   std::vector<Triangle> triangles;
   if (one_way)
-    for (int t : counted_triangles(surface))
-      triangles.push_back(surface.triangles[static_cast<std::size_t>(t)]);
+    for (int t : counted_triangles(surface)) triangles.push_back(surface.triangles[t]);
   else
     for (const Face& face : anew) triangles.push_back(face.v);
   return triangles;
@@ -36,8 +35,7 @@ Solid solid_of(const TriangleMesh& surface) {
   Mat3 second = Mat3::Zero();  // integral of x x^T
   for (const Triangle& t : wound(surface)) {
     Mat3 corners;
-    for (int k = 0; k < 3; ++k)
-      corners.col(k) = surface.positions[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])] - middle;
+    for (int k = 0; k < 3; ++k) corners.col(k) = surface.positions[t[k]] - middle;
     const double det = corners.determinant();
     const Vec3 sum = corners.rowwise().sum();
     volume += det / 6;

@@ -112,8 +112,7 @@ std::vector<Index> VoxelGrid::places() const {
   for (Index b{}; b[0] < side(0); ++b[0])
     for (b[1] = 0; b[1] < side(1); ++b[1])
       for (b[2] = 0; b[2] < side(2); ++b[2])
-        if (const std::int32_t number = bricks[brick_slot(b)]; number != none)
-          all[static_cast<std::size_t>(number)] = b;
+        if (const std::int32_t number = bricks[brick_slot(b)]; number != none) all[number] = b;
   return all;
 }
 

@@ -133,7 +133,7 @@ void gather(const VoxelGrid& grid, const Index& b, Around& d) {
       brick = brick * 3 + (i[k] + n - 2) / n;
       node = node * n + (i[k] + n - 2) % n;
     }
-    d[slot] = bricks[static_cast<std::size_t>(brick)][node];
+    d[slot] = bricks[brick][node];
   });
 }
 
@@ -190,7 +190,7 @@ class SurfaceSampler {
     const double at = number() * up_to_.back();
     const auto t =
         std::min(std::upper_bound(up_to_.begin(), up_to_.end(), at), up_to_.end() - 1) - up_to_.begin();
-    const auto& [a, b, c] = mesh_.triangles[static_cast<std::size_t>(t)];
+    const auto& [a, b, c] = mesh_.triangles[t];
     double u = number(), v = number();
     if (u + v > 1) u = 1 - u, v = 1 - v;
     const Vec3& x = mesh_.positions[a];

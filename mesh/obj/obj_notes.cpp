@@ -59,7 +59,7 @@ std::vector<VertexGroup> Groups::collect(const ObjDocument& document, const std:
                                          int vertices) const {
   std::vector<std::vector<std::size_t>> spans_of(names_.size());
   for (std::size_t s = 0; s < spans_.size(); ++s)
-    for (const int group : spans_[s].groups) spans_of[static_cast<std::size_t>(group)].push_back(s);
+    for (const int group : spans_[s].groups) spans_of[group].push_back(s);
   std::map<std::string_view, std::vector<const Polyline*>> lines_of;
   for (const Polyline& line : lines) lines_of[line.name].push_back(&line);
   std::vector<VertexGroup> collected;
@@ -67,8 +67,8 @@ std::vector<VertexGroup> Groups::collect(const ObjDocument& document, const std:
   for (std::size_t group = 0; group < names_.size(); ++group) {
     std::vector<int> members;
     const auto add = [&](int v) {
-      if (last_group[static_cast<std::size_t>(v)] != group) members.push_back(v);
-      last_group[static_cast<std::size_t>(v)] = group;
+      if (last_group[v] != group) members.push_back(v);
+      last_group[v] = group;
     };
     for (const std::size_t s : spans_of[group]) {
       const std::size_t end_face = s + 1 < spans_.size() ? spans_[s + 1].first_face : document.face_count();

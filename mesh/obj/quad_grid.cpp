@@ -60,12 +60,8 @@ class GridSearch {
   }
 
  private:
-  int corner(int q, int k) const {
-    return grid_.quads[static_cast<std::size_t>(q)][static_cast<std::size_t>(k & 3)];
-  }
-  int across(int q, int side) const {
-    return across_[static_cast<std::size_t>(q)][static_cast<std::size_t>(side & 3)];
-  }
+  int corner(int q, int k) const { return grid_.quads[q][k & 3]; }
+  int across(int q, int side) const { return across_[q][side & 3]; }
   int place(int q, int vertex) const {  // of a vertex in a quad
     int k = 0;
     while (corner(q, k) != vertex) ++k;
@@ -89,8 +85,8 @@ class GridSearch {
                          " has " + std::to_string(last - first) + " quads, a grid has one or two");
       if (last - first < 2) continue;
       const Side& t = sides_[first + 1];
-      across_[static_cast<std::size_t>(s.quad)][static_cast<std::size_t>(s.number)] = t.quad;
-      across_[static_cast<std::size_t>(t.quad)][static_cast<std::size_t>(t.number)] = s.quad;
+      across_[s.quad][s.number] = t.quad;
+      across_[t.quad][t.number] = s.quad;
     }
   }
 
@@ -99,11 +95,11 @@ class GridSearch {
   void check_vertices(int vertices) const {
     std::vector<int> quads(static_cast<std::size_t>(vertices), 0), edges = quads;
     for (const Quad& quad : grid_.quads)
-      for (int v : quad) ++quads[static_cast<std::size_t>(v)];
+      for (int v : quad) ++quads[v];
     for (std::size_t k = 0; k < sides_.size(); ++k) {
       if (k > 0 && sides_[k].low == sides_[k - 1].low && sides_[k].high == sides_[k - 1].high) continue;
-      ++edges[static_cast<std::size_t>(sides_[k].low)];
-      ++edges[static_cast<std::size_t>(sides_[k].high)];
+      ++edges[sides_[k].low];
+      ++edges[sides_[k].high];
     }
     for (std::size_t v = 0; v < quads.size(); ++v) {
       const int q = quads[v], e = edges[v];

@@ -33,7 +33,7 @@ class Delaunay {
 
   const std::vector<Face>& faces() const { return faces_; }
   const std::vector<Vec2>& points() const { return points_; }
-  int face_at(int vertex) const { return face_at_[static_cast<std::size_t>(vertex)]; }
+  int face_at(int vertex) const { return face_at_[vertex]; }
 
   // Where x is, walking straight from the middle of a triangle: the triangle, or with `blocked` the first
   // piece's edge on the way. `on_edge`: x is on the edge opposite corner i.
@@ -63,9 +63,9 @@ class Delaunay {
     for (const bool clockwise : {true, false}) {
       for (int t = start; t >= 0;) {
         if (clockwise || t != start) f(t);
-        const Face& face = faces_[static_cast<std::size_t>(t)];
+        const Face& face = faces_[t];
         const int i = index_of(face, vertex);
-        t = face.next[static_cast<std::size_t>(clockwise ? before(i) : after(i))];
+        t = face.next[clockwise ? before(i) : after(i)];
         if (t == start) return;
       }  // at a corner of the box: what is on the other side of the start
     }
@@ -77,9 +77,9 @@ class Delaunay {
   }
 
  private:
-  Face& face(int t) { return faces_[static_cast<std::size_t>(t)]; }
-  const Face& face(int t) const { return faces_[static_cast<std::size_t>(t)]; }
-  const Vec2& at(int v) const { return points_[static_cast<std::size_t>(v)]; }
+  Face& face(int t) { return faces_[t]; }
+  const Face& face(int t) const { return faces_[t]; }
+  const Vec2& at(int v) const { return points_[v]; }
   int new_vertex(const Vec2& x);
   void join(int t, int i, int other, int piece);
   Corner across(Corner c) const;

@@ -62,21 +62,20 @@ std::vector<double> place_panels(TriangleMesh& mesh, const std::vector<PanelPlac
   for (std::size_t p = 0; p < panels.size(); ++p) {
     const PanelPlace& panel = panels[p];
     const std::vector<int>& vertices = group_of(mesh, panel);
-    Vec3 lower = mesh.positions[static_cast<std::size_t>(vertices.front())], upper = lower;
+    Vec3 lower = mesh.positions[vertices.front()], upper = lower;
     for (int v : vertices) {
-      int& other = panel_of[static_cast<std::size_t>(v)];
+      int& other = panel_of[v];
       if (other >= 0)
         throw InputError(at(panel.where, "panel") + "group = \"" + one_line(panel.group) + "\": vertex " +
-                         std::to_string(v) + " is in panel '" +
-                         one_line(panels[static_cast<std::size_t>(other)].group) +
+                         std::to_string(v) + " is in panel '" + one_line(panels[other].group) +
                          "', too; panels that share vertices cannot be placed apart");
       other = static_cast<int>(p);
-      const Vec3& x = mesh.positions[static_cast<std::size_t>(v)];
+      const Vec3& x = mesh.positions[v];
       lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
     }
     const Vec3 middle = 0.5 * (lower + upper);
     for (int v : vertices) {
-      Vec3& x = mesh.positions[static_cast<std::size_t>(v)];
+      Vec3& x = mesh.positions[v];
       x -= middle;
       if (panel.wrap) x = wrapped(x, *panel.wrap);
       x = panel.rotation * x + panel.translate;

@@ -20,7 +20,7 @@ inline Eigen::AlignedBox3d box_of(const std::vector<Vec3>& positions,
                                   const std::vector<Triangle>& triangles) {
   Eigen::AlignedBox3d box;
   for (const Triangle& t : triangles)
-    for (const int v : t) box.extend(positions[static_cast<std::size_t>(v)]);
+    for (const int v : t) box.extend(positions[v]);
   return box;
 }
 

@@ -189,7 +189,7 @@ TriangleMesh turned(const Outline& outline, int around) {
   const int rings = static_cast<int>(outline.size()) - 2;
   TriangleMesh mesh;
   for (int ring = 0; ring < rings; ++ring) {
-    const Eigen::Vector2d& point = outline[static_cast<std::size_t>(ring) + 1];
+    const Eigen::Vector2d& point = outline[ring + 1];
     require(point[0] > 0, "an outline meets the axis at its ends only");
     for (int i = 0; i < around; ++i) {
       const double angle = kTurn * i / around;

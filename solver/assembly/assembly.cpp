@@ -61,8 +61,7 @@ void place(const Pose& pose, const std::string& name, std::vector<Vec3>& positio
 void add_edges(const std::vector<LatticePair>& pairs, const std::vector<Vec3>& positions, Cloth& cloth) {
   for (const LatticePair& p : pairs)
     cloth.edges.push_back(
-        {cloth.first_particle + p.i, cloth.first_particle + p.j,
-         (positions[static_cast<std::size_t>(p.i)] - positions[static_cast<std::size_t>(p.j)]).norm()});
+        {cloth.first_particle + p.i, cloth.first_particle + p.j, (positions[p.i] - positions[p.j]).norm()});
 }
 
 }  // namespace
@@ -143,7 +142,7 @@ Cloth& Assembly::add(SoftPart part) {
   const double stiffness =
       cloth.material.young ? *cloth.material.young * lattice.spacing[0] : cloth.material.structural;
   for (const Triangle& t : surface.triangles) {
-    const auto particle = [&](std::size_t k) { return first + on_surface[static_cast<std::size_t>(t[k])]; };
+    const auto particle = [&](std::size_t k) { return first + on_surface[t[k]]; };
     faces_.push_back({{particle(0), particle(1), particle(2)}, stiffness});
   }
   return take(std::move(cloth), positions, masses);

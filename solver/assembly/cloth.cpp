@@ -7,13 +7,13 @@ namespace drape {
 void Cloth::renumber(const std::vector<int>& number) {
   embedding.renumber(number);
   for (RestEdge& e : edges) {
-    e.i = number[static_cast<std::size_t>(e.i)];
-    e.j = number[static_cast<std::size_t>(e.j)];
+    e.i = number[e.i];
+    e.j = number[e.j];
   }
-  int low = number[static_cast<std::size_t>(first_particle)], high = low;
+  int low = number[first_particle], high = low;
   for (int i = first_particle; i < end_particle; ++i) {
-    low = std::min(low, number[static_cast<std::size_t>(i)]);
-    high = std::max(high, number[static_cast<std::size_t>(i)]);
+    low = std::min(low, number[i]);
+    high = std::max(high, number[i]);
   }
   first_particle = low;
   end_particle = high + 1;

@@ -13,19 +13,19 @@ State Assembly::merged_state(const std::vector<double>& masses, const std::vecto
   const auto count = static_cast<Eigen::Index>(masses.size());
   State merged{state.time, VecX::Zero(3 * count), VecX::Zero(3 * count)};
   std::vector<int> parts(masses.size(), 0), pinned(masses.size(), -1);
-  for (int n : number) ++parts[static_cast<std::size_t>(n)];
+  for (int n : number) ++parts[n];
   for (int i : constraints->pinned()) {
-    int& first = pinned[static_cast<std::size_t>(number[static_cast<std::size_t>(i)])];
+    int& first = pinned[number[i]];
     if (first < 0) first = i;
   }
   for (int i = 0; i < state.particles(); ++i) {
-    const int to = number[static_cast<std::size_t>(i)];
+    const int to = number[i];
     const auto n = static_cast<std::size_t>(to);
     double share = 1;
     if (pinned[n] >= 0)
       share = pinned[n] == i ? 1 : 0;
     else if (parts[n] > 1)
-      share = masses[n] > 0 ? system->masses()[static_cast<std::size_t>(i)] / masses[n] : 1.0 / parts[n];
+      share = masses[n] > 0 ? system->masses()[i] / masses[n] : 1.0 / parts[n];
     merged.x.segment<3>(3 * to) += share * state.x.segment<3>(3 * i);
     merged.v.segment<3>(3 * to) += share * state.v.segment<3>(3 * i);
   }
@@ -49,8 +49,7 @@ bool Assembly::merge_closed_seams() {
   if (!any) return false;
   std::vector<double> masses(1 + static_cast<std::size_t>(*std::max_element(number.begin(), number.end())),
                              0.0);
-  for (std::size_t i = 0; i < number.size(); ++i)
-    masses[static_cast<std::size_t>(number[i])] += system->masses()[i];
+  for (std::size_t i = 0; i < number.size(); ++i) masses[number[i]] += system->masses()[i];
   State fewer = merged_state(masses, number);
   outgrown.push_back(std::exchange(state, std::move(fewer)));
   constraints->merge(number);

@@ -14,14 +14,14 @@ namespace {
 
 using SeamForce = PairForce<SeamSpring>;
 
-const Vec3& at(const std::vector<Vec3>& positions, int v) { return positions[static_cast<std::size_t>(v)]; }
+const Vec3& at(const std::vector<Vec3>& positions, int v) { return positions[v]; }
 
 // Where the vertices rest; one that lies in several panels has one of its places.
 std::vector<Vec3> rest_places(const TriangleMesh& mesh, const TriangleMesh& rest) {
   std::vector<Vec3> places = mesh.positions;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
-      places[static_cast<std::size_t>(mesh.triangles[t][k])] = at(rest.positions, rest.triangles[t][k]);
+      places[mesh.triangles[t][k]] = at(rest.positions, rest.triangles[t][k]);
   return places;
 }
 
@@ -125,23 +125,20 @@ std::vector<int> merged(const std::vector<int>& number, const std::vector<const 
   std::vector<int> lower(number.size());  // union-find among the numbers, towards the lowest
   std::iota(lower.begin(), lower.end(), 0);
   const auto root = [&](int i) {
-    while (lower[static_cast<std::size_t>(i)] != i) i = lower[static_cast<std::size_t>(i)];
+    while (lower[i] != i) i = lower[i];
     return i;
   };
-  const auto root_of = [&](int vertex) {
-    return root(number[static_cast<std::size_t>(embedding.particle(vertex))]);
-  };
+  const auto root_of = [&](int vertex) { return root(number[embedding.particle(vertex)]); };
   for (const OpenSeam* seam : seams)
     for (const auto& [a, b] : seam->pairs) {
       const auto [low, high] = std::minmax({root_of(a), root_of(b)});
-      lower[static_cast<std::size_t>(high)] = low;
+      lower[high] = low;
     }
   const int before = number.empty() ? 0 : 1 + *std::max_element(number.begin(), number.end());
   std::vector<int> again(lower.size()), result = number;
   int count = 0;
-  for (int i = 0; i < before; ++i)
-    again[static_cast<std::size_t>(i)] = root(i) == i ? count++ : again[static_cast<std::size_t>(root(i))];
-  for (int& n : result) n = again[static_cast<std::size_t>(n)];
+  for (int i = 0; i < before; ++i) again[i] = root(i) == i ? count++ : again[root(i)];
+  for (int& n : result) n = again[n];
   return result;
 }
 

@@ -17,7 +17,7 @@ std::vector<Vec3> rest_positions(const TriangleMesh& mesh, const TriangleMesh& r
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
       const auto v = static_cast<std::size_t>(mesh.triangles[t][k]);
-      const Vec3& here = rest.positions[static_cast<std::size_t>(rest.triangles[t][k])];
+      const Vec3& here = rest.positions[rest.triangles[t][k]];
       if (known[v] && (positions[v] - here).norm() > 1e-9 * (1 + here.norm()))
         throw InputError("vertex " + std::to_string(v) +
                          " has several places in the rest shape; choi-ko needs a grid in one piece");
@@ -41,17 +41,15 @@ class RestGrid {
           {0.5 * (length(q[0], q[1]) + length(q[2], q[3])), 0.5 * (length(q[1], q[2]) + length(q[3], q[0]))});
   }
 
-  double length(int i, int j) const {
-    return (x_[static_cast<std::size_t>(i)] - x_[static_cast<std::size_t>(j)]).norm();
-  }
+  double length(int i, int j) const { return (x_[i] - x_[j]).norm(); }
   double area(const QuadGrid::Quad& q) const {  // of its two triangles, m^2
-    const auto at = [&](int k) { return x_[static_cast<std::size_t>(q[static_cast<std::size_t>(k)])]; };
+    const auto at = [&](int k) { return x_[q[k]]; };
     return 0.5 * ((at(1) - at(0)).cross(at(2) - at(0)).norm() + (at(2) - at(0)).cross(at(3) - at(0)).norm());
   }
-  const Cell& cell(int quad) const { return cells_[static_cast<std::size_t>(quad)]; }
+  const Cell& cell(int quad) const { return cells_[quad]; }
   // The cell's extent along its side i j, and across it.
   Cell along(int quad, int i, int j) const {
-    const QuadGrid::Quad& q = grid.quads[static_cast<std::size_t>(quad)];
+    const QuadGrid::Quad& q = grid.quads[quad];
     const auto is_side = [&](std::size_t s) {
       return std::minmax(q[s], q[(s + 1) % 4]) == std::minmax(i, j);
     };
@@ -131,7 +129,7 @@ std::vector<double> choi_ko_mass(const TriangleMesh& mesh, const TriangleMesh& r
   const RestGrid grid(mesh, rest);
   std::vector<double> areas(mesh.positions.size(), 0.0);
   for (const QuadGrid::Quad& q : grid.grid.quads)
-    for (int v : q) areas[static_cast<std::size_t>(v)] += 0.25 * grid.area(q);
+    for (int v : q) areas[v] += 0.25 * grid.area(q);
   return mass_of_areas(std::move(areas), mesh, area_density);
 }
 

@@ -17,7 +17,7 @@ class ChunkSchedule {
     start_.assign(static_cast<std::size_t>(pattern.chunks()) + 1, count);
     int chunk = -1;
     for (int e = 0; e < count; ++e)
-      while (chunk < first_row(e) / pattern.chunk_rows()) start_[static_cast<std::size_t>(++chunk)] = e;
+      while (chunk < first_row(e) / pattern.chunk_rows()) start_[++chunk] = e;
     start_[0] = 0;
     for (std::size_t k = start_.size() - 1; k-- > 0;) start_[k] = std::min(start_[k], start_[k + 1]);
     serial_ = pattern.rows() < serial_below;

@@ -50,8 +50,8 @@ std::vector<double> neighbour_weighted(std::vector<double> masses, const Connect
   connected.erase(std::unique(connected.begin(), connected.end()), connected.end());
   std::vector<int> neighbours(masses.size(), 0);
   for (const auto& [i, j] : connected) {
-    ++neighbours[static_cast<std::size_t>(i)];
-    ++neighbours[static_cast<std::size_t>(j)];
+    ++neighbours[i];
+    ++neighbours[j];
   }
   const int most = neighbours.empty() ? 0 : *std::max_element(neighbours.begin(), neighbours.end());
   for (std::size_t i = 0; i < masses.size(); ++i)

@@ -25,7 +25,7 @@ void check(const Fabric& f) {
 std::vector<double> mass_of_areas(std::vector<double> areas, const TriangleMesh& mesh, double area_density) {
   std::vector<char> used(areas.size(), 0);
   for (const Triangle& t : mesh.triangles)
-    for (int i : t) used[static_cast<std::size_t>(i)] = 1;
+    for (int i : t) used[i] = 1;
   double total = 0;
   int count = 0;
   for (std::size_t i = 0; i < areas.size(); ++i) {

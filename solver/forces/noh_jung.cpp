@@ -19,10 +19,8 @@ struct RestSide {
   int count = 1;  // triangles
 };
 
-const Triangle& at(const std::vector<Triangle>& triangles, int k) {
-  return triangles[static_cast<std::size_t>(k)];
-}
-const Vec3& at(const std::vector<Vec3>& positions, int k) { return positions[static_cast<std::size_t>(k)]; }
+const Triangle& at(const std::vector<Triangle>& triangles, int k) { return triangles[k]; }
+const Vec3& at(const std::vector<Vec3>& positions, int k) { return positions[k]; }
 
 // The sides of all edges, sorted, those of one edge and of one length together.
 std::vector<RestSide> rest_sides(const TriangleMesh& mesh, const TriangleMesh& rest) {

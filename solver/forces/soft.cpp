@@ -17,9 +17,7 @@ void add_springs(const Lattice& lattice, const std::vector<LatticePair>& pairs, 
                  int first, Springs& springs) {
   if (k == 0) return;
   for (const LatticePair& pair : pairs) {
-    const double L = (lattice.positions[static_cast<std::size_t>(pair.i)] -
-                      lattice.positions[static_cast<std::size_t>(pair.j)])
-                         .norm();
+    const double L = (lattice.positions[pair.i] - lattice.positions[pair.j]).norm();
     springs.push_back({first + pair.i, first + pair.j, {L, by_cells ? k * pair.cells : k}});
   }
 }

@@ -91,7 +91,7 @@ class StencilForce : public Force {
   bool begin_step(const StepStart& start) override { return find_ && find_(start, elements_); }
 
   void bind(const BlockLayout& layout) override {
-    const auto row = [&](int i) { return layout.base.row_of()[static_cast<std::size_t>(i)]; };
+    const auto row = [&](int i) { return layout.base.row_of()[i]; };
     const auto rows = [&](const Element& e) {
       auto sorted = e.particles;
       for (int& i : sorted) i = row(i);
@@ -102,7 +102,7 @@ class StencilForce : public Force {
       std::stable_sort(elements_.begin(), elements_.end(),
                        [&](const Element& a, const Element& b) { return rows(a) < rows(b); });
       schedule_.bind(layout.base, static_cast<int>(elements_.size()),
-                     [&](int e) { return rows(elements_[static_cast<std::size_t>(e)])[0]; });
+                     [&](int e) { return rows(elements_[e])[0]; });
     }
     for (Element& e : elements_) {
       auto slot = e.slots.begin();
@@ -193,21 +193,20 @@ class StencilForce : public Force {
 
   template <class F>
   void run(const F& f) const {
-    schedule_.run(static_cast<int>(elements_.size()),
-                  [&](int e) { f(elements_[static_cast<std::size_t>(e)]); });
+    schedule_.run(static_cast<int>(elements_.size()), [&](int e) { f(elements_[e]); });
   }
   template <class F>
   double sum(const F& f) const {
     return sum_chunks(static_cast<int>(elements_.size()), [&](int begin, int end) {
       double total = 0;
-      for (int e = begin; e < end; ++e) total += f(elements_[static_cast<std::size_t>(e)]);
+      for (int e = begin; e < end; ++e) total += f(elements_[e]);
       return total;
     });
   }
 
   static Points<n> points(const Element& e, const VecX& all) {
     Points<n> X;
-    for (int k = 0; k < n; ++k) X.col(k) = all.segment<3>(3 * e.particles[static_cast<std::size_t>(k)]);
+    for (int k = 0; k < n; ++k) X.col(k) = all.segment<3>(3 * e.particles[k]);
     return X;
   }
   static Eigen::Map<Eigen::Matrix<double, 3 * n, 1>> flat(Points<n>& X) {
@@ -229,7 +228,7 @@ class StencilForce : public Force {
     for (std::size_t k = 0; k < e.particles.size(); ++k) f.segment<3>(3 * e.particles[k]) -= w[k] * pull;
   }
   static void subtract(const Element& e, const Points<n>& pull, VecX& f) {
-    for (int k = 0; k < n; ++k) f.segment<3>(3 * e.particles[static_cast<std::size_t>(k)]) -= pull.col(k);
+    for (int k = 0; k < n; ++k) f.segment<3>(3 * e.particles[k]) -= pull.col(k);
   }
 
   static void add_blocks(const Element& e, const Mat3& block, BlockMatrix& A) {

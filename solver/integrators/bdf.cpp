@@ -60,7 +60,7 @@ class Bdf::ContactSolve {
 
   ContactTrial trial() {
     const auto& scale = bdf_.k().scale;
-    const auto unscale = [&](int i) { bdf_.r_.segment<3>(3 * i) /= scale[static_cast<std::size_t>(i)]; };
+    const auto unscale = [&](int i) { bdf_.r_.segment<3>(3 * i) /= scale[i]; };
     bdf_.A_.reaction(bdf_.r_);
     for (const Contact& c : contacts_.touching()) unscale(c.particle);
     for (const MovingPin& p : contacts_.moving_pins()) unscale(p.particle);
@@ -179,8 +179,8 @@ double Bdf::residual_wanted() const {
 const std::vector<ContactFriction>& Bdf::friction(ContactStep& contacts) {
   friction_ = contacts.friction();
   for (ContactFriction& f : friction_) {
-    f.damping *= k().scale[static_cast<std::size_t>(f.particle)];
-    f.impulse *= k().scale[static_cast<std::size_t>(f.particle)];
+    f.damping *= k().scale[f.particle];
+    f.impulse *= k().scale[f.particle];
   }
   return friction_;
 }

@@ -28,14 +28,13 @@ void HeldMotion::acceleration(const VecX& x, const VecX& v, VecX& a) {
   const std::vector<double>& mass = system_.masses();
   for_chunks(system_.particles(), [&](int begin, int end) {
     for (int i = begin; i < end; ++i)  // what has no mass is held anyway
-      a.segment<3>(3 * i) = a.segment<3>(3 * i) / std::max(mass[static_cast<std::size_t>(i)], 1e-300) +
-                            system_.gravity_acceleration();
+      a.segment<3>(3 * i) = a.segment<3>(3 * i) / std::max(mass[i], 1e-300) + system_.gravity_acceleration();
   });
   power_ = 0;
   for (const FilterEntry& e : held_.entries()) {
     const Vec3 whole = a.segment<3>(3 * e.particle);
     const Vec3 kept = e.S.isZero(0) ? Vec3(Vec3::Zero()) : Vec3(e.S * whole);
-    pull_.segment<3>(3 * e.particle) = mass[static_cast<std::size_t>(e.particle)] * (kept - whole);
+    pull_.segment<3>(3 * e.particle) = mass[e.particle] * (kept - whole);
     power_ += v.segment<3>(3 * e.particle).dot(pull_.segment<3>(3 * e.particle));
     a.segment<3>(3 * e.particle) = kept;
   }
@@ -113,7 +112,7 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
 void HeldMotion::set_free(const VecX& v) {
   v_free_ = v;
   for (const FilterEntry& e : held_.entries())
-    if (const double mass = system_.masses()[static_cast<std::size_t>(e.particle)]; mass > 0)
+    if (const double mass = system_.masses()[e.particle]; mass > 0)
       v_free_.segment<3>(3 * e.particle) -= pulled_.segment<3>(3 * e.particle) / mass + e.z;
 }
 
@@ -130,7 +129,7 @@ void HeldMotion::let_go(const VecX& x, const VecX& v) {
     if (c.active()) {
       const Mat3 Q = c.locked_directions();
       back -= Q * (Q.transpose() * back);
-      const double most = c.friction_impulse.norm() / system_.masses()[static_cast<std::size_t>(c.particle)];
+      const double most = c.friction_impulse.norm() / system_.masses()[c.particle];
       back *= back.norm() > most ? 1 - most / back.norm() : 0;
     }
     x_new_.segment<3>(3 * c.particle) = x.segment<3>(3 * c.particle);
@@ -150,7 +149,7 @@ void HeldMotion::move_within_constraints(const State& state, const VecX& x, doub
   x_new_ = x;
   v_new_ = v_free_;
   r_.setZero(x.size());
-  const auto mass = [&](int i) { return system_.masses()[static_cast<std::size_t>(i)]; };
+  const auto mass = [&](int i) { return system_.masses()[i]; };
   const auto& friction = contacts_->friction();
   for (const ContactFriction& f : friction) {
     const Mat3 A = mass(f.particle) * Mat3::Identity() + h * f.damping;

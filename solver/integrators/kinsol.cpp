@@ -150,8 +150,7 @@ bool NewtonKinsol::attempt(State& state, const Piece& piece) {
   scale_ = 0;
   const VecX f = system_.force(state.x, state.v);
   for (int i = 0; i < system_.particles(); ++i)  // an impulse that is known to act
-    scale_ +=
-        std::pow(system_.masses()[static_cast<std::size_t>(i)] * system_.gravity_acceleration().norm(), 2);
+    scale_ += std::pow(system_.masses()[i] * system_.gravity_acceleration().norm(), 2);
   scale_ = h * std::max({std::sqrt(scale_), 1e-3 * std::sqrt(dot(f, f)), 1e-12});
   f_scale_.setConstant(1 / scale_);
   {
@@ -237,7 +236,7 @@ double NewtonKinsol::potential(const VecX& v) {
     double sum = 0;
     for (int i = begin; i < end; ++i)
       sum +=
-          0.5 * system_.masses()[static_cast<std::size_t>(i)] *
+          0.5 * system_.masses()[i] *
           (v.segment<3>(3 * i) - v_n_.segment<3>(3 * i) - h_ * system_.gravity_acceleration()).squaredNorm();
     return sum;
   });
@@ -251,10 +250,9 @@ void NewtonKinsol::equation(const VecX& v) {
   for (const auto& force : system_.forces()) force->add_force(x_, v, F_);
   for_chunks(system_.particles(), [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
-      F_.segment<3>(3 * i) =
-          system_.masses()[static_cast<std::size_t>(i)] *
-              (v.segment<3>(3 * i) - v_n_.segment<3>(3 * i) - h_ * system_.gravity_acceleration()) -
-          h_ * F_.segment<3>(3 * i);
+      F_.segment<3>(3 * i) = system_.masses()[i] * (v.segment<3>(3 * i) - v_n_.segment<3>(3 * i) -
+                                                    h_ * system_.gravity_acceleration()) -
+                             h_ * F_.segment<3>(3 * i);
   });
   for (const ContactFriction& f : friction_)
     F_.segment<3>(3 * f.particle) +=

@@ -15,7 +15,7 @@ RoundOff round_off(const BlockMatrix& A, const VecX& x, const VecX& v, double c)
   const Sums all = sum_chunks(A.rows(), [&](int begin, int end) {
     Sums sums;
     for (int i = begin; i < end; ++i) {
-      const int row = A.pattern().row_of()[static_cast<std::size_t>(i)];
+      const int row = A.pattern().row_of()[i];
       const double a = A.at(A.pattern().diagonal(row)).norm();
       const double e = eps * (x.segment<3>(3 * i).norm() / c + v.segment<3>(3 * i).norm());
       sums += {a * e * e, a * e * a * e};

@@ -42,7 +42,7 @@ class NewtonMatrix {
   std::string stiffest_force(int particle, const Linearisation& at);
 
  private:
-  int row(int particle) const { return A_->pattern().row_of()[static_cast<std::size_t>(particle)]; }
+  int row(int particle) const { return A_->pattern().row_of()[particle]; }
 
   System& system_;
   std::unique_ptr<LinearSolver> solver_;

@@ -54,7 +54,7 @@ void StepHistory::update(const System& system, const State& state, const Contact
     k_.v_bar += k_.back * (state.v - begin_.v);
     for (int i = 0; i < state.particles(); ++i) {
       if (!restarts(i)) continue;
-      k_.mass[static_cast<std::size_t>(i)] *= k_.scale[static_cast<std::size_t>(i)];
+      k_.mass[i] *= k_.scale[i];
       k_.v_bar.segment<3>(3 * i) = state.v.segment<3>(3 * i);
       k_.x_bar.segment<3>(3 * i) = state.x.segment<3>(3 * i) + (k_.h - k_.c) * state.v.segment<3>(3 * i);
     }
@@ -76,11 +76,11 @@ void StepHistory::remember(const State& state, const Point& end, const ContactSt
 }
 
 void StepHistory::mark_touching(const ContactStep& contacts) {
-  for (const Contact& c : contacts.touching()) touched_[static_cast<std::size_t>(c.particle)] = 1;
-  for (const MovingPin& p : contacts.moving_pins()) touched_[static_cast<std::size_t>(p.particle)] = 1;
+  for (const Contact& c : contacts.touching()) touched_[c.particle] = 1;
+  for (const MovingPin& p : contacts.moving_pins()) touched_[p.particle] = 1;
   for (const FaceContact& c : contacts.touching_faces())
     if (c.active)
-      for (int i : c.particles) touched_[static_cast<std::size_t>(i)] = 1;
+      for (int i : c.particles) touched_[i] = 1;
 }
 
 }  // namespace drape

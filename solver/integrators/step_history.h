@@ -60,7 +60,7 @@ class StepHistory {
 
  private:
   void mark_touching(const ContactStep& contacts);
-  bool restarts(int particle) const { return touched_[static_cast<std::size_t>(particle)] != 0; }
+  bool restarts(int particle) const { return touched_[particle] != 0; }
 
   int order_;
   StepCoefficients k_;

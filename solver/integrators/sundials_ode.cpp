@@ -275,7 +275,7 @@ int SundialsOde::solve_linear(N_Vector d, N_Vector r) {
     for (const auto& force : system_.forces()) force->add_force(x_, v_, f_);
     b_ -= g * f_;
     for (int i = 0; i < system_.particles(); ++i)
-      b_.segment<3>(3 * i) += system_.masses()[static_cast<std::size_t>(i)] * dv_.segment<3>(3 * i);
+      b_.segment<3>(3 * i) += system_.masses()[i] * dv_.segment<3>(3 * i);
   }
   const Stopwatch watch(report_.solve_ms);
   Filter filter;  // what is locked has dv = rv

@@ -22,13 +22,10 @@ class Strength {
   Strength(const Smoother& A, double theta) : least_(static_cast<std::size_t>(A.rows())) {
     for_chunks(A.rows(), [&](int begin, int end) {
       for (int i = begin; i < end; ++i)
-        least_[static_cast<std::size_t>(i)] =
-            static_cast<float>(theta * std::sqrt(static_cast<double>(squared_norm(A.diagonal(i)))));
+        least_[i] = static_cast<float>(theta * std::sqrt(static_cast<double>(squared_norm(A.diagonal(i)))));
     });
   }
-  bool operator()(int i, int j, float size) const {
-    return size > least_[static_cast<std::size_t>(i)] * least_[static_cast<std::size_t>(j)];
-  }
+  bool operator()(int i, int j, float size) const { return size > least_[i] * least_[j]; }
 
  private:
   std::vector<float> least_;  // theta |A_ii|
@@ -41,38 +38,38 @@ int aggregate(const Graph& strong, std::vector<int>& of) {
   const auto each_strong = [&](int i, const auto& f) {
     const Graph::Row row = strong[i];
     for (int k = 0; k < row.count; ++k)
-      if (int& other = of[static_cast<std::size_t>(row.column[k])]; other != alone) f(other, k);
+      if (int& other = of[row.column[k]]; other != alone) f(other, k);
   };
   // What is coupled to nothing strongly is solved by the smoother alone.
   for (int i = 0; i < n; ++i)
-    if (strong[i].count == 0) of[static_cast<std::size_t>(i)] = alone;
+    if (strong[i].count == 0) of[i] = alone;
   // A vertex none of whose neighbours is taken begins an aggregate with all of them.
   for (int i = 0; i < n; ++i) {
-    if (of[static_cast<std::size_t>(i)] != none) continue;
+    if (of[i] != none) continue;
     bool untouched = true;
     each_strong(i, [&](int& other, int) { untouched = untouched && other == none; });
     if (!untouched) continue;
-    of[static_cast<std::size_t>(i)] = count;
+    of[i] = count;
     each_strong(i, [&](int& other, int) { other = count; });
     ++count;
   }
   // The others join the aggregate they are coupled to most strongly.
   const std::vector<int> before = of;
   for (int i = 0; i < n; ++i) {
-    if (of[static_cast<std::size_t>(i)] != none) continue;
+    if (of[i] != none) continue;
     float most = 0;
     const Graph::Row row = strong[i];
     for (int k = 0; k < row.count; ++k) {
-      const int other = before[static_cast<std::size_t>(row.column[k])];
+      const int other = before[row.column[k]];
       if (other < 0 || *row[k] <= most) continue;
       most = *row[k];
-      of[static_cast<std::size_t>(i)] = other;
+      of[i] = other;
     }
   }
   // What is left forms aggregates with its own kind.
   for (int i = 0; i < n; ++i) {
-    if (of[static_cast<std::size_t>(i)] != none) continue;
-    of[static_cast<std::size_t>(i)] = count;
+    if (of[i] != none) continue;
+    of[i] = count;
     each_strong(i, [&](int& other, int) {
       if (other == none) other = count;
     });
@@ -105,13 +102,13 @@ int smoothed_aggregation(const Smoother& A, double theta, const ProjectedBlocks*
     RowSum sum(aggregates);
     BlockRows::Chunk& chunk = P.open(begin, 4 * chunk_size);
     for (int i = begin; i < end; ++i) {
-      const int own = of[static_cast<std::size_t>(i)];
+      const int own = of[i];
       if (own >= 0) {
         sum.at(own);
         WideBlock D;  // the diagonal block of A_F
         D.add(A.diagonal(i));
         A.each_other(i, [&](int j, const float* block) {
-          const int other = of[static_cast<std::size_t>(j)];
+          const int other = of[j];
           if (!strongly(i, j, squared_norm(block))) {
             D.add(block);
           } else if (other >= 0) {

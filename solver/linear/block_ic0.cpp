@@ -41,13 +41,13 @@ class BlockIc0 final : public Preconditioner {
     for (int i = 0; i < rows; ++i) {  // L y = r, column by column; y <- D^-1 y as soon as it stands
       const Vec3f yi = y_.segment<3>(3 * i);
       for (int k = first(start, i) + 1; k < first(start, i + 1); ++k)
-        y_.segment<3>(3 * column[static_cast<std::size_t>(k)]).noalias() -= at(k).transpose() * yi;
+        y_.segment<3>(3 * column[k]).noalias() -= at(k).transpose() * yi;
       y_.segment<3>(3 * i).noalias() = at(first(start, i)) * yi;
     }
     for (int i = rows - 1; i >= 0; --i) {  // L^T s = y
       Vec3f sum = y_.segment<3>(3 * i);
       for (int k = first(start, i) + 1; k < first(start, i + 1); ++k)
-        sum.noalias() -= at(k) * y_.segment<3>(3 * column[static_cast<std::size_t>(k)]);
+        sum.noalias() -= at(k) * y_.segment<3>(3 * column[k]);
       y_.segment<3>(3 * i) = sum;
     }
     s = size * y_.cast<double>();
@@ -76,17 +76,16 @@ class BlockIc0 final : public Preconditioner {
     return true;
   }
 
-  static int first(const std::vector<int>& start, int row) { return start[static_cast<std::size_t>(row)]; }
-  const Mat3f& at(int slot) const { return lower_[static_cast<std::size_t>(slot)]; }
-  Mat3& value(int slot) { return values_[static_cast<std::size_t>(slot)]; }
+  static int first(const std::vector<int>& start, int row) { return start[row]; }
+  const Mat3f& at(int slot) const { return lower_[slot]; }
+  Mat3& value(int slot) { return values_[slot]; }
 
   // Leaves D_i^-1 on the diagonal and D_i^-1 A_ij beside it; false when a pivot is not positive.
   bool factorise(const BlockMatrix& A, const ProjectedBlocks& projected, double shift) {
     const std::vector<int>&start = pattern_->row_start(), &column = pattern_->column();
     values_.resize(static_cast<std::size_t>(pattern_->blocks()));
     for (int i = 0; i < A.rows(); ++i) {
-      for (int k = first(start, i); k < first(start, i + 1); ++k)
-        value(k) = projected.block(k, i, column[static_cast<std::size_t>(k)]);
+      for (int k = first(start, i); k < first(start, i + 1); ++k) value(k) = projected.block(k, i, column[k]);
       value(first(start, i)).diagonal() *= 1 + shift;
     }
     for (int i = 0; i < A.rows(); ++i) {
@@ -106,15 +105,15 @@ class BlockIc0 final : public Preconditioner {
 
   // Row j = column[k] of the matrix loses A_ij^T D_i^-1 A_il for every l >= j of row i: both rows ascend.
   void eliminate(const Mat3& inverse, int k, int end, const std::vector<int>& column) {
-    const int j = column[static_cast<std::size_t>(k)];
+    const int j = column[k];
     const Mat3 factor = value(k).transpose() * inverse;
     int slot = pattern_->diagonal(j);
     const int last = first(pattern_->row_start(), j + 1);
     for (int l = k; l < end; ++l) {
-      const int target = column[static_cast<std::size_t>(l)];
-      while (slot < last && column[static_cast<std::size_t>(slot)] < target) ++slot;
+      const int target = column[l];
+      while (slot < last && column[slot] < target) ++slot;
       if (slot == last) return;
-      if (column[static_cast<std::size_t>(slot)] == target) value(slot).noalias() -= factor * value(l);
+      if (column[slot] == target) value(slot).noalias() -= factor * value(l);
     }
   }
 

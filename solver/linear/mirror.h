@@ -14,14 +14,14 @@ struct Mirror {
   template <class Each>
   void build(int rows, int columns, const Each& each) {
     start.assign(static_cast<std::size_t>(columns) + 1, 0);
-    for (int r = 0; r < rows; ++r) each(r, [&](int c, int) { ++start[static_cast<std::size_t>(c) + 1]; });
+    for (int r = 0; r < rows; ++r) each(r, [&](int c, int) { ++start[c + 1]; });
     for (std::size_t c = 0; c < static_cast<std::size_t>(columns); ++c) start[c + 1] += start[c];
     row.resize(static_cast<std::size_t>(start.back()));
     place.resize(row.size());
     std::vector<int> next(start.begin(), start.end() - 1);
     for (int r = 0; r < rows; ++r)
       each(r, [&](int c, int p) {
-        const auto to = static_cast<std::size_t>(next[static_cast<std::size_t>(c)]++);
+        const auto to = static_cast<std::size_t>(next[c]++);
         row[to] = r;
         place[to] = p;
       });
@@ -29,9 +29,7 @@ struct Mirror {
 
   template <class F>  // f(row, place)
   void in_column(int column, const F& f) const {
-    for (int k = start[static_cast<std::size_t>(column)]; k < start[static_cast<std::size_t>(column) + 1];
-         ++k)
-      f(row[static_cast<std::size_t>(k)], place[static_cast<std::size_t>(k)]);
+    for (int k = start[column]; k < start[column + 1]; ++k) f(row[k], place[k]);
   }
 };
 

@@ -108,7 +108,7 @@ class Multigrid final : public Preconditioner {
     return factorise(last().smoother) || count_ > 1;
   }
 
-  Level& last() { return levels_[static_cast<std::size_t>(count_) - 1]; }
+  Level& last() { return levels_[count_ - 1]; }
   template <class Rows>
   void add_level(const Rows& A) {
     ++count_;
@@ -130,7 +130,7 @@ class Multigrid final : public Preconditioner {
   }
 
   void cycle(int depth, const VecX& r, VecX& x) {
-    Level& level = levels_[static_cast<std::size_t>(depth)];
+    Level& level = levels_[depth];
     if (depth + 1 == count_) {
       if (coarse_) {
         x = coarse_->solve(r);
@@ -140,7 +140,7 @@ class Multigrid final : public Preconditioner {
       }
       return;
     }
-    Level& below = levels_[static_cast<std::size_t>(depth) + 1];
+    Level& below = levels_[depth + 1];
     level.smoother.down(r, x, level.residual);
     for_chunks(below.smoother.rows(), [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {

@@ -137,8 +137,7 @@ class Petsc final : public LinearSolver {
     report.iterations = static_cast<int>(iterations);
     if (options.history) {
       KSPGetResidualHistory(ksp_, nullptr, &points);
-      for (PetscInt k = 0; k < points; ++k)
-        options.history->push_back(curve_[static_cast<std::size_t>(k)] / reference);
+      for (PetscInt k = 0; k < points; ++k) options.history->push_back(curve_[k] / reference);
     }
     if (error != 0 || reason == KSP_DIVERGED_INDEFINITE_MAT || reason == KSP_DIVERGED_INDEFINITE_PC ||
         reason == KSP_DIVERGED_PC_FAILED)

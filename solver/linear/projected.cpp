@@ -33,10 +33,10 @@ void ProjectedSystem::project(const BlockMatrix& A, const VecX& b, const Filter&
 
   constrained_.assign(static_cast<std::size_t>(A.rows()), -1);
   for (std::size_t e = 0; e < filter.entries().size(); ++e)
-    constrained_[static_cast<std::size_t>(filter.entries()[e].particle)] = static_cast<int>(e);
+    constrained_[filter.entries()[e].particle] = static_cast<int>(e);
   const auto S_of = [&](int row) -> const FilterEntry* {
-    const int e = constrained_[static_cast<std::size_t>(row)];
-    return e < 0 ? nullptr : &filter.entries()[static_cast<std::size_t>(e)];
+    const int e = constrained_[row];
+    return e < 0 ? nullptr : &filter.entries()[e];
   };
   double* value = matrix_.valuePtr();
   for (int j = 0; j < A.rows(); ++j) {

@@ -15,10 +15,10 @@ class ProjectedBlocks {
   ProjectedBlocks(const BlockMatrix& A, const Filter& filter) : A_(A), filter_(filter) {
     entry_.assign(static_cast<std::size_t>(A.rows()), -1);
     for (std::size_t e = 0; e < filter.entries().size(); ++e)
-      entry_[static_cast<std::size_t>(filter.entries()[e].particle)] = static_cast<int>(e);
+      entry_[filter.entries()[e].particle] = static_cast<int>(e);
   }
 
-  bool free(int row) const { return entry_[static_cast<std::size_t>(row)] < 0; }
+  bool free(int row) const { return entry_[row] < 0; }
   Mat3 S(int row) const { return free(row) ? Mat3(Mat3::Identity()) : entry(row).S; }
   // Nothing of this row may move.
   bool locked(int row) const { return !free(row) && entry(row).S.isZero(0); }
@@ -34,9 +34,7 @@ class ProjectedBlocks {
   }
 
  private:
-  const FilterEntry& entry(int row) const {
-    return filter_.entries()[static_cast<std::size_t>(entry_[static_cast<std::size_t>(row)])];
-  }
+  const FilterEntry& entry(int row) const { return filter_.entries()[entry_[row]]; }
 
   const BlockMatrix& A_;
   const Filter& filter_;
@@ -47,8 +45,7 @@ class ProjectedBlocks {
 inline Mirror below_diagonal(const BlockPattern& pattern) {
   Mirror below;
   below.build(pattern.rows(), pattern.rows(), [&](int r, const auto& f) {
-    for (int s = pattern.diagonal(r) + 1; s < pattern.row_start()[static_cast<std::size_t>(r) + 1]; ++s)
-      f(pattern.column()[static_cast<std::size_t>(s)], s);
+    for (int s = pattern.diagonal(r) + 1; s < pattern.row_start()[r + 1]; ++s) f(pattern.column()[s], s);
   });
   return below;
 }
@@ -76,8 +73,8 @@ class ProjectedRows {
   template <class F>  // f(column, block), columns ascending
   void each(int row, const F& f) const {
     below_.in_column(row, [&](int c, int slot) { f(c, Mat3(projected_.block(slot, c, row).transpose())); });
-    for (int s = pattern_.diagonal(row); s < pattern_.row_start()[static_cast<std::size_t>(row) + 1]; ++s) {
-      const int c = pattern_.column()[static_cast<std::size_t>(s)];
+    for (int s = pattern_.diagonal(row); s < pattern_.row_start()[row + 1]; ++s) {
+      const int c = pattern_.column()[s];
       f(c, projected_.block(s, row, c));
     }
   }

@@ -34,13 +34,13 @@ class RowSum {
   explicit RowSum(int columns) : place_(static_cast<std::size_t>(columns), -1) {}
 
   WideBlock& at(int column) {
-    int& place = place_[static_cast<std::size_t>(column)];
+    int& place = place_[column];
     if (place < 0) {
       place = static_cast<int>(column_.size());
       column_.push_back(column);
       sum_.emplace_back();
     }
-    return sum_[static_cast<std::size_t>(place)];
+    return sum_[place];
   }
 
   // f(column, sum) in the order in which the columns came; then the row is empty again.
@@ -48,7 +48,7 @@ class RowSum {
   void take(const F& f) {
     for (std::size_t k = 0; k < column_.size(); ++k) {
       f(column_[k], sum_[k]);
-      place_[static_cast<std::size_t>(column_[k])] = -1;
+      place_[column_[k]] = -1;
     }
     column_.clear();
     sum_.clear();

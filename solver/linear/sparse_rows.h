@@ -43,7 +43,7 @@ class SparseRows {
     chunks_.resize(static_cast<std::size_t>(chunk_count(rows)));
   }
   Chunk& open(int first_row, std::size_t entries_expected) {
-    Chunk& chunk = chunks_[static_cast<std::size_t>(first_row / chunk_size)];
+    Chunk& chunk = chunks_[first_row / chunk_size];
     chunk.start_.assign(1, 0);
     chunk.column_.clear();
     chunk.value_.clear();
@@ -66,8 +66,8 @@ class SparseRows {
 
   int rows() const { return rows_; }
   Row operator[](int row) const {
-    const Chunk& chunk = chunks_[static_cast<std::size_t>(row / chunk_size)];
-    const int begin = chunk.start_[static_cast<std::size_t>(row % chunk_size)];
+    const Chunk& chunk = chunks_[row / chunk_size];
+    const int begin = chunk.start_[row % chunk_size];
     const int end = chunk.start_[static_cast<std::size_t>(row % chunk_size) + 1];
     return {end - begin, chunk.column_.data() + begin,
             chunk.value_.data() + width * static_cast<std::ptrdiff_t>(begin)};

@@ -33,12 +33,11 @@ void BlockMatrix::set_to_mass(const std::vector<double>& mass) {
   assembled_.clear();
   const std::vector<int>& start = pattern_->row_start();
   for_chunks(rows(), [&](int begin, int end) {
-    const auto first = 9 * static_cast<std::size_t>(start[static_cast<std::size_t>(begin)]);
-    const auto last = 9 * static_cast<std::size_t>(start[static_cast<std::size_t>(end)]);
+    const auto first = 9 * static_cast<std::size_t>(start[begin]);
+    const auto last = 9 * static_cast<std::size_t>(start[end]);
     std::memset(values_.data() + first, 0, (last - first) * sizeof(double));
     for (int r = begin; r < end; ++r)
-      at(pattern_->diagonal(r)).diagonal().array() =
-          mass[static_cast<std::size_t>(pattern_->particle_of()[static_cast<std::size_t>(r)])];
+      at(pattern_->diagonal(r)).diagonal().array() = mass[pattern_->particle_of()[r]];
   });
 }
 

@@ -62,8 +62,8 @@ class BlockMatrix {
 template <class F>
 void BlockMatrix::each(int row, const F& f) const {
   int s = pattern_->diagonal(row);
-  const int end = pattern_->row_start()[static_cast<std::size_t>(row) + 1];
-  const auto column = [&] { return pattern_->column()[static_cast<std::size_t>(s)]; };
+  const int end = pattern_->row_start()[row + 1];
+  const auto column = [&] { return pattern_->column()[s]; };
   overlay_->right_of_diagonal(row, [&](const BlockOverlay::Entry& e) {
     for (; s < end && column() < e.column; ++s) f(column(), s);
     f(e.column, e.slot);

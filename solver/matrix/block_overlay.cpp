@@ -15,8 +15,7 @@ bool same(const ParticlePair& a, const ParticlePair& b) { return a.i == b.i && a
 
 bool BlockOverlay::assign(const BlockPattern& pattern, std::vector<ParticlePair>& pairs) {
   for (ParticlePair& p : pairs) {
-    const auto [i, j] = std::minmax(pattern.row_of()[static_cast<std::size_t>(p.i)],
-                                    pattern.row_of()[static_cast<std::size_t>(p.j)]);
+    const auto [i, j] = std::minmax(pattern.row_of()[p.i], pattern.row_of()[p.j]);
     p = {i, j};
   }
   std::erase_if(pairs, [&](const ParticlePair& p) { return p.i == p.j || pattern.has(p.i, p.j); });
@@ -42,13 +41,13 @@ void BlockOverlay::clear() {
 void BlockOverlay::list_rows(int rows) {
   place_.assign(static_cast<std::size_t>(rows), 0);  // counts the entries of each row, then says where it is
   for (const ParticlePair& p : pairs_) {
-    ++place_[static_cast<std::size_t>(p.i)];
-    ++place_[static_cast<std::size_t>(p.j)];
+    ++place_[p.i];
+    ++place_[p.j];
   }
   rows_.clear();
   start_.assign(1, 0);
   for (int r = 0; r < rows; ++r) {
-    int& here = place_[static_cast<std::size_t>(r)];
+    int& here = place_[r];
     if (here == 0) {
       here = -1;
       continue;
@@ -61,8 +60,8 @@ void BlockOverlay::list_rows(int rows) {
   // Filled from the front; the starts are moved on meanwhile and moved back at the end. Pairs ascend, so the
   // columns left of the diagonal of a row come before those right of it, each ascending.
   const auto add = [&](int row, const Entry& entry) {
-    const auto k = static_cast<std::size_t>(place_[static_cast<std::size_t>(row)]);
-    entries_[static_cast<std::size_t>(start_[k]++)] = entry;
+    const auto k = static_cast<std::size_t>(place_[row]);
+    entries_[start_[k]++] = entry;
   };
   for (std::size_t p = 0; p < pairs_.size(); ++p)
     add(pairs_[p].j, {pairs_[p].i, first_slot_ + static_cast<int>(p), true});

@@ -35,17 +35,16 @@ class BlockOverlay {
 
   // The rows with blocks, ascending, and their entries, columns ascending.
   int row_count() const { return static_cast<int>(rows_.size()); }
-  int row(int k) const { return rows_[static_cast<std::size_t>(k)]; }
+  int row(int k) const { return rows_[k]; }
   template <class F>  // f(entry)
   void in_row(int k, const F& f) const {
-    for (int e = start_[static_cast<std::size_t>(k)]; e < start_[static_cast<std::size_t>(k) + 1]; ++e)
-      f(entries_[static_cast<std::size_t>(e)]);
+    for (int e = start_[k]; e < start_[k + 1]; ++e) f(entries_[e]);
   }
   // Of any row of the matrix: the entries right of the diagonal.
   template <class F>
   void right_of_diagonal(int row, const F& f) const {
     if (empty()) return;
-    if (const int k = place_[static_cast<std::size_t>(row)]; k >= 0)
+    if (const int k = place_[row]; k >= 0)
       in_row(k, [&](const Entry& e) {
         if (!e.transposed) f(e);
       });

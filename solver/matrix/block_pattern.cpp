@@ -10,35 +10,32 @@ namespace {
 // Neighbours of every particle: sorted, each once, without itself.
 struct Graph {
   std::vector<int> start, neighbour;
-  int degree(int i) const {
-    return start[static_cast<std::size_t>(i) + 1] - start[static_cast<std::size_t>(i)];
-  }
+  int degree(int i) const { return start[i + 1] - start[i]; }
 };
 
 Graph make_graph(int particles, const std::vector<ParticlePair>& pairs) {
   Graph g;
   g.start.assign(static_cast<std::size_t>(particles) + 1, 0);
   for (const ParticlePair& p : pairs) {
-    ++g.start[static_cast<std::size_t>(p.i) + 1];
-    ++g.start[static_cast<std::size_t>(p.j) + 1];
+    ++g.start[p.i + 1];
+    ++g.start[p.j + 1];
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(particles); ++i) g.start[i + 1] += g.start[i];
   g.neighbour.resize(2 * pairs.size());
   std::vector<int> next(g.start.begin(), g.start.end() - 1);
   for (const ParticlePair& p : pairs) {
-    g.neighbour[static_cast<std::size_t>(next[static_cast<std::size_t>(p.i)]++)] = p.j;
-    g.neighbour[static_cast<std::size_t>(next[static_cast<std::size_t>(p.j)]++)] = p.i;
+    g.neighbour[next[p.i]++] = p.j;
+    g.neighbour[next[p.j]++] = p.i;
   }
   int kept = 0;
   for (int i = 0; i < particles; ++i) {
-    const auto first = g.neighbour.begin() + g.start[static_cast<std::size_t>(i)];
-    const auto last = g.neighbour.begin() + g.start[static_cast<std::size_t>(i) + 1];
+    const auto first = g.neighbour.begin() + g.start[i];
+    const auto last = g.neighbour.begin() + g.start[i + 1];
     std::sort(first, last);
     const int begin = kept;
     for (auto it = first; it != last; ++it)
-      if (*it != i && (kept == begin || g.neighbour[static_cast<std::size_t>(kept - 1)] != *it))
-        g.neighbour[static_cast<std::size_t>(kept++)] = *it;
-    g.start[static_cast<std::size_t>(i)] = begin;
+      if (*it != i && (kept == begin || g.neighbour[kept - 1] != *it)) g.neighbour[kept++] = *it;
+    g.start[i] = begin;
   }
   g.start.back() = kept;
   g.neighbour.resize(static_cast<std::size_t>(kept));
@@ -49,14 +46,14 @@ Graph make_graph(int particles, const std::vector<ParticlePair>& pairs) {
 void breadth_first(const Graph& g, int root, std::vector<char>& seen, std::vector<int>& order) {
   std::size_t head = order.size();
   order.push_back(root);
-  seen[static_cast<std::size_t>(root)] = 1;
+  seen[root] = 1;
   while (head < order.size()) {
     const int i = order[head++];
     const std::size_t first = order.size();
-    for (int k = g.start[static_cast<std::size_t>(i)]; k < g.start[static_cast<std::size_t>(i) + 1]; ++k) {
-      const int j = g.neighbour[static_cast<std::size_t>(k)];
-      if (seen[static_cast<std::size_t>(j)]) continue;
-      seen[static_cast<std::size_t>(j)] = 1;
+    for (int k = g.start[i]; k < g.start[i + 1]; ++k) {
+      const int j = g.neighbour[k];
+      if (seen[j]) continue;
+      seen[j] = 1;
       order.push_back(j);
     }
     std::sort(order.begin() + static_cast<std::ptrdiff_t>(first), order.end(),
@@ -76,7 +73,7 @@ std::vector<int> locality_order(const Graph& g) {
     for (int round = 0; round < 2; ++round) {
       trial.clear();
       breadth_first(g, root, scratch, trial);
-      for (int t : trial) scratch[static_cast<std::size_t>(t)] = 0;
+      for (int t : trial) scratch[t] = 0;
       root = trial.back();
     }
     breadth_first(g, root, seen, order);
@@ -93,8 +90,7 @@ BlockPattern::BlockPattern(int particles, std::vector<ParticlePair> pairs) {
   pairs = {};
   particle_of_ = locality_order(g);
   row_of_.resize(particle_of_.size());
-  for (std::size_t r = 0; r < particle_of_.size(); ++r)
-    row_of_[static_cast<std::size_t>(particle_of_[r])] = static_cast<int>(r);
+  for (std::size_t r = 0; r < particle_of_.size(); ++r) row_of_[particle_of_[r]] = static_cast<int>(r);
 
   row_start_.assign(particle_of_.size() + 1, 0);
   column_.reserve(g.neighbour.size() / 2 + particle_of_.size());
@@ -104,8 +100,7 @@ BlockPattern::BlockPattern(int particles, std::vector<ParticlePair> pairs) {
     const int row = static_cast<int>(r);
     column_.push_back(row);
     for (int k = g.start[i]; k < g.start[i + 1]; ++k)
-      if (const int c = row_of_[static_cast<std::size_t>(g.neighbour[static_cast<std::size_t>(k)])]; c > row)
-        column_.push_back(c);
+      if (const int c = row_of_[g.neighbour[k]]; c > row) column_.push_back(c);
     std::sort(column_.begin() + first, column_.end());
     row_start_[r + 1] = static_cast<int>(column_.size());
     bandwidth_ = std::max(bandwidth_, column_.back() - row);
@@ -114,8 +109,8 @@ BlockPattern::BlockPattern(int particles, std::vector<ParticlePair> pairs) {
 }
 
 int BlockPattern::find(int row, int column) const {
-  const auto first = column_.begin() + row_start_[static_cast<std::size_t>(row)];
-  const auto last = column_.begin() + row_start_[static_cast<std::size_t>(row) + 1];
+  const auto first = column_.begin() + row_start_[row];
+  const auto last = column_.begin() + row_start_[row + 1];
   const auto it = std::lower_bound(first, last, column);
   return it == last || *it != column ? -1 : static_cast<int>(it - column_.begin());
 }
@@ -135,12 +130,12 @@ std::uint64_t next_pattern_serial() {
 
 void to_rows(const BlockPattern& pattern, const VecX& by_particle, VecX& by_row) {
   for (int r = 0; r < pattern.rows(); ++r)
-    by_row.segment<3>(3 * r) = by_particle.segment<3>(3 * pattern.particle_of()[static_cast<std::size_t>(r)]);
+    by_row.segment<3>(3 * r) = by_particle.segment<3>(3 * pattern.particle_of()[r]);
 }
 
 void to_particles(const BlockPattern& pattern, const VecX& by_row, VecX& by_particle) {
   for (int r = 0; r < pattern.rows(); ++r)
-    by_particle.segment<3>(3 * pattern.particle_of()[static_cast<std::size_t>(r)]) = by_row.segment<3>(3 * r);
+    by_particle.segment<3>(3 * pattern.particle_of()[r]) = by_row.segment<3>(3 * r);
 }
 
 }  // namespace drape

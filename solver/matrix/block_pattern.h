@@ -31,7 +31,7 @@ class BlockPattern {
   const std::vector<int>& particle_of() const { return particle_of_; }  // row -> particle
   const std::vector<int>& row_start() const { return row_start_; }      // rows + 1
   const std::vector<int>& column() const { return column_; }  // ascending within a row, from the row itself
-  int diagonal(int row) const { return row_start_[static_cast<std::size_t>(row)]; }
+  int diagonal(int row) const { return row_start_[row]; }
   bool has(int row, int column) const;  // row <= column
   int slot(int row, int column) const;  // row <= column; throws std::logic_error when there is no such block
 

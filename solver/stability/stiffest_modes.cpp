@@ -36,7 +36,7 @@ class Scaled {
 VecX inverse_root_masses(const System& system, const Constraints& constraints, const BlockPattern& pattern) {
   VecX by_particle(3 * system.particles());
   for (int i = 0; i < system.particles(); ++i) {
-    const double m = system.masses()[static_cast<std::size_t>(i)];
+    const double m = system.masses()[i];
     by_particle.segment<3>(3 * i).setConstant(m > 0 ? 1 / std::sqrt(m) : 0);
   }
   for (int i : constraints.pinned()) by_particle.segment<3>(3 * i).setZero();

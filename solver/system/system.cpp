@@ -98,8 +98,7 @@ double System::total_energy(const State& state) const {
 double System::kinetic_energy(const VecX& v) const {
   return sum_chunks(particles(), [&](int begin, int end) {
     double sum = 0;
-    for (int i = begin; i < end; ++i)
-      sum += 0.5 * masses_[static_cast<std::size_t>(i)] * v.segment<3>(3 * i).squaredNorm();
+    for (int i = begin; i < end; ++i) sum += 0.5 * masses_[i] * v.segment<3>(3 * i).squaredNorm();
     return sum;
   });
 }
@@ -107,15 +106,14 @@ double System::kinetic_energy(const VecX& v) const {
 double System::gravity_energy(const VecX& x) const {
   return sum_chunks(particles(), [&](int begin, int end) {
     double sum = 0;
-    for (int i = begin; i < end; ++i)
-      sum -= masses_[static_cast<std::size_t>(i)] * gravity_.dot(x.segment<3>(3 * i));
+    for (int i = begin; i < end; ++i) sum -= masses_[i] * gravity_.dot(x.segment<3>(3 * i));
     return sum;
   });
 }
 
 VecX System::force(const VecX& x, const VecX& v) const {
   VecX f(x.size());
-  for (int i = 0; i < particles(); ++i) f.segment<3>(3 * i) = masses_[static_cast<std::size_t>(i)] * gravity_;
+  for (int i = 0; i < particles(); ++i) f.segment<3>(3 * i) = masses_[i] * gravity_;
   for (const auto& force : forces_) force->add_force(x, v, f);
   return f;
 }

@@ -56,10 +56,10 @@ std::vector<Row> measure_sheet(int side, int steps, double tolerance, const std:
   std::vector<Samples> samples(thread_counts.size());
   const int turns = static_cast<int>(thread_counts.size());
   for (int k = 0; k < steps; ++k) {
-    set_threads(thread_counts[static_cast<std::size_t>(k % turns)]);
+    set_threads(thread_counts[k % turns]);
     const StepReport r = stepper.advance(sheet.state, 0.01);
     if (k < steps / 3) continue;  // the fall has begun
-    Samples& s = samples[static_cast<std::size_t>(k % turns)];
+    Samples& s = samples[k % turns];
     s.assemble.push_back(r.assemble_ms / r.newton_iterations);
     s.solve.push_back(r.solve_ms);
     s.rest.push_back(r.step_ms - r.assemble_ms - r.solve_ms);
@@ -71,8 +71,8 @@ std::vector<Row> measure_sheet(int side, int steps, double tolerance, const std:
   const BlockMatrix& A = stepper.matrix();
   VecX x = VecX::Ones(3 * A.rows()), y = x;
   for (int k = 0; k < 15 * turns; ++k) {
-    set_threads(thread_counts[static_cast<std::size_t>(k % turns)]);
-    samples[static_cast<std::size_t>(k % turns)].product.push_back(timed(3, [&] { A.multiply(x, y); }));
+    set_threads(thread_counts[k % turns]);
+    samples[k % turns].product.push_back(timed(3, [&] { A.multiply(x, y); }));
   }
   // Bytes of the whole matrix: what a product that does not use the symmetry would have to read.
   const std::size_t whole =

@@ -40,7 +40,7 @@ std::vector<Vec3> near(const TriangleMesh& mesh, const Off& off) {
   std::vector<Vec3> all;
   all.reserve(points);
   for (int i = 0; i < points; ++i)
-    all.push_back(mesh.positions[static_cast<std::size_t>(random.below(mesh.vertex_count()))] + off(random));
+    all.push_back(mesh.positions[random.below(mesh.vertex_count())] + off(random));
   return all;
 }
 
@@ -55,8 +55,7 @@ std::vector<double> cost(const Body& body, const std::vector<Vec3>& at,
       set_threads(thread_counts[t]);
       const double start = now_ms();
       for_chunks(static_cast<int>(at.size()), [&](int begin, int end) {
-        for (int i = begin; i < end; ++i)
-          answers[static_cast<std::size_t>(i)] = body.closest(at[static_cast<std::size_t>(i)]);
+        for (int i = begin; i < end; ++i) answers[i] = body.closest(at[i]);
       });
       if (repeat > 0) ns[t].push_back(1e6 * (now_ms() - start) / points);
     }
