@@ -14,9 +14,14 @@ usage: ./build.sh WORD
   bench           build and run the benchmarks
   pictures        run the scenes of the gallery into out/pictures and draw them into data/pictures
   compare         compare solvers and integrators on gallery scenes and generated sheets, into out/compare
-  lint            check the formatting, then clang-tidy
+  lint [--all | --since REVISION]
+                  check the formatting, then clang-tidy: the files that differ from the last commit of origin (when that is the one
+                  checked out, from the one before), from REVISION, or all
   format          format the sources in place; format --check only looks
   sanitize        build with the address and undefined-behaviour sanitizers and run the tests, but for the slow ones
+  debug           build without optimisation, with assertions, and run the quick tests
+  clang           build with clang and run the quick tests
+  odr             build as for debug, check when linking that no two source files mean different things by one name, and run the quick tests
   docs            make a site of the pages in docs/ and of the C++ interface, build/docs/site, and look for dead links in it
   install PREFIX  build, then install the program, the library and its headers under PREFIX
 
@@ -40,16 +45,19 @@ optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev
 for_viewer=(nodejs npm)
 for_docs=(python3 python3-sphinx python3-myst-parser furo doxygen linkchecker)
 for_python=(python3-dev pybind11-dev python3-numpy)
-for_tests=(catch2 libtinyobjloader-dev libstb-dev "${for_docs[@]}"
+for_quick_tests=(catch2 libtinyobjloader-dev libstb-dev)
+for_tests=("${for_quick_tests[@]}" "${for_docs[@]}"
   "${for_python[@]}" python3-scipy python3-matplotlib python3-venv python3-pip python3-setuptools python3-wheel mypy)
 for_browser_tests=(chromium-headless-shell)
 for_export_tests=(python3-numpy python3-vtk9 blender chromium-headless-shell nodejs npm)  # readers of what is exported
 for_format=(clang-format)
 for_lint=(clang-tidy)
+for_clang=(clang)
 
 installed() {
   case "$1" in  # a tool counts wherever it comes from
     g++) [[ -n "${CXX:-}" ]] || command -v g++ >/dev/null ;;
+    clang) command -v clang++ >/dev/null ;;
     cmake | clang-format | clang-tidy | npm) command -v "$1" >/dev/null ;;
     ninja-build) command -v ninja >/dev/null ;;
     nodejs) command -v node >/dev/null || command -v nodejs >/dev/null ;;
@@ -156,7 +164,9 @@ configure() {
   shift
   local -a options=("$@")
   if command -v ccache >/dev/null; then  # what it has to overlook to serve files with precompiled headers, as its manual says
-    options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=env;CCACHE_SLOPPINESS=pch_defines,time_macros;ccache" -DCMAKE_CXX_FLAGS=-fpch-preprocess)
+    local flags=-fpch-preprocess
+    [[ "$preset" != clang ]] || flags="-Xclang -fno-pch-timestamp"
+    options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=env;CCACHE_SLOPPINESS=pch_defines,time_macros;ccache" "-DCMAKE_CXX_FLAGS=$flags")
   fi
   say "configuring build/$preset"
   cmake --preset "$preset" ${options[@]+"${options[@]}"} || die "configuring failed, see above"
@@ -216,6 +226,23 @@ sanitize() {
   configure sanitize -DDRAPE_TESTS=ON -DDRAPE_PYTHON=ON
   compile sanitize
   run_tests sanitize --label-exclude slow
+}
+
+# quick_tests PRESET: of the library and the program
+quick_tests() {
+  get_for_build
+  get_required "${for_quick_tests[@]}"
+  configure "$1" -DDRAPE_TESTS=ON
+  compile "$1" drape_program drape_tests
+  run_tests "$1" --label-regex quick
+}
+
+debug() { quick_tests debug; }
+odr() { quick_tests odr; }
+
+clang() {
+  get_required "${for_clang[@]}"
+  quick_tests clang
 }
 
 bench() {
@@ -337,32 +364,68 @@ format() {
   fi
 }
 
+# changed_sources REVISION: those that differ from it; for a header also what includes it in its own room, else one of the files that do.
+changed_sources() {
+  local changed users
+  git diff --name-only --diff-filter=d "$1" -- '*.h' '*.cpp' | while read -r changed; do
+    [[ "$changed" == *.h ]] || { printf '%s\n' "$changed"; continue; }
+    users=$(git grep -lF "#include \"$changed\"" -- "${changed%/*}/*.cpp" || true)
+    [[ -n "$users" ]] || users=$(git grep -lF "#include \"$changed\"" -- '*.cpp' | head -n 1)
+    printf '%s\n' "$users"
+  done | grep . | sort -u
+}
+
+# The last commit of origin; when that is the one checked out, the one before. Empty: there is none.
+last_of_origin() {
+  local branch
+  for branch in origin/HEAD origin/main; do
+    git rev-parse --verify --quiet "$branch^{commit}" >/dev/null 2>&1 || continue
+    if git merge-base --is-ancestor HEAD "$branch"; then git rev-parse --verify --quiet HEAD^ || true
+    else git merge-base HEAD "$branch" || true; fi
+    return
+  done
+}
+
+# Of the files on its input those that build/lint compiles: not the ones of other options, nor those of tests/outside.
+compiled_here() {
+  grep '\.cpp$' | while read -r file; do
+    ! grep -qF "\"file\": \"$PWD/$file\"" build/lint/compile_commands.json || printf '%s\n' "$file"
+  done
+}
+
 lint() {
+  local since
+  case "${1:-}" in
+    '') since=$(last_of_origin) ;;
+    --all) since= ;;
+    --since) since=$(git rev-parse --verify --quiet "${2:-}^{commit}") || die "lint --since: there is no revision '${2:-}' here" ;;
+    *) warn "lint takes nothing more, --all, or --since REVISION, but got: $*"; exit 2 ;;
+  esac
   format --check
   get_for_build
   get_required "${for_tests[@]}" "${for_lint[@]}"
-  configure release -DDRAPE_TESTS=ON -DDRAPE_PYTHON=ON
+  configure lint -DDRAPE_TESTS=ON -DDRAPE_PYTHON=ON
   local -a files
-  mapfile -t files < <(sources | grep '\.cpp$' | grep -v '^tests/outside/')
+  mapfile -t files < <(if [[ -n "$since" ]]; then changed_sources "$since"; else sources; fi | compiled_here)
   say "clang-tidy on ${#files[@]} files"
-  tidy "${files[@]}" || die "clang-tidy has findings, see above"
+  [[ ${#files[@]} -eq 0 ]] || tidy "${files[@]}" || die "clang-tidy has findings, see above"
 }
 
 # The analyzer is for the library: in app/ and tests/ it would spend minutes in the headers of the command line, TOML and Catch.
 tidy() {
-  local -a arguments=(--quiet -p build/release --extra-arg=-w) library others
+  local -a arguments=(--quiet -p build/lint --extra-arg=-w) library others
   mapfile -t library < <(printf '%s\n' "$@" | grep -E '^(mesh|constraints|solver)/')
   mapfile -t others < <(printf '%s\n' "$@" | grep -vE '^(mesh|constraints|solver)/')
   local status=0
-  printf '%s\n' "${library[@]}" | xargs -P "$(jobs)" -n 1 clang-tidy "${arguments[@]}" || status=1
-  printf '%s\n' "${others[@]}" | xargs -P "$(jobs)" -n 1 clang-tidy "${arguments[@]}" '--checks=-clang-analyzer-*' || status=1
+  [[ ${#library[@]} -eq 0 ]] || printf '%s\n' "${library[@]}" | xargs -P "$(jobs)" -n 1 clang-tidy "${arguments[@]}" || status=1
+  [[ ${#others[@]} -eq 0 ]] || printf '%s\n' "${others[@]}" | xargs -P "$(jobs)" -n 1 clang-tidy "${arguments[@]}" '--checks=-clang-analyzer-*' || status=1
   return $status
 }
 
 word=${1:-}
 [[ $# -eq 0 ]] || shift
 case "$word" in
-  demo | build | docs | pictures | compare | lint | sanitize)
+  demo | build | docs | pictures | compare | sanitize | debug | clang | odr)
     [[ $# -eq 0 ]] || { warn "'$word' takes nothing more, but got: $*"; exit 2; }
     "$word"
     ;;
@@ -371,6 +434,7 @@ case "$word" in
     run_all_tests
     ;;
   bench) bench "$@" ;;
+  lint) lint "$@" ;;
   format) format "$@" ;;
   python)
     [[ $# -eq 0 ]] || { warn "'python' takes nothing more, but got: $*"; exit 2; }

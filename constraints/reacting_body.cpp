@@ -29,7 +29,7 @@ void check(const RigidBody& body) {
   if (body.mass < 1e-9)  // lighter than a grain of dust: a slip of the unit, and 1 / m is out of all range
     throw InputError("mass: a body that reacts has a microgram at least");
   const Eigen::SelfAdjointEigenSolver<Mat3> principal(body.inertia);
-  const Vec3 I = principal.eigenvalues();  // ascending
+  const Vec3& I = principal.eigenvalues();  // ascending
   if (!body.inertia.allFinite() || !(I[0] > 0))
     throw InputError("inertia: the principal moments are positive, the least is " + std::to_string(I[0]) +
                      " kg m^2");

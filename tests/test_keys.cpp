@@ -108,7 +108,7 @@ TEST_CASE("every key that the readers' code names is listed", "[keys]") {
   const std::regex read(R"re([.](?:read|read_required|read_part|take|tables|require)\(\s*"([a-z_]+)")re");
   int found = 0;
   for (const auto& file :
-       std::filesystem::directory_iterator(std::filesystem::path(test::source_dir()) / "app")) {
+       std::filesystem::recursive_directory_iterator(std::filesystem::path(test::source_dir()) / "app")) {
     if (file.path().extension() != ".cpp") continue;
     const std::string code = test::content(file.path());
     for (std::sregex_iterator key(code.begin(), code.end(), read), end; key != end; ++key, ++found) {

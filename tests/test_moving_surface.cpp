@@ -128,13 +128,13 @@ TEST_CASE("what moves is told: largest, mean, and of the closest point", "[movin
   Random r;
   double worst = 0;
   for (int i = 0; i < 500; ++i) {
-    const double s = r(0.1, 0.9), step = 1e-6;
+    const double s = r(0.1, 0.9), ds = 1e-6;
     const Vec3 x = on_mesh(mesh, r) + r(0.05, 0.2) * r.direction();
     Vec3 displacement;
     const SurfacePoint p = surface.closest(x, s, displacement);
     if (p.distance < 0) continue;  // the middle of the sphere is near its medial axis
     const double rate =
-        (surface.closest(x, s + step).distance - surface.closest(x, s - step).distance) / (2 * step);
+        (surface.closest(x, s + ds).distance - surface.closest(x, s - ds).distance) / (2 * ds);
     worst = std::max(worst, std::abs(rate + p.normal.dot(displacement)));
   }
   CHECK(worst < 1e-6);

@@ -35,7 +35,7 @@ float float_at(const unsigned char* bytes) { return std::bit_cast<float>(word_at
 
 }  // namespace
 
-Pc2Writer::Pc2Writer(std::filesystem::path path, int points) : file_(std::move(path)), points_(points) {
+Pc2Writer::Pc2Writer(std::filesystem::path path, int points) : file_(std::move(path)) {
   bytes_.assign(signature, signature + sizeof signature);
   append(bytes_, 1);
   append(bytes_, points);

@@ -28,7 +28,7 @@ class Pc2Writer {
 
  private:
   AtomicFile file_;
-  int points_, samples_ = 0;
+  int samples_ = 0;
   std::vector<unsigned char> bytes_;
 };
 

@@ -38,6 +38,7 @@ struct Kind {
 template <class Infos>
 std::vector<Part> parts_of(const Infos& infos) {
   std::vector<Part> parts;
+  parts.reserve(std::size(infos));
   for (const auto& info : infos) parts.push_back({std::string(info.name), std::string(info.summary)});
   return parts;
 }

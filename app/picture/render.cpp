@@ -114,8 +114,9 @@ class Painter {
 
   void look_through(Sample& sample, int sx, int sy) const {
     const int row = sy & 1, column = sx & 1;
-    const Vec3 direction = camera_.direction(left_ + (sx - column) / 2 + sample_x[row][column],
-                                             top_ + (sy - row) / 2 + sample_y[row][column]);
+    const int px = (sx - column) / 2, py = (sy - row) / 2;  // the pixel that it belongs to
+    const Vec3 direction =
+        camera_.direction(left_ + px + sample_x[row][column], top_ + py + sample_y[row][column]);
     sample.seen = surface_.seen(camera_.eye, direction, camera_.slope);
     if (sample.seen.part == -1) return;
     if (sample.seen.part <= -2) sample.seen.fade *= near_border(sx / 2, sy / 2);

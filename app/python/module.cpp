@@ -8,13 +8,15 @@ PYBIND11_MODULE(_drape, m) {
   m.doc() = "An implicit cloth solver. Quantities are in SI units, arrays have a row for each particle.";
   m.attr("__version__") = DRAPE_VERSION;
   // A user's mistake, in the words of the command line.
-  py::register_exception_translator([](std::exception_ptr thrown) {
-    try {
-      if (thrown) std::rethrow_exception(thrown);
-    } catch (const drape::InputError& error) {
-      PyErr_SetString(PyExc_ValueError, error.what());
-    }
-  });
+  // pybind11 asks for a function that takes the exception by value.
+  py::register_exception_translator(
+      [](std::exception_ptr thrown) {  // NOLINT(performance-unnecessary-value-param)
+        try {
+          if (thrown) std::rethrow_exception(thrown);
+        } catch (const drape::InputError& error) {
+          PyErr_SetString(PyExc_ValueError, error.what());
+        }
+      });
   add_meshes(m);
   add_states(m);
   add_fabrics(m);

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace drape {
@@ -15,7 +16,7 @@ int terminal_width() {
 }
 
 std::string clock_text(double seconds) {
-  const long whole = static_cast<long>(std::min(seconds, 1e8) + 0.5);
+  const long whole = std::lround(std::min(seconds, 1e8));
   char text[32];
   if (whole < 3600) {
     std::snprintf(text, sizeof text, "%ld:%02ld", whole / 60, whole % 60);

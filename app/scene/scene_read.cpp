@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "app/base/table.h"
 #include "app/scene/fabrics.h"
@@ -210,12 +211,10 @@ SoftEntry read_whole_soft(Table& table, const fs::path& folder) {
 
 // Cloths and soft bodies are written side by side.
 void check_names(const Scene& scene) {
-  std::vector<std::pair<std::string, std::string>> named;  // and where
+  std::set<std::string> named;
   const auto add = [&](const std::string& name, const std::string& where, const char* kind) {
-    for (const auto& before : named)
-      if (before.first == name)
-        throw InputError(where + ": two " + kind + " are called '" + name + "'; give one another name");
-    named.emplace_back(name, where);
+    if (!named.insert(name).second)
+      throw InputError(where + ": two " + kind + " are called '" + name + "'; give one another name");
   };
   for (const ClothEntry& cloth : scene.cloths) add(cloth.name, cloth.where, "cloths");
   for (const SoftEntry& soft : scene.softs)

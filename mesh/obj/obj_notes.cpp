@@ -26,6 +26,7 @@ std::vector<std::string> Warnings::lines(const std::string& file) const {
   std::stable_sort(in_order.begin(), in_order.end(),
                    [](const Warning* a, const Warning* b) { return a->line < b->line; });
   std::vector<std::string> lines;
+  lines.reserve(in_order.size());
   for (const Warning* w : in_order)
     lines.push_back(format(*w, file) +
                     (w->more == 0 ? "" : " (and " + std::to_string(w->more) + " more like it)"));

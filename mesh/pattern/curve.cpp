@@ -111,9 +111,11 @@ Vec2 derivative(const Segment& s, double t) {
 
 // Where control points coincide the derivative vanishes at the end, but not the direction.
 Vec2 direction(const Segment& s, bool at_end) {
-  for (double t = 0; t <= 1; t = t == 0 ? 1e-6 : 10 * t) {
+  double t = 0;  // then 1e-6, 1e-5, ... 1
+  while (t <= 1) {
     const Vec2 d = derivative(s, at_end ? 1 - t : t);
     if (d.norm() > 1e-9 * (s.end - s.start).norm() + 1e-300) return d.normalized();
+    t = t == 0 ? 1e-6 : 10 * t;
   }
   return Vec2::Zero();
 }

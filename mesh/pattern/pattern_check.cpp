@@ -17,7 +17,8 @@ void check_chain(const Chain& chain, bool loop) {
   if (chain.segments.empty()) throw InputError(chain.where + ": nothing is drawn");
   double length = 0;
   for (const Segment& s : chain.segments) {
-    for (double t = 0; t <= 1; t += 0.125) {
+    for (int eighth = 0; eighth <= 8; ++eighth) {
+      const double t = eighth / 8.0;
       if (!point(s, t).allFinite() || point(s, t).cwiseAbs().maxCoeff() > 1e6)
         throw InputError(chain.where + ": a coordinate is not a finite number of at most 1000 km");
       if (t > 0) length += (point(s, t) - point(s, t - 0.125)).norm();

@@ -195,6 +195,7 @@ class Refinement {
 
   std::vector<Asked> asked_for(const std::vector<int>& pieces) const {
     std::vector<Asked> asked;
+    asked.reserve(pieces.size());
     for (const int p : pieces) asked.push_back({p, refined_.pieces[z(p)].a, refined_.pieces[z(p)].b});
     return asked;
   }

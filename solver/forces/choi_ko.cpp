@@ -77,6 +77,7 @@ std::vector<StretchConnection> stretch_connections(const RestGrid& rest, const F
       k[std::minmax(q[s], q[s + 2])] += 3.0 / 16 * Y * (a * a + b * b) / (a * b);
   }
   std::vector<StretchConnection> out;
+  out.reserve(k.size());
   for (const auto& [pair, stiffness] : k)
     out.push_back({pair.first, pair.second, rest.length(pair.first, pair.second),
                    fabric.stretch_spring.value_or(stiffness)});

@@ -65,7 +65,7 @@ void Smoother::build(const Rows& A) {
       const int chunk = r / chunk_rows_, first = chunk * chunk_rows_, last = first + chunk_rows_;
       Mat3 own = Mat3::Zero(), lost = Mat3::Zero();
       A.each(r, [&](int c, const auto& block) {
-        const Mat3 exact = block.template cast<double>();
+        const Mat3& exact = block.template cast<double>();
         if (c == r) return own = exact, void();
         const bool before = first <= c && c < last ? c < r : chunk % 2 == 1;
         Eigen::Map<Eigen::Matrix3f> kept((before ? lower : upper).add(c));

@@ -11,8 +11,7 @@ namespace {
 
 // y[0..2] += the sums of the lanes of p, q, r.
 inline void add_sums(const Four& p, const Four& q, const Four& r, double* y) {
-  typedef long long Lanes __attribute__((vector_size(32)));
-  const Four pq = __builtin_shuffle(p, q, Lanes{0, 4, 2, 6}) + __builtin_shuffle(p, q, Lanes{1, 5, 3, 7});
+  const Four pq = __builtin_shufflevector(p, q, 0, 4, 2, 6) + __builtin_shufflevector(p, q, 1, 5, 3, 7);
   y[0] += pq[0] + pq[2];
   y[1] += pq[1] + pq[3];
   y[2] += (r[0] + r[1]) + r[2];

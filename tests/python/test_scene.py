@@ -7,7 +7,8 @@ import unittest
 from pathlib import Path
 
 import numpy as np
-from workshop import SCENE_TOML, SEWN_QUICKLY, SOURCE, Workshop, in_another_thread, refusal, scene_dict
+from workshop import (SCENE_TOML, SEWN_QUICKLY, SOURCE, Workshop, in_another_thread, refusal, scene_dict,
+                      steps_until_over)
 
 import drape
 
@@ -207,27 +208,27 @@ class Cloths(Workshop):
         simulation.advance()
 
     def test_what_a_step_replaces_is_not_read_meanwhile(self):
+        open_long = {"cloth.0.edge": "8 cm", "cloth.0.seams": [{"close": "1 h", "stiffness": 2000}]}
+        simulation = drape.read_scene(SOURCE / "data/scenes/skirt-sewn.toml", open_long)
+        self.refused_during_steps(simulation, x=lambda: simulation.state.x, v=lambda: simulation.state.v)
+        self.assertEqual(len(simulation.state.x), simulation.cloths[0].mesh.positions.shape[0], "a seam has closed")
+
+    def test_what_is_copied_is_not_read_during_a_step(self):
         simulation = drape.read_scene(SOURCE / "data/scenes/skirt-sewn.toml", SEWN_QUICKLY)
-        simulation.record_systems = True
-        (skirt,) = simulation.cloths
-        state = simulation.state
-        arrays = {"positions": lambda: skirt.positions, "velocities": lambda: skirt.velocities}
-        rest = {"hash": lambda: simulation.state_hash, "masses": lambda: simulation.masses,
-                "last_system": lambda: simulation.last_system}
-        # Before any seam has closed, and when all have: then only what is copied.
-        self.refused_during_steps(simulation, {**arrays, **rest, "x": lambda: state.x, "v": lambda: state.v})
-        before = len(state.x)
+        before = len(simulation.state.x)
         for _ in range(40):
             simulation.advance()
-        self.assertLess(len(state.x), before, "no seam has closed")
-        self.refused_during_steps(simulation, {**arrays, **rest})
+        self.assertLess(len(simulation.state.x), before, "no seam has closed")
+        self.refused_during_steps(simulation)
 
-    def refused_during_steps(self, simulation, reads):
+    def refused_during_steps(self, simulation, **others):
+        simulation.record_systems = True
+        (skirt,) = simulation.cloths
+        reads = {"positions": lambda: skirt.positions, "velocities": lambda: skirt.velocities,
+                 "hash": lambda: simulation.state_hash, "masses": lambda: simulation.masses,
+                 "last_system": lambda: simulation.last_system, **others}
         for name, read in reads.items():
-            def run(over):
-                simulation.run(1, frames="none", callback=lambda step: not over.is_set())
-
-            with self.subTest(name), in_another_thread(run) as thread:
+            with self.subTest(name), in_another_thread(steps_until_over(simulation.advance)) as thread:
                 self.assertIn("is under way", refusal(read, thread))
             read()
 

@@ -8,7 +8,7 @@ import time
 import unittest
 
 import numpy as np
-from workshop import falling_sheet, in_another_thread, refusal
+from workshop import falling_sheet, in_another_thread, refusal, steps_until_over
 
 import drape
 
@@ -341,12 +341,8 @@ class Threads(unittest.TestCase):
             "force": lambda: system.force(state),
         }
 
-        def steps(over):
-            for _ in range(100):
-                if not over.is_set():
-                    stepper.advance(state, 0.001)
-
         for name, read in reads.items():
+            steps = steps_until_over(lambda: stepper.advance(state, 0.001))
             with self.subTest(name), in_another_thread(steps) as thread:
                 self.assertIn("is under way", refusal(read, thread))
             read()

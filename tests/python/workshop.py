@@ -79,6 +79,21 @@ def in_another_thread(work):
         thread.join()
 
 
+def steps_until_over(step, most=3000):
+    """Work for in_another_thread: steps until the reader has seen enough, however long that takes on a busy machine.
+
+    Without an end of its own a test whose read is never refused would not come to its failure: hence `most`.
+    """
+
+    def work(over):
+        for _ in range(most):
+            if over.is_set():
+                return
+            step()
+
+    return work
+
+
 def refusal(read, thread):
     """What the RuntimeError says that read() comes to, tried as long as the thread works; empty without one."""
     while thread.is_alive():
