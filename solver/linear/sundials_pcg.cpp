@@ -1,5 +1,5 @@
 // "sundials-pcg": the prefiltered system by SUNLinSol_PCG of SUNDIALS, over our matrix and preconditioner.
-//   (S A S + I - S) y = S (b - A z),   dv = y + z              [Maurer 2017, in SUNDIALS' documentation]
+//   (S A S + I - S) y = S (b - A z),   dv = y + z                              [Hestenes & Stiefel 1952]
 #include <sunlinsol/sunlinsol_pcg.h>
 
 #include "mesh/base/stopwatch.h"

@@ -5,8 +5,7 @@
 //                  of a mode with
 //   step_limit     the longest h up to which it is at most 1; 0 where no step is short enough
 //     undamped: 2/omega for symplectic Euler, 2.8284/omega for rk4, 1/omega for sb-implicit, none for
-//     explicit Euler and midpoint; explicit Euler with d < 2 omega: d/omega^2     [Hairer, Norsett & Wanner,
-//     IV.2]
+//     explicit Euler and midpoint; explicit Euler with d < 2 omega: d/omega^2     [Hairer & Wanner 1996, IV.2]
 // The modes are eigenvectors of K by Lanczos' method (Spectra, in stiffest_modes.cpp). Where D is a multiple
 // of K (springs of one strength, one damping) they are those of the motion, and the limit is exact; else
 // `proportional` is false and each has the damping that its own shape feels.
