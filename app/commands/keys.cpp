@@ -103,6 +103,7 @@ std::string toml(double value) { return shortest(value); }
 std::string toml(const Vec3& v) {
   return "[" + shortest(v[0]) + ", " + shortest(v[1]) + ", " + shortest(v[2]) + "]";
 }
+std::string toml(const Mat3&) { return "{ axis = [0, 1, 0], angle = 0 }"; }
 
 }  // namespace
 
@@ -111,8 +112,7 @@ std::string scene_of_every_kind() {
   for_each_built_in([&]<class Kind>(const Kind& standard) {
     text += "\n[[obstacle]]\nshape = \"" + std::string(name(standard)) + "\"\n";
     for_each_field<Kind>([&](const auto& field) {
-      if constexpr (!std::is_same_v<std::decay_t<decltype(standard.*field.member)>, Mat3>)
-        if (field.required) text += std::string(field.key()) + " = " + toml(standard.*field.member) + "\n";
+      if (field.required) text += std::string(field.key()) + " = " + toml(standard.*field.member) + "\n";
     });
   });
   return text.append(after_shapes);

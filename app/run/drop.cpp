@@ -45,11 +45,20 @@ ShapeWord parse_shape(const std::string& word) {
   return parsed;
 }
 
-Node node(double value) { return number(value); }
-Node node(const Vec3& value) { return point(value); }
+// The member as a scene has it; a place goes with the shape.
+template <class Kind>
+void add_member(Node& table, const Field<Kind, double>& field, double value, const Vec3&) {
+  table.members[field.key()] = number(value);
+}
+template <class Kind>
+void add_member(Node& table, const Field<Kind, Vec3>& field, const Vec3& value, const Vec3& move) {
+  table.members[field.key()] = point(field.measure == Measure::place ? Vec3(value + move) : value);
+}
+template <class Kind>
+void add_member(Node&, const Field<Kind, Mat3>&, const Mat3&, const Vec3&) {}  // it stands unturned
 
-// The shape with its top `gap` under `top`, the middle of the cloth's lowest height, as a scene has it. It stands as its
-// defaults say: what is turned there is not turned here.  bottom: its lowest height.
+// The shape with its top `gap` under `top`, the middle of the cloth's lowest height, as a scene has it.
+// bottom: its lowest height.
 template <class Kind>
 Node below(Kind shape, const Vec3& top, double gap, double& bottom) {
   const Vec3 peak = top - gap * Vec3::UnitY();
@@ -58,12 +67,7 @@ Node below(Kind shape, const Vec3& top, double gap, double& bottom) {
   bottom = std::isfinite(box.min().y()) ? peak.y() - box.sizes().y() : peak.y();
   Node table = Node::of_table("--onto");
   table.members["shape"] = Node::of_text(std::string(name(shape)), "--onto");
-  for_each_field<Kind>([&](const auto& field) {
-    using Value = std::decay_t<decltype(shape.*field.member)>;
-    if constexpr (std::is_same_v<Value, Vec3>)
-      if (field.measure == Measure::place) shape.*field.member += move;
-    if constexpr (!std::is_same_v<Value, Mat3>) table.members[field.key()] = node(shape.*field.member);
-  });
+  for_each_field<Kind>([&](const auto& field) { add_member(table, field, shape.*field.member, move); });
   return table;
 }
 
