@@ -46,7 +46,7 @@ TEST_CASE("a scene is simulated and everything is written", "[cli]") {
   CHECK(json["state_hash"].get<std::string>().size() == 16);
 
   CHECK(lines_of(content(shop.path / "o/steps.csv")) == 31);
-  CHECK(fs::file_size(shop.path / "o/sheet.pc2") == 32 + 8 * 169 * 12);  // 0, 0.04 ... 0.28 s
+  CHECK(fs::file_size(shop.path / "o/sheet.pc2") == 32 + 9 * 169 * 12);  // 0, 0.04 ... 0.28 s
   CHECK(read_obj(shop.path / "o/sheet.obj").vertex_count() == 169);
 }
 

@@ -252,7 +252,8 @@ TEST_CASE("of frames at one time the first is exported, so that times rise", "[e
               .exit_code == 0);
   // As if frames were the first states after their times, in steps of 10 ms.
   nlohmann::json run = nlohmann::json::parse(folder.file("dense/run.json"));
-  for (nlohmann::json& time : run["frame_times"]) time = std::ceil(time.get<double>() / 0.01 - 1e-9) * 0.01;
+  for (nlohmann::json& time : run["frame_times"])
+    time = std::ceil(std::max(0.0, time.get<double>() / 0.01 - 1e-9)) * 0.01;
   folder.write("dense/run.json", run.dump());
   const Recording recording(folder.path / "dense");
   const ExportSource source = export_source(recording, 1);

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "app/pattern/remarks.h"
+#include "app/commands/triangulate_command.h"
 #include "mesh/pattern/delaunay.h"
 #include "mesh/pattern/predicates.h"
 #include "tests/obj.h"

@@ -10,6 +10,7 @@
 #include "app/compare/integrators.h"
 #include "app/compare/solvers.h"
 #include "app/compare/tables.h"
+#include "app/recording/scene_record.h"
 #include "app/simulation/time_loop.h"
 #include "mesh/base/errors.h"
 #include "mesh/base/threads.h"
@@ -156,13 +157,16 @@ Scene scene_of(const std::filesystem::path& path, const CompareOptions& options,
   return sheet;
 }
 
-Comparison begun(const Scene& scene, const CompareOptions& options) {
+// simulation: that of the scene; null where sheets are generated.
+Comparison begun(const Scene& scene, const Simulation* simulation, const CompareOptions& options) {
   Comparison comparison;
   comparison.scene = scene.label;
   comparison.integrator = scene.simulation.integrator;
   comparison.reference_solver = scene.simulation.linear_solver;
   comparison.time_step = grid_of(scene).step();
+  comparison.time_step_asked = grid_of(scene).asked();
   comparison.tolerance = scene.simulation.step.tolerance;
+  comparison.made_of = scene_json(scene, simulation);
   comparison.steps = options.steps;
   comparison.at = options.at;
   comparison.repeats = options.repeats;
@@ -185,7 +189,7 @@ int compare(const std::filesystem::path& path, const CompareWords& words, const 
                      options.save_systems);
   catch_interrupts();
 
-  Comparison comparison = begun(scene, options);
+  Comparison comparison = begun(scene, options.sizes.empty() ? &simulation : nullptr, options);
   const bool ended = options.sizes.empty()
                          ? compare_scene(scene, simulation, options, common, files, comparison)
                          : compare_sizes(scene, options, common, files, comparison);

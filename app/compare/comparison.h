@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/base/json.h"
 #include "app/base/words.h"
 #include "solver/linear/linear_solver.h"
 
@@ -89,7 +90,8 @@ struct Growth {
 
 struct Comparison {
   std::string scene, integrator, reference_solver;
-  double time_step = 0, tolerance = 0;
+  double time_step = 0, time_step_asked = 0, tolerance = 0;
+  Json::Members made_of = {};  // cloths, bodies and settings of the scene: app/recording/scene_record.h
   int steps = 0, repeats = 0, threads = 1;
   std::vector<int> at, sizes;
   Names solvers;

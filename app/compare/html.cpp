@@ -5,6 +5,7 @@
 
 #include "app/base/markup.h"
 #include "app/compare/tables.h"
+#include "app/recording/scene_record.h"
 #include "app/view/page_template.h"
 
 namespace drape {
@@ -118,6 +119,14 @@ std::string html_of(const ReportTable& table) {
   return text;
 }
 
+// Fabrics, pins, seams, friction, margins and settings.
+std::string what_was_run(const Comparison& comparison) {
+  std::string text;
+  for (const SceneFact& fact : scene_facts(comparison.made_of))
+    text += "<dt>" + escaped(fact.name) + "</dt><dd>" + escaped(fact.value) + "</dd>\n";
+  return text.empty() ? "" : "<h2>What was run</h2>\n<dl>\n" + text + "</dl>\n";
+}
+
 constexpr const char* style = R"(:root { color-scheme: light dark }
 body { font: 15px/1.5 system-ui, sans-serif; margin: 2em auto; max-width: 92em; padding: 0 1em;
        background: Canvas; color: CanvasText }
@@ -127,6 +136,7 @@ table { border-collapse: collapse; margin: 1em 0 .3em; font-variant-numeric: tab
 caption { text-align: left; font-weight: bold; padding: .3em 0; white-space: nowrap }
 th, td { padding: .15em .7em; text-align: right; white-space: nowrap; border-bottom: 1px solid #8884 }
 th:first-child { text-align: left; padding-left: 0 }
+dt { font-weight: bold } dd { margin: 0 0 .3em }
 .bad { font-weight: bold; text-decoration: underline }
 .note { margin: .1em 0; font-size: .87em }
 )";
@@ -212,6 +222,7 @@ std::string compare_html(const Comparison& comparison) {
   for (const std::string& line : verdicts(comparison)) text += "<li>" + escaped(line) + "</li>\n";
   text += "</ul>\n<h2>Plots</h2>\n" + html_of(plots_of(comparison)) + "<h2>Tables</h2>\n";
   for (const ReportTable& table : tables_of(comparison)) text += html_of(table);
+  text += what_was_run(comparison);
   text += "<p>drape " DRAPE_VERSION "</p>\n";
   if (!plot_script().empty()) text += "<script>\n" + std::string(plot_script()) + "\n</script>\n";
   return text + "</body>\n</html>\n";

@@ -59,11 +59,17 @@ Scene scene_of(const py::object& given, const py::dict& settings, const std::opt
   const bool data = py::isinstance<py::dict>(given);
   const fs::path path = data ? fs::path() : path_of(given);
   Node root = data ? node_of(given, "scene") : read_toml(path);
+  std::vector<Setting> applied;
   for (const auto& [key, value] : settings) {
     const std::string where = "settings[" + std::string(py::repr(key)) + "]";
-    apply(std::string(py::str(key)), node_of(value, where), root);
+    const Node node = node_of(value, where);
+    applied.push_back({std::string(py::str(key)), written(node), where});
+    apply(applied.back().path, node, root);
   }
-  return read_scene(std::move(root), {}, folder.value_or(path.parent_path()), data ? "scene" : path.string());
+  Scene scene =
+      read_scene(std::move(root), {}, folder.value_or(path.parent_path()), data ? "scene" : path.string());
+  scene.settings = std::move(applied);
+  return scene;
 }
 
 Shared made(const py::object& given, const py::dict& settings, const std::optional<fs::path>& folder) {

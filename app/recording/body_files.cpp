@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/recording/run_files.h"
+#include "app/recording/scene_record.h"
 #include "app/simulation/body_mesh.h"
 #include "mesh/obj/obj.h"
 
@@ -83,6 +84,7 @@ std::vector<BodyRecord> body_records(const Simulation& simulation) {
                       deforms(body),
                       body.pose(),
                       {},
+                      contact_json(body.obstacle()),
                       {}};
     if (const auto* const plane = std::get_if<Plane>(&body.obstacle().shape)) record.plane = *plane;
     if (const ReactingBody* const r = body.reacting())

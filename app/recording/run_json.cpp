@@ -15,7 +15,10 @@ Json cloths_json(const std::vector<ClothCounts>& cloths) {
                                  {"particles", c.particles},
                                  {"triangles", c.triangles},
                                  {"edges", c.edges},
-                                 {"diagonals", c.diagonals}});
+                                 {"diagonals", c.diagonals},
+                                 {"fabric", c.fabric},
+                                 {"pins", c.pins},
+                                 {"seams", c.seams}});
   return list;
 }
 
@@ -28,7 +31,9 @@ Json softs_json(const std::vector<SoftCounts>& softs) {
                                  {"triangles", s.triangles},
                                  {"structural", s.springs.structural},
                                  {"shear", s.springs.shear},
-                                 {"bend", s.springs.bend}});
+                                 {"bend", s.springs.bend},
+                                 {"material", s.material},
+                                 {"pins", s.pins}});
   return list;
 }
 
@@ -51,6 +56,7 @@ Json bodies_json(const std::vector<BodyRecord>& bodies) {
                           {"deforms", b.deforms},
                           {"reacts", b.reacting.has_value()},
                           {"place", place_json(b.place)}};
+    json.insert(json.end(), b.contact.begin(), b.contact.end());
     if (b.plane) {
       json.emplace_back("point", vector_json(b.plane->point));
       json.emplace_back("normal", vector_json(b.plane->normal));
@@ -118,6 +124,8 @@ std::string run_json(const RunRecord& record) {
       {"state_hash", record.state_hash},
       {"warnings", record.warnings},
   };
+  json.insert(json.end(), record.numerics.begin(), record.numerics.end());
+  json.emplace_back("settings", record.settings);
   if (record.failure) json.emplace_back("failure", failure_json(*record.failure));
   return json_text(json);
 }

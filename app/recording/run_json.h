@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/base/json.h"
 #include "app/base/words.h"
 #include "app/simulation/simulation.h"
 #include "mesh/base/vectors.h"
@@ -14,12 +15,14 @@ namespace drape {
 struct ClothCounts {
   std::string name;
   int particles = 0, triangles = 0, edges = 0, diagonals = 0;
+  Json fabric = {}, pins = {}, seams = {};  // app/recording/scene_record.h
 };
 
 struct SoftCounts {
   std::string name;
   int particles = 0, vertices = 0, triangles = 0;  // the latter two of the mesh that it carries
   LatticeCounts springs = {};
+  Json material = {}, pins = {};  // app/recording/scene_record.h
 };
 
 struct BodyRecord {
@@ -28,6 +31,7 @@ struct BodyRecord {
   bool deforms = false;           // goes from frame to frame
   Pose place;                     // at the end
   std::optional<Plane> plane;     // as it was drawn
+  Json::Members contact = {};     // friction, margin, restitution
 
   struct Reacting {
     double mass;                        // kg
@@ -52,6 +56,8 @@ struct RunRecord {
   int threads = 1;
   double duration = 0, time_step = 0, time_step_asked = 0, simulated_seconds = 0, wall_seconds = 0;  // s
   bool step_as_asked = true;
+  Json::Members numerics = {};  // frame_rate, gravity and so on, as the scene has them
+  Json settings = {};
   long steps = 0, steps_cut = 0, steps_not_converged = 0;
   int substeps_max = 1;
   long inner_rejected = 0;                                             // inner steps of the whole run

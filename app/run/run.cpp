@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/base/interrupt.h"
+#include "app/recording/scene_record.h"
 #include "app/run/summary.h"
 #include "app/simulation/measure.h"
 #include "mesh/base/errors.h"
@@ -93,14 +94,21 @@ void Run::describe() {
   record_.time_step = grid_.step();
   record_.time_step_asked = grid_.asked();
   record_.step_as_asked = grid_.as_asked();
+  record_.numerics = numerics_json(wanted_);
+  record_.settings = settings_json(simulation_.scene->settings);
   record_.warnings = simulation_.messages;
-  for (const Cloth& c : simulation_.cloths)
+  const Scene& scene = *simulation_.scene;
+  for (std::size_t k = 0; k < simulation_.cloths.size(); ++k) {
+    const Cloth& c = simulation_.cloths[k];
+    const Json pins = pins_json(scene.pins_of(k), c);
     if (c.soft)
       record_.softs.push_back({c.name, c.end_particle - c.first_particle, c.mesh.vertex_count(),
-                               c.mesh.triangle_count(), *c.soft});
+                               c.mesh.triangle_count(), *c.soft,
+                               material_json(scene.softs[k - scene.cloths.size()].material), pins});
     else
-      record_.cloths.push_back(
-          {c.name, c.mesh.vertex_count(), c.mesh.triangle_count(), c.report.edges, c.report.diagonals});
+      record_.cloths.push_back({c.name, c.mesh.vertex_count(), c.mesh.triangle_count(), c.report.edges,
+                                c.report.diagonals, fabric_json(scene.cloths[k]), pins, seams_json(c)});
+  }
 }
 
 const StepRow& Run::step() {

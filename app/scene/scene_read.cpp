@@ -247,6 +247,7 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path
   Table table(root, "the scene", notes);
   Scene scene;
   scene.label = std::move(label);
+  scene.settings = settings;
   const std::vector<Table> simulation = table.tables("simulation", "how long, how exactly, by which methods");
   std::vector<Table> cloths = table.tables("cloth", "each a cloth"),
                      softs = table.tables("soft", "each a soft body, a lattice of springs"),

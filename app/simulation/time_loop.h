@@ -1,4 +1,4 @@
-// The one loop over time: simulate, compare, stability and Python step through here.
+// The loop over time: steps are taken here, and nowhere else.
 #pragma once
 
 #include "app/base/interrupt.h"

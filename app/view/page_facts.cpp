@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "app/recording/scene_record.h"
 #include "app/view/page_data.h"
 
 namespace drape {
@@ -44,6 +45,13 @@ std::string state_of(const Json& run) {
          "): " + failure["what"].text();
 }
 
+// The step used, and the one asked for where it is another.
+std::string step_of(const Json& run) {
+  const std::string used = number(run["time_step"], "ms", 1e3, 4),
+                    asked = number(run["time_step_asked"], "ms", 1e3, 4);
+  return joined({used, asked == used ? "" : named(asked, "asked for")});
+}
+
 void add_times(Facts& facts, const Json& run) {
   const Json &step = run["ms_per_step"], &phases = run["phases_ms"];
   facts.add("Time of a step", joined({named(number(step["median"], "ms"), "median"),
@@ -73,7 +81,7 @@ Json page_facts(const Recording& recording) {
   facts.add("Integrator", run["integrator"].text());
   facts.add("Linear solver", run["linear_solver"].text());
   facts.add("Contact", run["contact"].text());
-  facts.add("Time step", number(run["time_step"], "ms", 1e3, 4));
+  facts.add("Time step", step_of(run));
   facts.add("Steps", joined({number(run["steps"], "", 1, 9), named(number(run["steps_cut"], "", 1, 9), "cut"),
                              named(number(run["steps_not_converged"], "", 1, 9), "not converged")}));
   facts.add("Simulated", number(run["simulated_seconds"], "s", 1, 4));
@@ -82,6 +90,7 @@ Json page_facts(const Recording& recording) {
                     named(number(run["linear_iterations"]["max"], "", 1, 9), "at most")}));
   add_times(facts, run);
   facts.add("Deepest penetration", number(run["max_penetration"], "mm", 1e3));
+  for (const SceneFact& fact : scene_facts(run)) facts.add(fact.name, fact.value);
   facts.add("Made by", run["drape_version"].text().empty() ? "" : "drape " + run["drape_version"].text());
   return facts.rows();
 }

@@ -1,0 +1,31 @@
+// What was run: fabrics, pins, seams, friction and margins as they stand after all defaults and settings, in SI
+// units; for run.json and compare.json, and in words for the pages made from them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/base/json.h"
+#include "app/simulation/simulation.h"
+
+namespace drape {
+
+Json fabric_json(const ClothEntry& entry);
+Json material_json(const SoftMaterial& material);
+Json pins_json(const std::vector<PinEntry>& pins, const Cloth& cloth);
+Json seams_json(const Cloth& cloth);  // those that are open
+Json settings_json(const std::vector<Setting>& settings);
+Json::Members contact_json(const Obstacle& obstacle);           // friction, margin, restitution
+Json::Members numerics_json(const SimulationOptions& options);  // what the steps are made with
+
+// The cloths, soft bodies and bodies of a scene with all of these, as run.json has them; with pins and seams
+// where the simulation is that of the scene (null: it is not).
+Json::Members scene_json(const Scene& scene, const Simulation* simulation);
+
+struct SceneFact {
+  std::string name, value;  // "Fabric of sheet", "cotton-poplin, noh-jung, 0.11 kg/m^2, ..."
+};
+// Of run.json or compare.json. Nothing where it does not say, as that of an earlier version.
+std::vector<SceneFact> scene_facts(const Json& run);
+
+}  // namespace drape
