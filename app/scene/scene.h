@@ -140,7 +140,7 @@ struct SimulationOptions {
 inline constexpr double settle_time = 0.2;  // s
 
 struct Scene {
-  std::string label;  // the scene's file as it was given, or the command line of `drape drop`
+  std::string label;              // the scene's file as it was given, or the command line of `drape drop`
   std::vector<Setting> settings;  // what was changed in the scene before it was read
   SimulationOptions simulation;
   std::vector<ClothEntry> cloths;
