@@ -5,6 +5,7 @@
 #include <set>
 
 #include "app/commands/triangulate_command.h"
+#include "app/pattern/remarks.h"
 #include "mesh/pattern/delaunay.h"
 #include "mesh/pattern/predicates.h"
 #include "tests/obj.h"
