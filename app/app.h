@@ -9,3 +9,4 @@
 #include "app/scene/fabrics.h"
 #include "app/scene/scene.h"
 #include "app/simulation/simulation.h"
+#include "solver/system/measure.h"

@@ -145,7 +145,7 @@ TEST_CASE("mistakes in what is assembled are told in one line", "[sewing]") {
   CHECK_THROWS_WITH(add_tube({{.name = "a / b", .pairs = {{0, 1}}, .stiffness = 0}}),
                     Contains("greater than zero"));
   Assembly all;
-  CHECK_THROWS_WITH(all.add(ClothPart{.name = "no cloth", .mesh = {}}), Contains("no cloth: refusal"));
+  CHECK_THROWS_WITH(all.add(ClothPart{.name = "no cloth", .mesh = {}}), Contains("no cloth: refused"));
   CHECK_THROWS_WITH(all.add(ClothPart{.mesh = grid(3, 3, 1, 1), .rest = grid(4, 4, 1, 1)}),
                     Contains("18 triangles and the mesh 8"));
   CHECK_THROWS_WITH(all.add(ClothPart{.mesh = grid(3, 3, 1, 1), .fabric = {.area_density = -1}}),

@@ -210,6 +210,7 @@ TEST_CASE("run.json says how bodies ended", "[output]") {
     CHECK(squared == Approx(1));
     CHECK(body["place"]["translation"].size() == 3);
     body.erase("place");
+    for (const char* key : {"friction", "margin", "restitution"}) CHECK(body.erase(key) == 1);
   }
   CHECK(bodies[0] == JsonValue{{"name", "cube.obj"},
                                {"file", "bodies/cube.obj"},

@@ -40,7 +40,7 @@ bend_spring = "1e-7 N.m^2"
 neighbour_weighting = true
 [[soft]]
 particles = [2, 2, 2]
-spacing = [0.1, 0.1, 0.1]
+spacing = "10 cm"
 translate = [5, 0, 0]
 young = "12 kPa"
 pins = [{ box = [[4, -1, -1], [6, 1, 1]] }]
@@ -59,8 +59,7 @@ point = [0, -4, 0]
   JsonValue json(const std::string& name) const { return JsonValue::parse(content(path / name)); }
 };
 
-const std::string settings =
-    " --set cloth.0.bend='12 uN.m' --set obstacle.hand.margin=0.004 --duration 0.04 ";
+const std::string changes = " --set cloth.0.bend='12 uN.m' --set obstacle.hand.margin=0.004 ";
 
 void check_scene(const JsonValue& json) {
   const JsonValue& sheet = json["cloths"][0];
@@ -117,7 +116,7 @@ void check_scene(const JsonValue& json) {
 
 TEST_CASE("run.json has what was run, after defaults, fabrics and settings", "[recording]") {
   const Bench bench;
-  const Outcome run = bench.drape("simulate s.toml --out o --quiet" + settings);
+  const Outcome run = bench.drape("simulate s.toml --out o --quiet --duration 0.04" + changes);
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
   const JsonValue json = bench.json("o/run.json");
@@ -146,8 +145,8 @@ TEST_CASE("run.json has what was run, after defaults, fabrics and settings", "[r
 
 TEST_CASE("compare.json and compare.html have it, too", "[compare]") {
   const Bench bench;
-  const Outcome run =
-      bench.drape("compare s.toml --out o --quiet --steps 2 --solvers mpcg,eigen-ldlt" + settings);
+  const Outcome run = bench.drape("compare s.toml --out o --quiet --steps 2 --solvers mpcg,eigen-ldlt" +
+                                  changes + "--set simulation.duration=0.04");
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
   check_scene(bench.json("o/compare.json"));

@@ -190,7 +190,7 @@ TEST_CASE("an interrupted page is not there", "[view]") {
   done.write("long/sheet.obj", sheet(100));
   Pc2Writer cache(done.path / "long/sheet.pc2", 10000);
   std::vector<Vec3> x(10000);
-  for (int k = 0; k < 400; ++k) {
+  for (int k = 0; k < 1600; ++k) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = Vec3::Constant(std::sin(0.1 * k + double(i)));
     cache.add(x);
   }

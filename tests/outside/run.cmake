@@ -32,7 +32,7 @@ message("${output}")
 run("the installed drape" ${WORK_DIR}/prefix/bin/drape list)
 
 # The scene of the outside program, by the installed drape and by that program.
-file(WRITE ${WORK_DIR}/pillow.toml [[
+file(WRITE ${WORK_DIR}/pillow.toml [=[
 unit = "1 cm"
 [[panel]]
 name = "a"
@@ -44,8 +44,8 @@ outline = [[60, 0], [100, 0], [80, 35]]
 sides = ["x", "y", "z"]
 [[seam]]
 curves = ["a.x", "b.x"]
-]])
-file(WRITE ${WORK_DIR}/scene.toml [[
+]=])
+file(WRITE ${WORK_DIR}/scene.toml [=[
 simulation = { duration = 0.4, time_step = 0.01 }
 [[cloth]]
 mesh = "pillow.toml"
@@ -56,15 +56,15 @@ seams = [{ close = 0.2 }]
 [[obstacle]]
 shape = "plane"
 point = [0, -0.3, 0]
-]])
+]=])
 set(ENV{DRAPE_DATA} "")
 run("the installed drape simulate" ${WORK_DIR}/prefix/bin/drape simulate ${WORK_DIR}/scene.toml --out ${WORK_DIR}/out --frames none --quiet)
 file(READ ${WORK_DIR}/out/run.json record)
-string(JSON hash GET ${record} state_hash)
+string(JSON hash GET "${record}" state_hash)
 run("the outside program of a scene" ${WORK_DIR}/build/outside_scene ${WORK_DIR}/scene.toml ${hash} ${WORK_DIR}/out_again)
 message("${output}")
 file(READ ${WORK_DIR}/out_again/run.json record)
-string(JSON again GET ${record} state_hash)
+string(JSON again GET "${record}" state_hash)
 if(NOT again STREQUAL hash)
   message(FATAL_ERROR "drape::run made the state ${again}, drape simulate ${hash}")
 endif()
