@@ -21,7 +21,7 @@ usage: ./build.sh WORD
   sanitize        build with the address and undefined-behaviour sanitizers and run the tests, but for the slow ones
   debug           build without optimisation, with assertions, and run the quick tests
   clang           build with clang and run the quick tests
-  odr             build as for debug, check when linking that no two source files mean different things by one name, and run the quick tests
+  odr             build as for debug and check, when linking, that no two source files mean different things by one name
   docs            make a site of the pages in docs/ and of the C++ interface, build/docs/site, and look for dead links in it
   install PREFIX  build, then install the program, the library and its headers under PREFIX
 
@@ -228,17 +228,22 @@ sanitize() {
   run_tests sanitize --label-exclude slow
 }
 
-# quick_tests PRESET: of the library and the program
-quick_tests() {
+# with_quick_tests PRESET: the program and the tests
+with_quick_tests() {
   get_for_build
   get_required "${for_quick_tests[@]}"
   configure "$1" -DDRAPE_TESTS=ON
   compile "$1" drape_program drape_tests
+}
+
+# quick_tests PRESET: of the library and the program
+quick_tests() {
+  with_quick_tests "$1"
   run_tests "$1" --label-regex quick
 }
 
 debug() { quick_tests debug; }
-odr() { quick_tests odr; }
+odr() { with_quick_tests odr; }
 
 clang() {
   get_required "${for_clang[@]}"
