@@ -163,10 +163,11 @@ configure() {
   local preset=$1
   shift
   local -a options=("$@")
-  if command -v ccache >/dev/null; then  # what it has to overlook to serve files with precompiled headers, as its manual says
+  if command -v ccache >/dev/null; then
+    export CCACHE_SLOPPINESS=pch_defines,time_macros  # else it serves no file with precompiled headers, as its manual says
     local flags=-fpch-preprocess
     [[ "$preset" != clang ]] || flags="-Xclang -fno-pch-timestamp"
-    options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=env;CCACHE_SLOPPINESS=pch_defines,time_macros;ccache" "-DCMAKE_CXX_FLAGS=$flags")
+    options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache "-DCMAKE_CXX_FLAGS=$flags")
   fi
   say "configuring build/$preset"
   cmake --preset "$preset" ${options[@]+"${options[@]}"} || die "configuring failed, see above"
