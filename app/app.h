@@ -1,6 +1,6 @@
 // Scenes in one header: #include <drape/app.h>, after find_package(drape COMPONENTS app) and with drape::app linked.
-//   drape::Simulation simulation = drape::make_simulation(drape::read_scene("scene.toml", {}));
-//   drape::run(drape::read_scene("scene.toml", {}), {.out = "out"});         what `drape simulate` does
+//   drape::app::Simulation simulation = drape::app::make_simulation(drape::app::read_scene("scene.toml", {}));
+//   drape::app::run(drape::app::read_scene("scene.toml", {}), {.out = "out"});         what `drape simulate` does
 // Fabrics are looked for by their name in the data folder: app/scene/fabrics.h says which one that is.
 #pragma once
 

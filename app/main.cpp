@@ -2,6 +2,6 @@
 #include "app/commands/command_line.h"
 
 int main(int argc, char** argv) {
-  drape::ignore_broken_outputs();
-  return drape::command_line(argc, argv);
+  drape::app::ignore_broken_outputs();
+  return drape::app::command_line(argc, argv);
 }

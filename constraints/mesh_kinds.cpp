@@ -7,7 +7,7 @@
 #include "mesh/base/errors.h"
 #include "mesh/lattice/solid.h"
 
-namespace drape::kinds {
+namespace drape::internal::kinds {
 namespace {
 
 // Of the vertices that carry triangles.
@@ -100,4 +100,4 @@ void check(const LevelSetBody& body) {
   if (!body) throw InputError("level-set: there is no grid");
 }
 
-}  // namespace drape::kinds
+}  // namespace drape::internal::kinds

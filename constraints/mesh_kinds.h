@@ -3,7 +3,7 @@
 
 #include "constraints/shape.h"
 
-namespace drape::kinds {
+namespace drape::internal::kinds {
 
 // What is true of a kind of shape, whatever its sizes.
 struct Nature {
@@ -54,4 +54,4 @@ void check(const MeshBody& body);
 void check(const DeformingBody& body);
 void check(const LevelSetBody& body);
 
-}  // namespace drape::kinds
+}  // namespace drape::internal::kinds

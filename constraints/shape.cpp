@@ -24,6 +24,9 @@
 #include "mesh/triangles/generate.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
 using Eigen::AlignedBox3d;
@@ -86,7 +89,7 @@ void require_direction(const Vec3& n, const char* message) {
 
 }  // namespace
 
-namespace kinds {
+namespace internal::kinds {
 
 // ---- plane
 
@@ -378,7 +381,7 @@ Nature nature_of(const Shape& shape) {
   return std::visit([](const auto& kind) { return kinds::nature(kind); }, shape);
 }
 
-}  // namespace kinds
+}  // namespace internal::kinds
 
 std::string_view name(const Shape& shape) { return kinds::nature_of(shape).name; }
 bool convex(const Shape& shape) { return kinds::nature_of(shape).convex; }

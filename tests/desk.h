@@ -15,6 +15,8 @@
 
 namespace drape::test {
 
+using namespace app;
+
 using JsonValue = nlohmann::json;
 
 inline const std::string scenes = source_dir() + "/data/scenes/";

@@ -11,6 +11,8 @@
 
 namespace drape::test {
 
+using namespace app;
+
 // Quads with uv; the names are as bad as names may be. A ball moves and turns, a box stands, a mesh deforms.
 inline constexpr const char* exported_scene = R"(
 [simulation]

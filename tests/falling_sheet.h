@@ -6,6 +6,8 @@
 
 namespace drape::test {
 
+using namespace app;
+
 // A hung sheet after some steps: the matrix of a real fall, slack and taut edges in it.
 struct FallingSheet : HungSheet {
   SystemRecording recording;

@@ -10,6 +10,8 @@
 
 namespace drape::test {
 
+using namespace app;
+
 // Two panels of width x height [m], nx x ny vertices, side by side in the plane z = 0, with the lines
 // front.left, front.right, front.top and so on, each going round the outline counter-clockwise.
 struct TwoPanels {

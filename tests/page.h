@@ -12,6 +12,8 @@
 
 namespace drape::test {
 
+using namespace app;
+
 inline std::string from_base64(const std::string& text) {
   const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string bytes;

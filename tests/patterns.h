@@ -13,6 +13,8 @@
 
 namespace drape::test {
 
+using namespace app;
+
 constexpr double kDegree = std::numbers::pi / 180;
 
 struct PatternCase {

@@ -7,6 +7,8 @@
 
 namespace drape::test {
 
+using namespace app;
+
 using drawing::Image;
 
 Image read_png(const std::string& bytes);  // throws when it is none

@@ -14,6 +14,7 @@
 #include "tests/places.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 using Catch::Contains;
 using Catch::StartsWith;

@@ -7,6 +7,7 @@
 #include "tests/desk.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 using Catch::Contains;
 using Catch::StartsWith;

@@ -23,6 +23,7 @@
 #include "mesh/obj/obj.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 using Catch::Contains;
 namespace fs = std::filesystem;

@@ -8,6 +8,7 @@
 #include "mesh/base/errors.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 using Catch::Contains;
 namespace fs = std::filesystem;

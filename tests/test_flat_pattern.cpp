@@ -14,6 +14,7 @@
 #include "tests/garment.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 
 namespace {

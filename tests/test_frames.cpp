@@ -11,6 +11,7 @@
 #include "tests/folder.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 using Catch::Contains;
 

@@ -17,6 +17,7 @@
 #include "tests/places.h"
 
 using namespace drape;
+using namespace drape::app;
 namespace fs = std::filesystem;
 
 namespace {

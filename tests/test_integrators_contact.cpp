@@ -7,6 +7,7 @@
 #include "tests/places.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 
 namespace {

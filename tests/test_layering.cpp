@@ -149,3 +149,34 @@ TEST_CASE("of the internal headers only those of SUNDIALS show a library besides
       CHECK((ours || binding || path.starts_with("Eigen/") || path.find('.') == path.npos));
     }
 }
+
+// What a file may open at the left margin. A name that two files give to different types is a fault that only the
+// linker could see, so what is not offered to users keeps out of the namespace of what is.
+TEST_CASE(
+    "public names of the library are in drape, its other names in drape::internal, the program's in "
+    "drape::app",
+    "[layering]") {
+  std::set<std::string> public_headers = {"solver/drape.h", "app/app.h"};
+  for (const std::string& room : rooms) public_headers.merge(installed(room));
+  int looked_at = 0;
+  for (const std::string& room : rooms)
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(drape::test::source_dir()) / room)) {
+      const std::string file = fs::relative(entry.path(), drape::test::source_dir()).string();
+      const bool header = file.ends_with(".h");
+      if (!header && !file.ends_with(".cpp")) continue;
+      std::ifstream lines(entry.path());
+      for (std::string line; std::getline(lines, line);) {
+        const std::string name = line.substr(0, line.find(" {"));
+        if (!name.starts_with("namespace drape")) continue;
+        ++looked_at;
+        INFO(file << ": " << line);
+        const bool internal = name.starts_with("namespace drape::internal");
+        if (room == "app")
+          CHECK(name.starts_with("namespace drape::app"));
+        else if (header)
+          CHECK(public_headers.contains(file) == (name == "namespace drape"));
+        CHECK((room == "app" || internal || name == "namespace drape"));
+      }
+    }
+  CHECK(looked_at > 300);
+}

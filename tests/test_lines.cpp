@@ -14,6 +14,7 @@
 #include "tests/tables.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 namespace fs = std::filesystem;
 

@@ -10,6 +10,7 @@
 #include "tests/mistakes.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 
 namespace {

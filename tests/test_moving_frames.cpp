@@ -11,6 +11,7 @@
 #include "tests/shapes.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 using Catch::Contains;
 

@@ -9,6 +9,8 @@
 #include "tests/falling_sheet.h"
 
 using namespace drape;
+using namespace drape::app;
+using namespace drape::internal;
 using namespace drape::test;
 
 namespace {

@@ -18,6 +18,7 @@
 #include "tests/folder.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 using Catch::Contains;
 namespace fs = std::filesystem;

@@ -13,6 +13,7 @@
 #include "tests/desk.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 using Catch::Contains;
 namespace fs = std::filesystem;

@@ -12,6 +12,8 @@
 #include "tests/patterns.h"
 
 using namespace drape;
+using namespace drape::app;
+using namespace drape::internal;
 using namespace drape::test;
 
 namespace {

@@ -17,7 +17,8 @@
 #include "tests/tables.h"
 
 using namespace drape;
-using namespace drape::drawing;
+using namespace drape::app;
+using namespace drape::app::drawing;
 using namespace drape::test;
 
 namespace {

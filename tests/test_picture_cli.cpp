@@ -7,7 +7,8 @@
 #include "tests/workshop.h"
 
 using namespace drape;
-using namespace drape::drawing;
+using namespace drape::app;
+using namespace drape::app::drawing;
 using namespace drape::test;
 using Catch::Contains;
 using Catch::StartsWith;

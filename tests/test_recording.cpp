@@ -10,6 +10,7 @@
 #include "mesh/base/errors.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 
 namespace {

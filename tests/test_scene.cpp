@@ -9,6 +9,7 @@
 #include "tests/mistakes.h"
 
 using namespace drape;
+using namespace drape::app;
 using Catch::Contains;
 using Catch::StartsWith;
 

@@ -9,6 +9,7 @@
 #include "tests/same_bits.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 
 namespace {

@@ -6,6 +6,7 @@
 #include "tests/workshop.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 
 namespace {

@@ -8,6 +8,7 @@
 #include "tests/tables.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 
 namespace {

@@ -6,6 +6,7 @@
 #include "mesh/base/errors.h"
 
 using namespace drape;
+using namespace drape::app;
 using Catch::Contains;
 
 namespace {

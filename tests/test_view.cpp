@@ -14,6 +14,7 @@
 #include "page.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 using Catch::Contains;
 using Catch::EndsWith;

@@ -10,6 +10,7 @@
 #include "page.h"
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::test;
 
 TEST_CASE("what is packed comes out within half a step", "[view]") {

@@ -8,7 +8,7 @@
 
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 
 AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
   beside_ = path_;
@@ -64,4 +64,4 @@ void AtomicFile::keep() {
   kept_ = true;
 }
 
-}  // namespace drape
+}  // namespace drape::app

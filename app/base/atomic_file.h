@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
-namespace drape {
+namespace drape::app {
 
 // The functions that write throw InputError "out/sheet.pc2: cannot write: No space left on device; ...". The
 // destructor removes a file that keep() was not called for.
@@ -33,4 +33,4 @@ class AtomicFile {
   bool kept_ = false;
 };
 
-}  // namespace drape
+}  // namespace drape::app

@@ -8,7 +8,7 @@
 #include "app/base/text_file.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 class Parser {
@@ -61,4 +61,4 @@ std::vector<CsvRow> read_csv(const std::filesystem::path& path) {
   return parse_csv(read_text(path, "CSV"), path.string());
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace drape {
+namespace drape::app {
 
 struct CsvRow {
   std::string where;  // "poses.csv:12"
@@ -20,4 +20,4 @@ struct CsvRow {
 std::vector<CsvRow> read_csv(const std::filesystem::path& path);
 std::vector<CsvRow> parse_csv(std::string_view text, const std::string& name);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -3,7 +3,7 @@
 #include "app/base/toml_file.h"
 #include "app/base/words.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 // As RFC 4180: quoted when it must be.
@@ -34,4 +34,4 @@ std::string csv_line(const Json::Members& members) {
   return line;
 }
 
-}  // namespace drape
+}  // namespace drape::app

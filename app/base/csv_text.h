@@ -5,10 +5,10 @@
 
 #include "app/base/json.h"
 
-namespace drape {
+namespace drape::app {
 
 std::string csv_header(const Json::Members& members);
 // True is written as 1, null as an empty cell; quoted where necessary.
 std::string csv_line(const Json::Members& members);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 std::optional<double> number_in(const char* path) {  // none where it says "max"
@@ -26,4 +26,4 @@ std::optional<double> free_memory() {
   return free;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -5,8 +5,8 @@
 
 #include <optional>
 
-namespace drape {
+namespace drape::app {
 
 std::optional<double> free_memory();  // bytes; empty when the system does not tell
 
-}  // namespace drape
+}  // namespace drape::app

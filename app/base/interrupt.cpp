@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 volatile std::sig_atomic_t asked_to_end = 0;
@@ -38,4 +38,4 @@ void ignore_broken_outputs() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-}  // namespace drape
+}  // namespace drape::app

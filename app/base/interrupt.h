@@ -4,7 +4,7 @@
 
 #include <exception>
 
-namespace drape {
+namespace drape::app {
 
 // Installs the handler of both signals.
 void catch_interrupts();
@@ -21,4 +21,4 @@ void end_if_interrupted();  // throws Interrupted after the first such signal
 // Ignores SIGPIPE and SIGXFSZ, so that a write that fails reports its error instead of ending the program.
 void ignore_broken_outputs();
 
-}  // namespace drape
+}  // namespace drape::app

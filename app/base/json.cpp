@@ -5,7 +5,7 @@
 
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 using Library = nlohmann::ordered_json;
@@ -102,4 +102,4 @@ Json parse_json(std::string_view text, const std::string& name) {
   }
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-namespace drape {
+namespace drape::app {
 
 struct Json {
   using List = std::vector<Json>;
@@ -46,4 +46,4 @@ std::string compact_json_text(const Json& json);  // in one line
 // Throws InputError "run.json:3: is not JSON: ...".
 Json parse_json(std::string_view text, const std::string& name);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace drape {
+namespace drape::app {
 
 void KeyNotes::add(const std::string& table, const std::string& kind, KeyNote note) {
   const auto of_table = [&](const KeySection& each) { return each.table == table; };
@@ -22,4 +22,4 @@ void KeyNotes::add(const std::string& table, const std::string& kind, KeyNote no
   section->keys.push_back(std::move(note));
 }
 
-}  // namespace drape
+}  // namespace drape::app

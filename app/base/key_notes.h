@@ -9,7 +9,7 @@
 
 #include "app/base/words.h"
 
-namespace drape {
+namespace drape::app {
 
 // The explanation of a key, given where the key is read.
 struct About {
@@ -48,4 +48,4 @@ class KeyNotes {
   std::vector<KeySection> sections_;
 };
 
-}  // namespace drape
+}  // namespace drape::app

@@ -1,6 +1,6 @@
 #include "app/base/markup.h"
 
-namespace drape {
+namespace drape::app {
 
 std::string escaped(std::string_view text) {
   std::string safe;
@@ -30,4 +30,4 @@ std::string json_for_html(const Json& json) {
   return text;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -6,10 +6,10 @@
 
 #include "app/base/json.h"
 
-namespace drape {
+namespace drape::app {
 
 std::string escaped(std::string_view text);  // replaces & < > "
 // In one line. No '<' is left: nothing in it can end the element it stands in.
 std::string json_for_html(const Json& json);
 
-}  // namespace drape
+}  // namespace drape::app

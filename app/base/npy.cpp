@@ -9,7 +9,7 @@
 
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 constexpr std::string_view signature("\x93NUMPY\x01\x00", 8);
@@ -115,4 +115,4 @@ std::vector<float> NpyReader::frame(int k) {
 
 void NpyReader::fail(const std::string& what) const { throw InputError(path_.string() + ": " + what); }
 
-}  // namespace drape
+}  // namespace drape::app

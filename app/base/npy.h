@@ -12,7 +12,7 @@
 
 #include "app/base/atomic_file.h"
 
-namespace drape {
+namespace drape::app {
 
 class NpyWriter {
  public:
@@ -56,4 +56,4 @@ class NpyReader {
   std::size_t count_ = 1, start_ = 0;
 };
 
-}  // namespace drape
+}  // namespace drape::app

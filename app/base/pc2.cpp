@@ -8,7 +8,7 @@
 
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 constexpr long samples_at = 28;  // place of the number of samples in the header
@@ -114,4 +114,4 @@ void Pc2Reader::seek(int sample) {
 
 void Pc2Reader::fail(const std::string& what) const { throw InputError(path_.string() + ": " + what); }
 
-}  // namespace drape
+}  // namespace drape::app

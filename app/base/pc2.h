@@ -13,7 +13,7 @@
 #include "app/base/atomic_file.h"
 #include "mesh/base/vectors.h"
 
-namespace drape {
+namespace drape::app {
 
 class Pc2Writer {
  public:
@@ -58,4 +58,4 @@ class Pc2Reader {
   std::string damage_;
 };
 
-}  // namespace drape
+}  // namespace drape::app

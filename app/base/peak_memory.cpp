@@ -8,7 +8,7 @@
 #include <malloc.h>
 #endif
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 // "VmRSS:    1234 kB" of /proc/self/status, in bytes.
@@ -51,4 +51,4 @@ std::optional<double> PeakMemory::kept() const {
   return *now - *before_;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-namespace drape {
+namespace drape::app {
 
 class PeakMemory {
  public:
@@ -18,4 +18,4 @@ class PeakMemory {
   std::optional<double> before_;  // bytes
 };
 
-}  // namespace drape
+}  // namespace drape::app

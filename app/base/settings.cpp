@@ -5,7 +5,7 @@
 #include "app/base/words.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 Names split(const std::string& path) {
@@ -86,4 +86,4 @@ void apply(const Setting& setting, Node& root) {
   apply(setting.path, parse_toml_value(setting.value, setting.where), root);
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -9,7 +9,7 @@
 
 #include "app/base/toml_file.h"
 
-namespace drape {
+namespace drape::app {
 
 struct Setting {
   std::string path;
@@ -24,4 +24,4 @@ void apply(const Setting& setting, Node& root);
 // The same, with the value as data; value.where stands in messages.
 void apply(const std::string& path, Node value, Node& root);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -6,7 +6,7 @@
 
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 std::string kind_name(Node::Kind kind) {
@@ -231,4 +231,4 @@ void Table::finish() const {
                        "' in " + title_ + "; " + suggestion(key, asked_));
 }
 
-}  // namespace drape
+}  // namespace drape::app

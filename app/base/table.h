@@ -14,7 +14,7 @@
 #include "app/base/words.h"
 #include "mesh/base/vectors.h"
 
-namespace drape {
+namespace drape::app {
 
 enum class Range { any, not_negative, positive };
 
@@ -79,4 +79,4 @@ class Table {
 double quantity(const Node& node, const Dimension& dimension, Range range);
 Vec3 vector(const Node& node, const Dimension& dimension);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -5,7 +5,7 @@
 
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 
 std::string read_text(const std::filesystem::path& path, const std::string& kind) {
   const std::string name = path.string();
@@ -25,4 +25,4 @@ std::string read_text(const std::filesystem::path& path, const std::string& kind
   return content;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <string>
 
-namespace drape {
+namespace drape::app {
 
 // Throws InputError "FILE: no such file" and the like when the file is missing, a directory, empty, binary,
 // or cannot be read. `kind` stands in messages: "TOML".
 std::string read_text(const std::filesystem::path& path, const std::string& kind);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -7,7 +7,7 @@
 #include "app/base/words.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 using TomlValue = toml::basic_value<toml::discard_comments, std::map, std::vector>;
@@ -160,4 +160,4 @@ Node parse_toml_value(std::string_view text, const std::string& where) {
   return node;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace drape {
+namespace drape::app {
 
 struct Node {
   enum class Kind { boolean, integer, number, text, array, table };
@@ -39,4 +39,4 @@ Node parse_toml(std::string_view text, const std::string& name);
 // integer, 5 uN.m -> text.
 Node parse_toml_value(std::string_view text, const std::string& where);
 
-}  // namespace drape
+}  // namespace drape::app

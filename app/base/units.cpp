@@ -13,7 +13,7 @@
 
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 struct FreeUnit {
@@ -130,4 +130,4 @@ double parse_quantity(std::string_view text, const Dimension& dimension) {
   return converted;
 }
 
-}  // namespace drape
+}  // namespace drape::app

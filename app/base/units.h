@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace drape {
+namespace drape::app {
 
 struct Dimension {
   std::string_view unit;     // SI unit
@@ -42,4 +42,4 @@ double parse_quantity(std::string_view text, const Dimension& dimension);
 
 std::string expected(const Dimension& dimension);  // "expected a bending rigidity such as "10 uN.m""
 
-}  // namespace drape
+}  // namespace drape::app

@@ -11,7 +11,7 @@
 #include "app/simulation/simulation.h"
 #include "mesh/obj/obj.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 std::string sides(const MeshReport& report) {
@@ -165,4 +165,4 @@ int check_file(const std::filesystem::path& file) {
   return 0;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -6,7 +6,7 @@
 
 #include "mesh/obj/examine.h"
 
-namespace drape {
+namespace drape::app {
 
 // Prints the description of a scene, a pattern or a mesh file. Returns 0; throws InputError.
 int check_file(const std::filesystem::path& file);
@@ -14,4 +14,4 @@ int check_file(const std::filesystem::path& file);
 // Prints counts, size and defects of a mesh; `name` stands in front.
 void print_report(const std::string& name, const MeshReport& report);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -20,7 +20,7 @@
 #include "app/view/view.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 // What `simulate` and `drop` share, as the command line gives it.
@@ -377,4 +377,4 @@ int command_line(int argc, char** argv) {
   }
 }
 
-}  // namespace drape
+}  // namespace drape::app

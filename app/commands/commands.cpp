@@ -14,7 +14,7 @@
 #include "app/simulation/simulation.h"
 #include "mesh/obj/obj.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 RunOptions run_options(const CommonOptions& common, const std::filesystem::path& input) {
@@ -156,4 +156,4 @@ int list_parts(const std::string& which, bool markdown) {
   return 0;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -9,7 +9,7 @@
 #include "app/run/common_options.h"
 #include "app/run/drop.h"
 
-namespace drape {
+namespace drape::app {
 
 int simulate(const std::filesystem::path& scene, const CommonOptions& options);
 int drop(const DropOptions& what, const CommonOptions& options, const std::string& label);
@@ -21,4 +21,4 @@ int make_level_set(const LevelSetWords& words);
 // Prints the parts of this build. which: "fabrics", "linear solvers" and so on; empty for all.
 int list_parts(const std::string& which, bool markdown);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -10,7 +10,7 @@
 #include "app/scene/shape_table.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 // Before and after the tables of all built-in shapes.
@@ -158,4 +158,4 @@ int print_keys(const KeysWords& words) {
   return 0;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -8,7 +8,7 @@
 
 #include "app/base/key_notes.h"
 
-namespace drape {
+namespace drape::app {
 
 KeyNotes scene_keys();
 KeyNotes fabric_keys();
@@ -24,4 +24,4 @@ struct KeysWords {
 };
 int print_keys(const KeysWords& words);  // throws InputError when there is no such table
 
-}  // namespace drape
+}  // namespace drape::app

@@ -8,7 +8,7 @@
 #include "app/pattern/remarks.h"
 #include "mesh/obj/obj.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 constexpr double kVeryDifferent = 3;  // lengths of two curves that are sewn
@@ -83,4 +83,4 @@ int triangulate_file(const TriangulateWords& words) {
   return 0;
 }
 
-}  // namespace drape
+}  // namespace drape::app

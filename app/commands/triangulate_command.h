@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace drape {
+namespace drape::app {
 
 struct TriangulateWords {
   std::string pattern, out, edge, min_angle, tolerance;  // as on the command line; empty when not given
@@ -13,4 +13,4 @@ struct TriangulateWords {
 // Returns the exit code; throws InputError.
 int triangulate_file(const TriangulateWords& words);
 
-}  // namespace drape
+}  // namespace drape::app

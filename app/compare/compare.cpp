@@ -15,7 +15,7 @@
 #include "mesh/base/errors.h"
 #include "mesh/base/threads.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 void say(const CommonOptions& common, const std::string& line) {
@@ -211,4 +211,4 @@ int compare(const std::filesystem::path& path, const CompareWords& words, const 
   return comparison.agree() ? 0 : 1;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 // a of y = c x^a, by least squares of the logarithms; empty when that cannot be told.
@@ -63,4 +63,4 @@ std::vector<Growth> growth_of(const Comparison& comparison) {
   return all;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -10,7 +10,7 @@
 #include "app/base/words.h"
 #include "solver/linear/linear_solver.h"
 
-namespace drape {
+namespace drape::app {
 
 struct SolverChoice {
   std::string text;  // as it was given, NAME or NAME@TOLERANCE
@@ -110,4 +110,4 @@ struct Comparison {
 // Fitted to the last step of every size; empty when there are fewer than two sizes.
 std::vector<Growth> growth_of(const Comparison& comparison);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -7,7 +7,7 @@
 #include "app/compare/tables.h"
 #include "app/recording/output.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
@@ -160,4 +160,4 @@ void CompareFiles::write(const Comparison& comparison) {
   for (const std::string& name : comparison.systems) written_.push_back(folder_ / name);
 }
 
-}  // namespace drape
+}  // namespace drape::app

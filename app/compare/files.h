@@ -8,7 +8,7 @@
 #include "app/compare/comparison.h"
 #include "app/compare/recording_solver.h"
 
-namespace drape {
+namespace drape::app {
 
 std::string compare_json(const Comparison& comparison);
 std::string compare_csv(const Comparison& comparison);  // one row for each solver and system
@@ -31,4 +31,4 @@ class CompareFiles {
   std::vector<std::filesystem::path> written_;
 };
 
-}  // namespace drape
+}  // namespace drape::app

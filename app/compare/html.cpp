@@ -8,7 +8,7 @@
 #include "app/recording/scene_record.h"
 #include "app/view/page_template.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 // A solver looks the same in every plot.
@@ -228,4 +228,4 @@ std::string compare_html(const Comparison& comparison) {
   return text + "</body>\n</html>\n";
 }
 
-}  // namespace drape
+}  // namespace drape::app

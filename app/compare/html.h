@@ -5,9 +5,9 @@
 #include "app/compare/comparison.h"
 #include "app/compare/plot.h"
 
-namespace drape {
+namespace drape::app {
 
 std::vector<Plot> plots_of(const Comparison& comparison);
 std::string compare_html(const Comparison& comparison);
 
-}  // namespace drape
+}  // namespace drape::app

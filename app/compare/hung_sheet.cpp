@@ -5,7 +5,7 @@
 #include "mesh/triangles/generate.h"
 #include "solver/forces/noh_jung.h"
 
-namespace drape {
+namespace drape::app {
 
 Scene hung_sheet_scene(const std::vector<Setting>& settings) {
   const std::string where = "the hung sheet";
@@ -41,4 +41,4 @@ Simulation make_hung_sheet(const Scene& scene, int side) {
   return simulation;
 }
 
-}  // namespace drape
+}  // namespace drape::app

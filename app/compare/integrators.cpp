@@ -8,7 +8,7 @@
 #include "app/simulation/time_loop.h"
 #include "mesh/base/stopwatch.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 struct Run {
@@ -157,4 +157,4 @@ bool compare_integrators(const Scene& scene, const CompareOptions& options, doub
   return true;
 }
 
-}  // namespace drape
+}  // namespace drape::app

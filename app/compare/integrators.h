@@ -5,7 +5,7 @@
 #include "app/compare/comparison.h"
 #include "app/scene/scene.h"
 
-namespace drape {
+namespace drape::app {
 
 // Fills comparison.runs; all runs go to the time `duration` [s]. The reference is the run with the shortest
 // step of the first integrator in the list that reached the end. The other linear solvers run at the first
@@ -14,4 +14,4 @@ namespace drape {
 bool compare_integrators(const Scene& scene, const CompareOptions& options, double duration, bool quiet,
                          Comparison& comparison);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -8,7 +8,7 @@
 #include "mesh/base/errors.h"
 #include "solver/integrators/integrator.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 [[noreturn]] void refuse(const std::string& option, const std::string& given, const std::string& why) {
@@ -158,4 +158,4 @@ CompareOptions compare_options(const CompareWords& words) {
   return options;
 }
 
-}  // namespace drape
+}  // namespace drape::app

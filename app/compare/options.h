@@ -4,7 +4,7 @@
 
 #include "app/compare/comparison.h"
 
-namespace drape {
+namespace drape::app {
 
 struct CompareWords {
   // As on the command line; empty when not given.
@@ -14,4 +14,4 @@ struct CompareWords {
 
 CompareOptions compare_options(const CompareWords& words);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -2,7 +2,7 @@
 
 #include "solver/linear/projected.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 VecX by_particle(const LinearSystem& system, const VecX& rows) {
@@ -48,4 +48,4 @@ VecX solution_within_constraints(const LinearSystem& system, const VecX& y) {
   return by_particle(system, rows);
 }
 
-}  // namespace drape
+}  // namespace drape::app

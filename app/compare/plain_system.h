@@ -9,7 +9,7 @@
 
 #include "app/compare/recording_solver.h"
 
-namespace drape {
+namespace drape::app {
 
 using PlainMatrix = Eigen::SparseMatrix<double>;
 
@@ -29,4 +29,4 @@ PlainFilter plain_filter(const LinearSystem& system);
 // dv = S y + z of a solution y of the projected system, both in particle order.
 VecX solution_within_constraints(const LinearSystem& system, const VecX& y);
 
-}  // namespace drape
+}  // namespace drape::app

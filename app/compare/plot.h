@@ -6,7 +6,7 @@
 
 #include "app/base/json.h"
 
-namespace drape {
+namespace drape::app {
 
 struct Series {
   std::string name;
@@ -27,4 +27,4 @@ struct Plot {
 // As the page holds it, with the points that can be shown; null when no point can.
 Json json_of(const Plot& plot);
 
-}  // namespace drape
+}  // namespace drape::app

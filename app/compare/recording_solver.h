@@ -6,7 +6,7 @@
 
 #include "solver/linear/linear_solver.h"
 
-namespace drape {
+namespace drape::app {
 
 struct LinearSystem {
   BlockMatrix A;
@@ -47,4 +47,4 @@ class RecordingSolver final : public LinearSolver {
   SystemRecording& recording_;
 };
 
-}  // namespace drape
+}  // namespace drape::app

@@ -9,7 +9,7 @@
 #include "app/simulation/measure.h"
 #include "mesh/base/stopwatch.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 VecX residual_of(const LinearSystem& system, const VecX& dv) {
@@ -168,7 +168,7 @@ SolverRow SolverBench::measure(Entry& entry, const LinearSystem& system, double 
 
 std::vector<SolverRow> SolverBench::compare(const LinearSystem& system, int step,
                                             const Simulation& simulation) {
-  const double reference = drape::reference_impulse(system);
+  const double reference = reference_impulse(system);
   std::vector<SolverRow> rows;
   for (Entry& entry : entries_) {
     if (interrupted()) return {};
@@ -223,4 +223,4 @@ void SolverBench::pass_verdict(SolverRow& row, double largest) const {
   row.verdict = row.agrees ? "agree" : difference_text(row, where_, asked, fulfilled);
 }
 
-}  // namespace drape
+}  // namespace drape::app

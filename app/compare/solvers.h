@@ -13,7 +13,7 @@
 #include "app/compare/recording_solver.h"
 #include "app/simulation/simulation.h"
 
-namespace drape {
+namespace drape::app {
 
 // Solvers stop by recurrences, which drift from the true residual.
 inline constexpr double residual_slack = 1.05;
@@ -61,4 +61,4 @@ class SolverBench {
   std::string where_;
 };
 
-}  // namespace drape
+}  // namespace drape::app

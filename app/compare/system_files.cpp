@@ -4,7 +4,7 @@
 #include "app/compare/plain_system.h"
 #include "app/recording/output.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 struct Part {
@@ -118,4 +118,4 @@ std::vector<AtomicFile> write_system(const std::filesystem::path& folder, const 
   return files;
 }
 
-}  // namespace drape
+}  // namespace drape::app

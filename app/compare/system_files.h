@@ -12,11 +12,11 @@
 #include "app/base/json.h"
 #include "app/compare/recording_solver.h"
 
-namespace drape {
+namespace drape::app {
 
 // Makes the folder and writes the files beside their names: they appear when they are kept. `about` comes
 // first in system.json. Throws InputError when something cannot be written.
 std::vector<AtomicFile> write_system(const std::filesystem::path& folder, const LinearSystem& system,
                                      Json::Members about);
 
-}  // namespace drape
+}  // namespace drape::app

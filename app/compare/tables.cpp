@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 std::string optional_number(const std::optional<double>& value, int digits) {
@@ -203,4 +203,4 @@ std::string text_of(const Comparison& comparison) {
   return text;
 }
 
-}  // namespace drape
+}  // namespace drape::app

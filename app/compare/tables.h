@@ -3,7 +3,7 @@
 
 #include "app/compare/comparison.h"
 
-namespace drape {
+namespace drape::app {
 
 struct ReportTable {
   std::string title;
@@ -22,4 +22,4 @@ std::string line_of(const IntegratorRow& run, const Comparison& comparison);
 
 std::string text_of(const Comparison& comparison);
 
-}  // namespace drape
+}  // namespace drape::app

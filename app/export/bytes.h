@@ -8,7 +8,7 @@
 
 #include "mesh/base/vectors.h"
 
-namespace drape {
+namespace drape::app {
 
 template <std::endian order>
 void append_word(std::string& bytes, std::uint32_t word) {
@@ -35,4 +35,4 @@ void append_floats(std::string& bytes, const std::vector<Vec3>& vectors) {
     for (const double coordinate : vector) append_float<order>(bytes, coordinate);
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -2,7 +2,7 @@
 
 #include "app/export/numbers.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 struct CsvFrame {
@@ -57,4 +57,4 @@ void write_csv(const ExportSource& source, ExportFiles& files, Names&) {
   }
 }
 
-}  // namespace drape
+}  // namespace drape::app

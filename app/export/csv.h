@@ -6,9 +6,9 @@
 #include "app/export/files.h"
 #include "app/export/source.h"
 
-namespace drape {
+namespace drape::app {
 
 Names csv_files(const ExportSource& source);  // NAME.csv of each cloth and soft body
 void write_csv(const ExportSource& source, ExportFiles& files, Names& notes);
 
-}  // namespace drape
+}  // namespace drape::app

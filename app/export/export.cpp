@@ -18,7 +18,7 @@
 #include "app/recording/run_files.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 struct Format {
@@ -102,4 +102,4 @@ int export_folder(const ExportWords& words) {
   return 0;
 }
 
-}  // namespace drape
+}  // namespace drape::app

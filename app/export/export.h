@@ -5,7 +5,7 @@
 
 #include "app/base/words.h"
 
-namespace drape {
+namespace drape::app {
 
 struct ExportWords {
   // to: one of export_formats(). out: empty stands for FOLDER/export.
@@ -17,4 +17,4 @@ int export_folder(const ExportWords& words);  // returns the exit code
 
 Names export_formats();
 
-}  // namespace drape
+}  // namespace drape::app

@@ -12,7 +12,7 @@
 #include "mesh/triangles/normals.h"
 #include "mesh/triangles/topology.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 // "0.5 1" of a vt line; a missing second number is 0.
@@ -191,4 +191,4 @@ std::vector<Vec3> normals_of(const Corners& corners, const std::vector<Vec3>& po
   return normals;
 }
 
-}  // namespace drape
+}  // namespace drape::app

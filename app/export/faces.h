@@ -8,7 +8,7 @@
 
 #include "mesh/triangles/triangle_mesh.h"
 
-namespace drape {
+namespace drape::app {
 
 using Uv = std::array<double, 2>;  // as in OBJ, v goes up
 
@@ -47,4 +47,4 @@ std::vector<Vec3> normals_of(const Corners& corners, const std::vector<Vec3>& po
 // Bodies may have hard edges, such as the edges of a box. Cloths have none.
 inline double crease_of(bool body) { return body ? M_PI / 3 : M_PI; }
 
-}  // namespace drape
+}  // namespace drape::app

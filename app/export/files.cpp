@@ -5,7 +5,7 @@
 #include "app/recording/run_files.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 
 namespace fs = std::filesystem;
 
@@ -108,4 +108,4 @@ void ExportFiles::keep() {
   kept_ = true;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -12,7 +12,7 @@
 #include "app/base/atomic_file.h"
 #include "app/base/words.h"
 
-namespace drape {
+namespace drape::app {
 
 class ExportFiles {
  public:
@@ -50,4 +50,4 @@ class ExportFiles {
   bool kept_ = false;
 };
 
-}  // namespace drape
+}  // namespace drape::app

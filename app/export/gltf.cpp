@@ -8,7 +8,7 @@
 #include "app/export/gltf_buffer.h"
 #include "app/export/rigid.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 constexpr auto little = std::endian::little;
@@ -254,4 +254,4 @@ void write_gltf(const ExportSource& source, ExportFiles& files, Names& notes) {
   writer.write(files.open(source.name + ".glb"), notes);
 }
 
-}  // namespace drape
+}  // namespace drape::app

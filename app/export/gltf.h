@@ -10,9 +10,9 @@
 #include "app/export/files.h"
 #include "app/export/source.h"
 
-namespace drape {
+namespace drape::app {
 
 Names gltf_files(const ExportSource& source);  // NAME.glb
 void write_gltf(const ExportSource& source, ExportFiles& files, Names& notes);
 
-}  // namespace drape
+}  // namespace drape::app

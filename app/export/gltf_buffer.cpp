@@ -5,7 +5,7 @@
 #include "app/export/bytes.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 constexpr auto little = std::endian::little;
@@ -61,4 +61,4 @@ std::string glb_start(const std::string& json, std::uint64_t size, const std::st
   return bytes;
 }
 
-}  // namespace drape
+}  // namespace drape::app

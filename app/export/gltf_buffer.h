@@ -10,7 +10,7 @@
 #include "app/base/json.h"
 #include "mesh/base/vectors.h"
 
-namespace drape {
+namespace drape::app {
 
 // What a block of numbers is used for, as the JSON says it.
 enum class GltfUse { indices, vertices, animation };
@@ -39,4 +39,4 @@ Eigen::AlignedBox3f float_range(const std::vector<Vec3>& vectors);
 // be larger than 4 GiB, the most that the header can express.
 std::string glb_start(const std::string& json, std::uint64_t size, const std::string& file);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -2,7 +2,7 @@
 
 #include "app/export/bytes.h"
 
-namespace drape {
+namespace drape::app {
 
 std::string mdd_header(const std::vector<double>& times, int points) {
   std::string bytes;
@@ -36,4 +36,4 @@ void write_mdd(const ExportSource& source, ExportFiles& files, Names&) {
   }
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -6,7 +6,7 @@
 #include "app/export/files.h"
 #include "app/export/source.h"
 
-namespace drape {
+namespace drape::app {
 
 std::string mdd_header(const std::vector<double>& times, int points);  // s
 std::string mdd_frame(const std::vector<Vec3>& positions);             // m
@@ -15,4 +15,4 @@ std::string mdd_frame(const std::vector<Vec3>& positions);             // m
 Names mdd_files(const ExportSource& source);
 void write_mdd(const ExportSource& source, ExportFiles& files, Names& notes);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <string>
 
-namespace drape {
+namespace drape::app {
 
 inline void append_text(std::string& text, double number) {
   char buffer[32];
@@ -12,4 +12,4 @@ inline void append_text(std::string& text, double number) {
   text.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
 }
 
-}  // namespace drape
+}  // namespace drape::app

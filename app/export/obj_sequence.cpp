@@ -3,7 +3,7 @@
 #include "app/export/sequence.h"
 #include "mesh/obj/obj.h"
 
-namespace drape {
+namespace drape::app {
 
 Names obj_files(const ExportSource& source) { return sequence_files(source, ".obj"); }
 
@@ -13,4 +13,4 @@ void write_obj_sequence(const ExportSource& source, ExportFiles& files, Names&) 
   });
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -5,9 +5,9 @@
 #include "app/export/files.h"
 #include "app/export/source.h"
 
-namespace drape {
+namespace drape::app {
 
 Names obj_files(const ExportSource& source);
 void write_obj_sequence(const ExportSource& source, ExportFiles& files, Names& notes);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -5,7 +5,7 @@
 #include "app/export/bytes.h"
 #include "app/export/sequence.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 constexpr auto little = std::endian::little;
@@ -61,4 +61,4 @@ void write_ply(const ExportSource& source, ExportFiles& files, Names& notes) {
   });
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -8,7 +8,7 @@
 #include "app/export/files.h"
 #include "app/export/source.h"
 
-namespace drape {
+namespace drape::app {
 
 // uv: one for each vertex, or empty. time in s.
 std::string ply_bytes(const std::vector<Vec3>& positions, const std::vector<Uv>& uv, const Faces& faces,
@@ -17,4 +17,4 @@ std::string ply_bytes(const std::vector<Vec3>& positions, const std::vector<Uv>&
 Names ply_files(const ExportSource& source);
 void write_ply(const ExportSource& source, ExportFiles& files, Names& notes);
 
-}  // namespace drape
+}  // namespace drape::app

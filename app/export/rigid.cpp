@@ -2,7 +2,7 @@
 
 #include <Eigen/SVD>
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 constexpr double tolerance = 1e-6;  // of the shape's size
@@ -35,4 +35,4 @@ std::optional<std::vector<RigidPlace>> rigid_places(const ExportSource& source, 
   return places;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -7,7 +7,7 @@
 
 #include "app/export/source.h"
 
-namespace drape {
+namespace drape::app {
 
 struct RigidPlace {
   Vec3 centre;  // m
@@ -19,4 +19,4 @@ struct RigidPlace {
 // that is, when the shape deforms. The sign of each quaternion is chosen so that it is near the one before.
 std::optional<std::vector<RigidPlace>> rigid_places(const ExportSource& source, std::size_t s);
 
-}  // namespace drape
+}  // namespace drape::app

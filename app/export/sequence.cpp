@@ -1,6 +1,6 @@
 #include "app/export/sequence.h"
 
-namespace drape {
+namespace drape::app {
 
 Names sequence_files(const ExportSource& source, const std::string& ending) {
   Names names;
@@ -13,4 +13,4 @@ Names sequence_files(const ExportSource& source, const std::string& ending) {
   return names;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -6,7 +6,7 @@
 #include "app/export/source.h"
 #include "app/recording/run_files.h"
 
-namespace drape {
+namespace drape::app {
 
 Names sequence_files(const ExportSource& source, const std::string& ending);
 
@@ -26,4 +26,4 @@ void write_sequence(const ExportSource& source, const std::string& ending, Expor
   }
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -5,7 +5,7 @@
 #include "app/base/interrupt.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 bool rises(double before, double now) { return static_cast<float>(now) > static_cast<float>(before); }
@@ -41,4 +41,4 @@ double usual_frame_rate(const ExportSource& source) {
   return 1 / *middle;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -6,7 +6,7 @@
 
 #include "app/recording/recording.h"
 
-namespace drape {
+namespace drape::app {
 
 struct ExportSource {
   const Recording& recording;
@@ -36,4 +36,4 @@ ExportSource export_source(const Recording& recording, int every);
 // 24 for a single frame.
 double usual_frame_rate(const ExportSource& source);
 
-}  // namespace drape
+}  // namespace drape::app

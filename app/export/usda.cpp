@@ -7,7 +7,7 @@
 #include "app/export/numbers.h"
 #include "mesh/triangles/extent.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 void append_tuple(std::string& text, const auto& numbers) {
@@ -147,4 +147,4 @@ void write_usda(const ExportSource& source, ExportFiles& files, Names&) {
   UsdaWriter(source, files.open(source.name + ".usda")).write();
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -8,7 +8,7 @@
 #include "app/export/files.h"
 #include "app/export/source.h"
 
-namespace drape {
+namespace drape::app {
 
 // Names of prims, different for different shapes.
 Names usd_names(const Names& shapes);
@@ -17,4 +17,4 @@ std::string usd_string(std::string_view text);  // in quotes, escaped
 Names usda_files(const ExportSource& source);
 void write_usda(const ExportSource& source, ExportFiles& files, Names& notes);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -4,7 +4,7 @@
 #include "app/export/bytes.h"
 #include "app/export/sequence.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 constexpr auto little = std::endian::little;
@@ -124,4 +124,4 @@ void write_vtk(const ExportSource& source, ExportFiles& files, Names& notes) {
   files.write(source.name + ".pvd", pvd_text(source));
 }
 
-}  // namespace drape
+}  // namespace drape::app

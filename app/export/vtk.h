@@ -9,7 +9,7 @@
 #include "app/export/files.h"
 #include "app/export/source.h"
 
-namespace drape {
+namespace drape::app {
 
 struct VtpData {
   std::vector<Vec3> positions;   // m
@@ -24,4 +24,4 @@ std::string vtp_bytes(const VtpData& data, const Faces& faces, double time);
 Names vtk_files(const ExportSource& source);
 void write_vtk(const ExportSource& source, ExportFiles& files, Names& notes);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -3,7 +3,7 @@
 #include "app/base/text_file.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 
 Pattern read_pattern(const std::filesystem::path& path, Names& notes) {
   const std::string text = read_text(path, "SVG or TOML");
@@ -53,4 +53,4 @@ void name_segments(Chain& chain, const Names& given, bool loop) {
   }
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -9,7 +9,7 @@
 #include "app/base/words.h"
 #include "mesh/pattern/pattern.h"
 
-namespace drape {
+namespace drape::app {
 
 // A file is read as a drawing when its text begins with '<' or its name ends in ".svg", else as TOML. `notes`
 // receives what was ignored. Throws InputError.
@@ -28,4 +28,4 @@ Seam parse_seam(std::string_view text, const std::string& where);
 void finish_loop(Chain& chain, bool close);
 void name_segments(Chain& chain, const Names& given, bool loop);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -13,7 +13,7 @@
 #include "app/pattern/svg_values.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 using Affine = Eigen::Matrix<double, 2, 3>;
@@ -330,4 +330,4 @@ Pattern parse_svg_pattern(std::string_view text, const std::string& name, Names&
   return SvgReader(text, name, notes).read();
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -3,7 +3,7 @@
 #include "app/pattern/pattern_read.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 class PatternTable {
@@ -176,4 +176,4 @@ Pattern parse_toml_pattern(std::string_view text, const std::string& name, KeyNo
   return PatternTable(parse_toml(text, name), notes).read(name);
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-namespace drape {
+namespace drape::app {
 
 std::string in_cm(double metres) { return rounded(100 * metres, 4) + " cm"; }
 std::string in_deg(double radians) { return rounded(radians * 180 / std::numbers::pi, 4) + " deg"; }
@@ -25,4 +25,4 @@ Names remarks(const PatternMesh& made, double min_angle, const std::string& wher
   return lines;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -6,7 +6,7 @@
 #include "app/base/words.h"
 #include "mesh/pattern/pattern.h"
 
-namespace drape {
+namespace drape::app {
 
 std::string in_cm(double metres);    // "12.5 cm"
 std::string in_deg(double radians);  // "20.3 deg"
@@ -15,4 +15,4 @@ std::string in_deg(double radians);  // "20.3 deg"
 // triangles with a smaller angle than that. `where` names the pattern.
 Names remarks(const PatternMesh& made, double min_angle, const std::string& where);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -8,7 +8,7 @@
 
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 // Takes what svgpp reads: absolute coordinates, shorthands written out, arcs as arcs.
@@ -94,4 +94,4 @@ Eigen::Matrix<double, 2, 3> parse_svg_transform(const std::string& text) {
   return taker.matrix;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -8,7 +8,7 @@
 
 #include "mesh/pattern/curve.h"
 
-namespace drape {
+namespace drape::app {
 
 // One subpath of a 'd' attribute, in its own coordinates. Segments without a length are left out.
 struct SvgPath {
@@ -20,4 +20,4 @@ struct SvgPath {
 std::vector<SvgPath> parse_svg_path(const std::string& d);
 Eigen::Matrix<double, 2, 3> parse_svg_transform(const std::string& text);
 
-}  // namespace drape
+}  // namespace drape::app

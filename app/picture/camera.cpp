@@ -10,7 +10,7 @@
 
 #include "mesh/base/errors.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 namespace {
 
 const std::map<std::string, View>& views() {
@@ -87,4 +87,4 @@ Camera Framing::camera() const {
   return camera;
 }
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

@@ -10,7 +10,7 @@
 #include "app/base/words.h"
 #include "mesh/base/vectors.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 
 struct View {
   double azimuth = 30, elevation = 20;  // degrees
@@ -48,4 +48,4 @@ class Framing {
   double right_, left_, above_, below_, nearest_, farthest_;
 };
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

@@ -6,7 +6,7 @@
 
 #include "app/recording/recording.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 namespace {
 
 constexpr std::array<Pixel, 7> cloths = {{{0, 114, 178},
@@ -98,4 +98,4 @@ double round_step(double range, int count) {
   return 10 * power;
 }
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

@@ -11,7 +11,7 @@
 
 #include "app/picture/image.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 
 using Light = Eigen::Array3f;  // linear red, green and blue
 
@@ -37,4 +37,4 @@ Pixel colour_of(const Scale& scale, double value);
 // A step of 1, 2 or 5 times a power of ten, of which about `count` fit into `range` > 0.
 double round_step(double range, int count);
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 
 using Pixel = std::array<std::uint8_t, 3>;  // sRGB
 
@@ -28,4 +28,4 @@ struct Image {
 // 256 colours are enough.
 std::string png(const Image& image);
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

@@ -8,7 +8,7 @@
 #include "app/base/words.h"
 #include "app/picture/text.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 namespace {
 
 void fill(Image& image, int x0, int y0, int x1, int y1, const Pixel& colour) {
@@ -59,4 +59,4 @@ void draw_legend(Image& image, const PixelBox& strip, const Scale& scale, double
   }
 }
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

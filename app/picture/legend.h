@@ -6,7 +6,7 @@
 #include "app/picture/camera.h"
 #include "app/picture/colours.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 
 inline constexpr double legend_lines = 4.4;  // height of the legend over the size of its letters
 
@@ -14,4 +14,4 @@ inline constexpr double legend_lines = 4.4;  // height of the legend over the si
 // extreme value that occurs.
 void draw_legend(Image& image, const PixelBox& strip, const Scale& scale, double largest, int size);
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

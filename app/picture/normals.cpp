@@ -7,7 +7,7 @@
 #include "mesh/triangles/normals.h"
 #include "mesh/triangles/topology.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 namespace {
 
 constexpr int crowd = 1000;  // faces round a vertex
@@ -55,4 +55,4 @@ std::vector<CornerNormals> corner_normals(const std::vector<Vec3>& positions,
   return normals;
 }
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

@@ -9,11 +9,11 @@
 
 #include "mesh/triangles/triangle_mesh.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 
 using CornerNormals = std::array<Eigen::Vector3f, 3>;  // unit vectors; zero for a triangle without area
 
 std::vector<CornerNormals> corner_normals(const std::vector<Vec3>& positions,
                                           const std::vector<Triangle>& triangles, double crease_degrees);
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

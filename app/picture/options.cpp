@@ -8,7 +8,7 @@
 #include "app/base/words.h"
 #include "mesh/base/errors.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 namespace {
 
 constexpr int smallest = 16, largest = 8192;  // pixels
@@ -77,4 +77,4 @@ std::vector<int> frames_named(const std::string& text, int count, int several, c
   return frames;
 }
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

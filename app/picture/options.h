@@ -8,7 +8,7 @@
 
 #include "app/picture/colours.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 
 // Both throw InputError.
 std::pair<int, int> size_named(const std::string& text);  // "1280x960"; empty stands for that size
@@ -19,4 +19,4 @@ std::optional<Field> field_asked(const std::string& text);
 // `where` stands in messages.
 std::vector<int> frames_named(const std::string& text, int count, int several, const std::string& where);
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

@@ -11,7 +11,7 @@
 #include "app/recording/run_files.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 using namespace drawing;
@@ -149,4 +149,4 @@ int picture(const PictureWords& words) {
   return 0;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace drape {
+namespace drape::app {
 
 struct PictureWords {
   std::vector<std::string> inputs;  // folders or OBJ files; several are drawn side by side
@@ -19,4 +19,4 @@ struct PictureWords {
 };
 int picture(const PictureWords& words);  // returns the exit code
 
-}  // namespace drape
+}  // namespace drape::app

@@ -7,7 +7,7 @@
 
 #include "app/picture/image.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 namespace {
 
 void append(png_structp writer, png_bytep bytes, png_size_t count) {
@@ -79,4 +79,4 @@ std::string png(const Image& image) {
   return bytes;
 }
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

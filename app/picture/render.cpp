@@ -10,7 +10,7 @@
 #include "app/picture/surface.h"
 #include "mesh/base/parallel.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 namespace {
 
 constexpr int margin = 4;              // samples round a tile: half of the largest window that is averaged
@@ -206,4 +206,4 @@ void render(const Still& still, const Camera& camera, const Look& look, Image& i
   Painter(still, camera, look, image, box).paint();
 }
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

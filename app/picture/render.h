@@ -13,7 +13,7 @@
 #include "app/picture/camera.h"
 #include "app/picture/still.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 
 struct Look {
   std::optional<Scale> scale;  // for the values of the parts
@@ -25,4 +25,4 @@ struct Look {
 // Draws into the part `box` of the image, which covers whole pixels.
 void render(const Still& still, const Camera& camera, const Look& look, Image& image, const PixelBox& box);
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

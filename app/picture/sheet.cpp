@@ -9,7 +9,7 @@
 #include "mesh/base/errors.h"
 #include "mesh/triangles/extent.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 namespace {
 
 constexpr double around = 0.35;  // of the cloth's size: how much of a body is shown with it
@@ -144,4 +144,4 @@ Image Sheet::draw(const std::vector<SheetPanel>& panels) const {
   return image;
 }
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

@@ -9,7 +9,7 @@
 #include "app/picture/colours.h"
 #include "app/picture/still.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 
 struct SheetPanel {
   const Subject* subject;
@@ -53,4 +53,4 @@ class Sheet {
   double largest_ = 0;
 };
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

@@ -7,7 +7,7 @@
 #include "mesh/obj/obj.h"
 #include "mesh/triangles/extent.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 namespace {
 
 // A ball that moves is drawn with sectors of two tones, or nobody could see that it turns. A ball is what has
@@ -103,4 +103,4 @@ Still Subject::still(int frame, std::optional<Field> field) const {
   return still;
 }
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

@@ -10,7 +10,7 @@
 #include "app/recording/recording.h"
 #include "mesh/triangles/triangle_mesh.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 
 struct StillPart {
   bool body = false;
@@ -53,4 +53,4 @@ class Subject {
   std::vector<std::vector<Vec3>> sectors_;  // for each shape of the recording; empty when it is not a ball
 };
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

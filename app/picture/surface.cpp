@@ -7,7 +7,7 @@
 
 #include "mesh/triangles/normals.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 namespace {
 
 constexpr double cloth_crease = 80, body_crease = 40;       // degrees
@@ -137,4 +137,4 @@ bool Surface::covered(const Vec3& from, const Vec3& direction, double distance) 
   return blocked(from, direction, distance);
 }
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

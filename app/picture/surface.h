@@ -7,7 +7,7 @@
 #include "app/picture/render.h"
 #include "mesh/distance/triangle_tree.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 
 // What a ray from the eye hits.
 struct Seen {
@@ -51,4 +51,4 @@ class Surface {
   std::optional<TriangleTree> tree_;
 };
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

@@ -13,7 +13,7 @@ extern const unsigned char drape_font[];
 extern const unsigned drape_font_bytes;
 }
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 namespace {
 
 class Font {
@@ -92,4 +92,4 @@ void draw_text(Image& image, int x, int y, std::string_view utf8, int size, Anch
   });
 }
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

@@ -5,7 +5,7 @@
 
 #include "app/picture/image.h"
 
-namespace drape::drawing {
+namespace drape::app::drawing {
 
 enum class Anchor { left, middle, right };
 
@@ -16,4 +16,4 @@ int text_width(std::string_view utf8, int size);
 void draw_text(Image& image, int x, int y, std::string_view utf8, int size, Anchor anchor,
                const Pixel& colour);
 
-}  // namespace drape::drawing
+}  // namespace drape::app::drawing

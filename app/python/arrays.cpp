@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-namespace drape::python {
+namespace drape::app::python {
 namespace {
 
 std::string shape_text(const py::ssize_t* begin, py::ssize_t count) {
@@ -113,4 +113,4 @@ py::object read_only(const Mat3& m) {
   return locked(Array({py::ssize_t{3}, py::ssize_t{3}}, by_rows.data()));
 }
 
-}  // namespace drape::python
+}  // namespace drape::app::python

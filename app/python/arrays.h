@@ -13,7 +13,7 @@
 #include "app/python/bindings.h"
 #include "mesh/base/vectors.h"
 
-namespace drape::python {
+namespace drape::app::python {
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using IntArray = py::array_t<int, py::array::c_style | py::array::forcecast>;
@@ -42,7 +42,7 @@ Mat3 mat3(const py::handle& from);
 py::object read_only(const Vec3& v);
 py::object read_only(const Mat3& m);
 
-}  // namespace drape::python
+}  // namespace drape::app::python
 
 namespace pybind11::detail {
 
@@ -50,11 +50,11 @@ template <>
 struct type_caster<drape::Vec3> {
   PYBIND11_TYPE_CASTER(drape::Vec3, const_name("numpy.ndarray"));
   bool load(handle from, bool /*convert*/) {
-    value = drape::python::vec3(from);
+    value = drape::app::python::vec3(from);
     return true;
   }
   static handle cast(const drape::Vec3& v, return_value_policy /*policy*/, handle /*parent*/) {
-    return drape::python::read_only(v).release();
+    return drape::app::python::read_only(v).release();
   }
 };
 
@@ -62,11 +62,11 @@ template <>
 struct type_caster<drape::Mat3> {
   PYBIND11_TYPE_CASTER(drape::Mat3, const_name("numpy.ndarray"));
   bool load(handle from, bool /*convert*/) {
-    value = drape::python::mat3(from);
+    value = drape::app::python::mat3(from);
     return true;
   }
   static handle cast(const drape::Mat3& m, return_value_policy /*policy*/, handle /*parent*/) {
-    return drape::python::read_only(m).release();
+    return drape::app::python::read_only(m).release();
   }
 };
 

@@ -3,7 +3,7 @@
 
 #include <pybind11/pybind11.h>
 
-namespace drape::python {
+namespace drape::app::python {
 
 namespace py = pybind11;
 
@@ -18,4 +18,4 @@ void add_solvers(py::module_& m);      // solvers.cpp
 void add_integrators(py::module_& m);  // integrators.cpp
 void add_simulations(py::module_& m);  // simulations.cpp
 
-}  // namespace drape::python
+}  // namespace drape::app::python

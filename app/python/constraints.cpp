@@ -8,7 +8,7 @@
 #include "app/python/in_use.h"
 #include "solver/system/state.h"
 
-namespace drape::python {
+namespace drape::app::python {
 namespace {
 
 using namespace py::literals;
@@ -136,4 +136,4 @@ void add_constraints(py::module_& m) {
       });
 }
 
-}  // namespace drape::python
+}  // namespace drape::app::python

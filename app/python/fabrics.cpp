@@ -10,7 +10,7 @@
 #include "solver/forces/noh_jung.h"
 #include "solver/forces/soft.h"
 
-namespace drape::python {
+namespace drape::app::python {
 namespace {
 
 DampingKind damping_kind(const std::string& name) {
@@ -187,4 +187,4 @@ void add_fabrics(py::module_& m) {
       "lattice"_a, "material"_a, "first_particle"_a = 0, "Springs and damping of a lattice.");
 }
 
-}  // namespace drape::python
+}  // namespace drape::app::python

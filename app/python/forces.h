@@ -8,7 +8,7 @@
 
 #include "solver/forces/force.h"
 
-namespace drape::python {
+namespace drape::app::python {
 
 struct Forces {
   std::vector<std::unique_ptr<Force>> all;  // empty after a system has taken them
@@ -24,4 +24,4 @@ struct Forces {
   }
 };
 
-}  // namespace drape::python
+}  // namespace drape::app::python

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace drape::python {
+namespace drape::app::python {
 namespace {
 
 std::set<const void*> marked;
@@ -25,4 +25,4 @@ InUse::~InUse() {
   for (const void* object : objects_) marked.erase(object);
 }
 
-}  // namespace drape::python
+}  // namespace drape::app::python

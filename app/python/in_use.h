@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace drape::python {
+namespace drape::app::python {
 
 class InUse {
  public:
@@ -23,4 +23,4 @@ class InUse {
 
 void require_free(const void* object);  // throws std::runtime_error when the object is marked
 
-}  // namespace drape::python
+}  // namespace drape::app::python

@@ -9,7 +9,7 @@
 #include "mesh/base/threads.h"
 #include "solver/integrators/integrator.h"
 
-namespace drape::python {
+namespace drape::app::python {
 namespace {
 
 using namespace py::literals;
@@ -178,4 +178,4 @@ void add_integrators(py::module_& m) {
   m.def("set_threads", &set_threads, "count"_a, "ValueError when it is less than 1.");
 }
 
-}  // namespace drape::python
+}  // namespace drape::app::python

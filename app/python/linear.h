@@ -6,7 +6,7 @@
 #include "app/compare/recording_solver.h"
 #include "app/python/bindings.h"
 
-namespace drape::python {
+namespace drape::app::python {
 
 using Solver = std::shared_ptr<LinearSolver>;
 
@@ -32,4 +32,4 @@ std::unique_ptr<LinearSolver> recorded(const Solver& solver, SystemRecording& re
 // The last system that was solved while recording, or None. It is not copied; a later system takes its place.
 py::object last_system(const SystemRecording& recording);
 
-}  // namespace drape::python
+}  // namespace drape::app::python

@@ -12,7 +12,7 @@
 #include "mesh/triangles/generate.h"
 #include "mesh/triangles/topology.h"
 
-namespace drape::python {
+namespace drape::app::python {
 namespace {
 
 namespace fs = std::filesystem;
@@ -204,4 +204,4 @@ void add_meshes(py::module_& m) {
   add_generated(m);
 }
 
-}  // namespace drape::python
+}  // namespace drape::app::python

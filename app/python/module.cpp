@@ -4,7 +4,7 @@
 
 PYBIND11_MODULE(_drape, m) {
   namespace py = pybind11;
-  using namespace drape::python;
+  using namespace drape::app::python;
   m.doc() = "An implicit cloth solver. Quantities are in SI units, arrays have a row for each particle.";
   m.attr("__version__") = DRAPE_VERSION;
   // A user's mistake, in the words of the command line.

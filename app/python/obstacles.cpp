@@ -6,7 +6,7 @@
 #include "app/base/words.h"
 #include "app/python/shapes.h"
 
-namespace drape::python {
+namespace drape::app::python {
 namespace {
 
 using namespace py::literals;
@@ -100,4 +100,4 @@ void add_obstacles(py::module_& m) {
       });
 }
 
-}  // namespace drape::python
+}  // namespace drape::app::python

@@ -3,7 +3,7 @@
 
 #include "app/base/words.h"
 
-namespace drape::python {
+namespace drape::app::python {
 namespace {
 
 std::string text(const StepReport& r) {
@@ -83,4 +83,4 @@ void add_reports_of_steps(py::module_& m) {
       });
 }
 
-}  // namespace drape::python
+}  // namespace drape::app::python

@@ -4,7 +4,7 @@
 #include "app/python/bindings.h"
 #include "app/recording/steps_csv.h"
 
-namespace drape::python {
+namespace drape::app::python {
 
 // A row of steps.csv as one object.
 struct RunStep : StepReport {
@@ -29,4 +29,4 @@ void require_done(const StepReport& report);
 
 void add_reports_of_steps(py::module_& m);
 
-}  // namespace drape::python
+}  // namespace drape::app::python

@@ -5,7 +5,7 @@
 #include "app/base/words.h"
 #include "mesh/base/errors.h"
 
-namespace drape::python {
+namespace drape::app::python {
 namespace {
 
 constexpr int deepest = 200;  // as in a TOML file; a dict may also contain itself
@@ -79,4 +79,4 @@ Node of(const py::handle& value, const std::string& where, int depth) {
 
 Node node_of(const py::handle& value, const std::string& where) { return of(value, where, 0); }
 
-}  // namespace drape::python
+}  // namespace drape::app::python

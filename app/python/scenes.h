@@ -4,10 +4,10 @@
 #include "app/base/toml_file.h"
 #include "app/python/bindings.h"
 
-namespace drape::python {
+namespace drape::app::python {
 
 // where: "scene", then "scene['cloth'][0]['bend']" and so on, for messages. Raises ValueError for
 // what TOML cannot express.
 Node node_of(const py::handle& value, const std::string& where);
 
-}  // namespace drape::python
+}  // namespace drape::app::python

@@ -9,7 +9,7 @@
 #include "app/base/words.h"
 #include "app/scene/shape_table.h"
 
-namespace drape::python {
+namespace drape::app::python {
 namespace {
 
 using namespace py::literals;
@@ -137,4 +137,4 @@ void add_shapes(py::module_& m) {
         "Of points (n, 3) [m]: signed distances (n,) [m], negative inside, and outward normals (n, 3).");
 }
 
-}  // namespace drape::python
+}  // namespace drape::app::python

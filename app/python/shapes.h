@@ -4,7 +4,7 @@
 #include "app/python/arrays.h"
 #include "constraints/shape.h"
 
-namespace drape::python {
+namespace drape::app::python {
 
 struct MeshSurface {
   MeshBody surface;
@@ -15,4 +15,4 @@ struct LevelSetSurface {
 
 Shape shape_of(const py::handle& object);  // raises TypeError when the object is not a shape
 
-}  // namespace drape::python
+}  // namespace drape::app::python

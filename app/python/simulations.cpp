@@ -15,7 +15,7 @@
 #include "mesh/base/errors.h"
 #include "mesh/base/threads.h"
 
-namespace drape::python {
+namespace drape::app::python {
 namespace {
 
 namespace fs = std::filesystem;
@@ -259,4 +259,4 @@ void add_simulations(py::module_& m) {
   m.def("has_viewer", &has_viewer, "whether the viewer is in this build");
 }
 
-}  // namespace drape::python
+}  // namespace drape::app::python

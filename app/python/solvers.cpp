@@ -8,7 +8,7 @@
 #include "app/python/in_use.h"
 #include "app/python/linear.h"
 
-namespace drape::python {
+namespace drape::app::python {
 namespace {
 
 using namespace py::literals;
@@ -224,4 +224,4 @@ void add_solvers(py::module_& m) {
       "name -> what it is, of this build");
 }
 
-}  // namespace drape::python
+}  // namespace drape::app::python

@@ -6,7 +6,7 @@
 #include "mesh/base/errors.h"
 #include "solver/system/state.h"
 
-namespace drape::python {
+namespace drape::app::python {
 namespace {
 
 State made(const py::object& x, const py::object& v, double time) {
@@ -89,4 +89,4 @@ void add_states(py::module_& m) {
   m.def("at_rest", &at_rest, py::arg("mesh"), "The mesh as it stands, without velocity, at time 0.");
 }
 
-}  // namespace drape::python
+}  // namespace drape::app::python

@@ -8,7 +8,7 @@
 #include "app/python/forces.h"
 #include "app/python/in_use.h"
 
-namespace drape::python {
+namespace drape::app::python {
 namespace {
 
 void check_state(const System& system, const State& state) {
@@ -109,4 +109,4 @@ void add_systems(py::module_& m) {
       });
 }
 
-}  // namespace drape::python
+}  // namespace drape::app::python

@@ -10,7 +10,7 @@
 #include "app/simulation/body_mesh.h"
 #include "mesh/obj/obj.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -181,4 +181,4 @@ int BodyFiles::shapes() const {
       std::count_if(entries_.begin(), entries_.end(), [](const Entry& entry) { return entry.has_shape; }));
 }
 
-}  // namespace drape
+}  // namespace drape::app

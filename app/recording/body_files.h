@@ -18,7 +18,7 @@
 #include "app/recording/run_json.h"
 #include "app/simulation/simulation.h"
 
-namespace drape {
+namespace drape::app {
 
 enum class Frames { pc2, obj, none };
 
@@ -73,4 +73,4 @@ class BodyFiles {
   std::optional<AtomicFile> poses_;
 };
 
-}  // namespace drape
+}  // namespace drape::app

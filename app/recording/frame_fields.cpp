@@ -5,7 +5,7 @@
 
 #include "app/recording/touch.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 constexpr float no_edge = -std::numeric_limits<float>::infinity();
@@ -72,4 +72,4 @@ void FrameFields::keep() {
   contact_.keep();
 }
 
-}  // namespace drape
+}  // namespace drape::app

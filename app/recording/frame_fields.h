@@ -9,7 +9,7 @@
 #include "app/base/npy.h"
 #include "app/simulation/simulation.h"
 
-namespace drape {
+namespace drape::app {
 
 class FrameFields {
  public:
@@ -30,4 +30,4 @@ class FrameFields {
 std::filesystem::path field_path(const std::filesystem::path& folder, const std::string& name,
                                  const std::string& field);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -8,7 +8,7 @@
 #include "app/scene/body_frames.h"
 #include "mesh/obj/obj.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -182,4 +182,4 @@ void Output::list_written() {
   if (frames_ == Frames::obj) written_.push_back({folder_ / "frames", frames});
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -13,7 +13,7 @@
 #include "app/recording/steps_csv.h"
 #include "app/simulation/simulation.h"
 
-namespace drape {
+namespace drape::app {
 
 // Makes the folder and tries to write into it. Throws InputError when that fails, or when one of `files`
 // could not be written there: at once, not when everything has been computed.
@@ -55,4 +55,4 @@ class Output {
   std::vector<Written> written_;
 };
 
-}  // namespace drape
+}  // namespace drape::app

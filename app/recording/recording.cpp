@@ -7,7 +7,7 @@
 #include "app/recording/frame_fields.h"
 #include "mesh/obj/obj.h"
 
-namespace drape {
+namespace drape::app {
 
 namespace fs = std::filesystem;
 
@@ -84,4 +84,4 @@ std::vector<Touch> Recording::touches(std::size_t k, int frame) const {
   return touches;
 }
 
-}  // namespace drape
+}  // namespace drape::app

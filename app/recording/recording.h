@@ -16,7 +16,7 @@
 #include "constraints/pose.h"
 #include "mesh/triangles/triangle_mesh.h"
 
-namespace drape {
+namespace drape::app {
 
 struct RecordedShape {
   std::string name;    // of its files, NAME.obj
@@ -106,4 +106,4 @@ class Recording {
   std::vector<int> frame_counts_;  // one for each of shapes_; 0: it does not move
 };
 
-}  // namespace drape
+}  // namespace drape::app

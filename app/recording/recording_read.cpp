@@ -15,7 +15,7 @@
 #include "app/recording/frame_fields.h"
 #include "mesh/obj/obj.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -317,4 +317,4 @@ void Recording::settle_frames() {
     for (int k = 0; k < frames; ++k) times_[k] = k / usual_rate;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -4,7 +4,7 @@
 
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 
 namespace fs = std::filesystem;
 
@@ -32,4 +32,4 @@ std::string numbered(std::string_view name, std::size_t number, std::string_view
   return std::string(name) + digits + std::string(ending);
 }
 
-}  // namespace drape
+}  // namespace drape::app

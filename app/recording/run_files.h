@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace drape {
+namespace drape::app {
 
 // True when the file would have such a name in the output folder `run`.
 bool is_of_run(const std::filesystem::path& file, const std::filesystem::path& run);
@@ -20,4 +20,4 @@ void spare_run(const std::filesystem::path& file, const std::filesystem::path& r
 // The file name "sheet_0007.ply" of the seventh in a sequence; numbers count from 1.
 std::string numbered(std::string_view name, std::size_t number, std::string_view ending);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -5,7 +5,7 @@
 #include "app/base/json.h"
 #include "app/simulation/measure.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 Json cloths_json(const std::vector<ClothCounts>& cloths) {
@@ -130,4 +130,4 @@ std::string run_json(const RunRecord& record) {
   return json_text(json);
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -10,7 +10,7 @@
 #include "app/simulation/simulation.h"
 #include "mesh/base/vectors.h"
 
-namespace drape {
+namespace drape::app {
 
 struct ClothCounts {
   std::string name;
@@ -77,4 +77,4 @@ struct RunRecord {
 
 std::string run_json(const RunRecord& record);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -5,7 +5,7 @@
 #include "app/base/words.h"
 #include "constraints/pins.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
@@ -240,4 +240,4 @@ std::vector<SceneFact> scene_facts(const Json& run) {
   return facts;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -8,7 +8,7 @@
 #include "app/base/json.h"
 #include "app/simulation/simulation.h"
 
-namespace drape {
+namespace drape::app {
 
 Json fabric_json(const ClothEntry& entry);
 Json material_json(const SoftMaterial& material);
@@ -28,4 +28,4 @@ struct SceneFact {
 // Of run.json or compare.json. Nothing where it does not say, as that of an earlier version.
 std::vector<SceneFact> scene_facts(const Json& run);
 
-}  // namespace drape
+}  // namespace drape::app

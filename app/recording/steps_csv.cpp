@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <utility>
 
-namespace drape {
+namespace drape::app {
 
 StepsWriter::StepsWriter(std::filesystem::path path) : file_(std::move(path)) {
   file_.write(
@@ -28,4 +28,4 @@ void StepsWriter::add(const StepRow& row) {
   file_.write(text, static_cast<std::size_t>(length));
 }
 
-}  // namespace drape
+}  // namespace drape::app

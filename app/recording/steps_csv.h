@@ -8,7 +8,7 @@
 #include "app/base/atomic_file.h"
 #include "solver/integrators/integrator.h"
 
-namespace drape {
+namespace drape::app {
 
 struct StepRow {
   long step = 0;    // counts from 1
@@ -31,4 +31,4 @@ class StepsWriter {
   AtomicFile file_;
 };
 
-}  // namespace drape
+}  // namespace drape::app

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-namespace drape {
+namespace drape::app {
 
 enum class Touch : std::uint8_t { free = 0, slides = 1, sticks = 2 };
 
-}  // namespace drape
+}  // namespace drape::app

@@ -7,7 +7,7 @@
 #include "app/base/settings.h"
 #include "app/recording/output.h"
 
-namespace drape {
+namespace drape::app {
 
 struct CommonOptions {
   std::filesystem::path out;  // empty: out/NAME
@@ -16,4 +16,4 @@ struct CommonOptions {
   std::vector<Setting> settings;
 };
 
-}  // namespace drape
+}  // namespace drape::app

@@ -12,7 +12,7 @@
 #include "mesh/obj/obj.h"
 #include "mesh/triangles/extent.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 // Of the vertices that carry triangles: a stray one must not push the body away.
@@ -213,4 +213,4 @@ Scene drop_scene(const DropOptions& options, const std::vector<Setting>& setting
   return DropScene(options, settings, label).make();
 }
 
-}  // namespace drape
+}  // namespace drape::app

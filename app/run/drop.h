@@ -8,7 +8,7 @@
 
 #include "app/scene/scene.h"
 
-namespace drape {
+namespace drape::app {
 
 struct DropOptions {
   std::filesystem::path cloth;  // OBJ
@@ -25,4 +25,4 @@ std::string onto_examples();  // "sphere:0.3, box:1x0.5x1": the built-in shapes 
 // Throws InputError.
 Scene drop_scene(const DropOptions& options, const std::vector<Setting>& settings, const std::string& label);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 int terminal_width() {
@@ -81,4 +81,4 @@ void Progress::say(const std::string& line) {
   std::fprintf(stderr, "%s\n", line.c_str());
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -7,7 +7,7 @@
 
 #include "app/recording/steps_csv.h"
 
-namespace drape {
+namespace drape::app {
 
 class Progress {
  public:
@@ -29,4 +29,4 @@ class Progress {
   Clock::time_point start_ = Clock::now(), drawn_ = {};
 };
 
-}  // namespace drape
+}  // namespace drape::app

@@ -13,7 +13,7 @@
 #include "mesh/base/errors.h"
 #include "mesh/base/threads.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -260,7 +260,7 @@ const RunRecord& Run::finish() {
   return record_;
 }
 
-std::string Run::summary() const { return output_ ? drape::summary(record_, *output_) : std::string(); }
+std::string Run::summary() const { return output_ ? app::summary(record_, *output_) : std::string(); }
 
 int run(const Scene& scene, const RunOptions& options) {
   if (scene.simulation.threads > 0) set_threads(scene.simulation.threads);
@@ -277,4 +277,4 @@ int run(const Scene& scene, const RunOptions& options) {
   return record.failure ? 1 : record.interrupted ? 130 : 0;
 }
 
-}  // namespace drape
+}  // namespace drape::app

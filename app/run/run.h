@@ -10,7 +10,7 @@
 #include "app/run/progress.h"
 #include "app/simulation/time_loop.h"
 
-namespace drape {
+namespace drape::app {
 
 struct RunOptions {
   std::filesystem::path out;  // empty: no files
@@ -75,4 +75,4 @@ class Run {
 // InputError.
 int run(const Scene& scene, const RunOptions& options);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -2,7 +2,7 @@
 
 #include "app/simulation/measure.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 std::string hints(const RunRecord& record) {
@@ -51,4 +51,4 @@ std::string summary(const RunRecord& record, const Output& output) {
   return text;
 }
 
-}  // namespace drape
+}  // namespace drape::app

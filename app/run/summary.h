@@ -5,8 +5,8 @@
 
 #include "app/recording/output.h"
 
-namespace drape {
+namespace drape::app {
 
 std::string summary(const RunRecord& record, const Output& output);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -10,7 +10,7 @@
 #include "app/scene/load_mesh.h"
 #include "mesh/obj/obj.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -173,4 +173,4 @@ std::shared_ptr<const MeshFrames> load_frames(const ObstacleEntry& entry, const 
   return frames;
 }
 
-}  // namespace drape
+}  // namespace drape::app

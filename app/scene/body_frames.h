@@ -7,7 +7,7 @@
 #include "app/scene/scene.h"
 #include "mesh/triangles/mesh_frames.h"
 
-namespace drape {
+namespace drape::app {
 
 // Reads the keys frames, frame_rate and frames_start of an obstacle. Without the key
 // `frames` there are no files.
@@ -22,4 +22,4 @@ std::vector<std::filesystem::path> frame_files(const FramesEntry& entry);
 // vertices than the rest mesh.
 std::shared_ptr<const MeshFrames> load_frames(const ObstacleEntry& entry, const TriangleMesh& rest);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -6,7 +6,7 @@
 
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -92,4 +92,4 @@ NamedFabric load_fabric(const std::string& name, KeyNotes* notes) {
   return named;
 }
 
-}  // namespace drape
+}  // namespace drape::app

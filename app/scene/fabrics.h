@@ -8,7 +8,7 @@
 #include "app/base/table.h"
 #include "solver/forces/fabric.h"
 
-namespace drape {
+namespace drape::app {
 
 struct NamedFabric {
   std::string name;
@@ -25,4 +25,4 @@ NamedFabric load_fabric(const std::string& name, KeyNotes* notes = nullptr);  //
 // Reads those fabric keys that the table has into `fabric`; the other values stay.
 void read_fabric(Table& table, Fabric& fabric);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -9,7 +9,7 @@
 #include "mesh/base/errors.h"
 #include "mesh/base/hash.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -96,4 +96,4 @@ void warn_of_error(const LevelSet& level_set, const std::string& name, Names& me
                        place(error->vanished_where) + advice);
 }
 
-}  // namespace drape
+}  // namespace drape::app

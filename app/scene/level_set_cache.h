@@ -9,7 +9,7 @@
 #include "app/base/words.h"
 #include "mesh/level_set/level_set.h"
 
-namespace drape {
+namespace drape::app {
 
 struct LevelSetRequest {
   std::filesystem::path mesh;  // the OBJ file
@@ -29,4 +29,4 @@ std::string described(const LevelSet& level_set);
 // Adds warnings about parts of the mesh that the grid does not show accurately.
 void warn_of_error(const LevelSet& level_set, const std::string& name, Names& messages);
 
-}  // namespace drape
+}  // namespace drape::app

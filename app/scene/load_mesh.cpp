@@ -2,7 +2,7 @@
 
 #include "mesh/obj/obj.h"
 
-namespace drape {
+namespace drape::app {
 
 void require_file(const std::filesystem::path& path, const std::string& where) {
   const bool in_a_file = where.find(':') != where.npos;
@@ -38,4 +38,4 @@ void add_messages(const MeshReport& report, const std::string& name, Names& mess
   }
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -7,7 +7,7 @@
 #include "app/scene/scene.h"
 #include "mesh/obj/examine.h"
 
-namespace drape {
+namespace drape::app {
 
 // Throws InputError when `where` is a place in a scene file ("scene.toml:12") and there is no file `path`.
 void require_file(const std::filesystem::path& path, const std::string& where);
@@ -23,4 +23,4 @@ TriangleMesh placed(TriangleMesh mesh, const Placement& placement, const std::st
 // of them is a refusal.
 void add_messages(const MeshReport& report, const std::string& name, Names& messages);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -6,7 +6,7 @@
 #include "app/scene/pose_csv.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -121,4 +121,4 @@ std::optional<Motion> read_motion(Table& table, const fs::path& folder, const Ve
   return path;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -8,7 +8,7 @@
 #include "app/scene/scene.h"
 #include "constraints/motion.h"
 
-namespace drape {
+namespace drape::app {
 
 // Empty when the table has no such key. default_centre [m] is the centre of rotation when the motion gives
 // none. `source` receives how the motion was given.
@@ -17,4 +17,4 @@ std::optional<Motion> read_motion(Table& table, const std::filesystem::path& fol
 
 Vec3 read_spin(Table& table);  // the key `spin = { axis, rate }` as a vector, rad/s; zero when absent
 
-}  // namespace drape
+}  // namespace drape::app

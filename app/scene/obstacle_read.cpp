@@ -6,7 +6,7 @@
 #include "app/scene/shape_table.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 
 namespace fs = std::filesystem;
 
@@ -178,4 +178,4 @@ Names shape_names() {
 
 bool is_vdb(const fs::path& path) { return path.extension() == ".vdb"; }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -7,7 +7,7 @@
 #include "app/base/table.h"
 #include "app/scene/scene.h"
 
-namespace drape {
+namespace drape::app {
 
 ObstacleEntry read_obstacle(Table& table, const std::filesystem::path& folder);
 
@@ -24,4 +24,4 @@ Placement read_placement(Table& table);  // and `scale`
 // `mesh`, required: a file named relative to the folder of the scene.
 std::filesystem::path read_path(Table& table, const std::filesystem::path& folder, const About& about);
 
-}  // namespace drape
+}  // namespace drape::app

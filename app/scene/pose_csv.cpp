@@ -9,7 +9,7 @@
 #include "app/base/words.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 constexpr double not_unit = 1e-2;  // of the length of a quaternion: more than the rounding of printed digits
@@ -157,4 +157,4 @@ std::vector<Keyframe> read_poses(const std::filesystem::path& path) {
   return poses_of(read_csv(path), path.string());
 }
 
-}  // namespace drape
+}  // namespace drape::app

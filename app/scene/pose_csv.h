@@ -11,10 +11,10 @@
 #include "app/base/csv_file.h"
 #include "constraints/motion.h"
 
-namespace drape {
+namespace drape::app {
 
 // Both throw InputError "poses.csv:12: ...".
 std::vector<Keyframe> read_poses(const std::filesystem::path& path);
 std::vector<Keyframe> poses_of(const std::vector<CsvRow>& rows, const std::string& name);
 
-}  // namespace drape
+}  // namespace drape::app

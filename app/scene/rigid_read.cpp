@@ -4,7 +4,7 @@
 #include "app/scene/motion_read.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 constexpr double round_off = 1e-9;
@@ -62,4 +62,4 @@ void read_rigid(Table& table, ObstacleEntry& entry, const Vec3& middle) {
   entry.rigid = rigid;
 }
 
-}  // namespace drape
+}  // namespace drape::app

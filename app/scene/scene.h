@@ -16,7 +16,7 @@
 #include "solver/forces/soft.h"
 #include "solver/integrators/integrator.h"
 
-namespace drape {
+namespace drape::app {
 
 // x -> rotation (scale x) + translate.
 struct Placement {
@@ -166,4 +166,4 @@ Names model_names();
 bool is_vdb(const std::filesystem::path& path);      // by its extension
 bool is_pattern(const std::filesystem::path& path);  // by its extension: .svg, .toml
 
-}  // namespace drape
+}  // namespace drape::app

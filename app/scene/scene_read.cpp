@@ -12,7 +12,7 @@
 #include "mesh/base/errors.h"
 #include "mesh/base/threads.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -272,4 +272,4 @@ Scene read_scene(const fs::path& path, const std::vector<Setting>& settings) {
   return read_scene(read_toml(path), settings, path.parent_path(), path.string());
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -3,7 +3,7 @@
 #include "app/scene/obstacle_read.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 
 std::vector<PanelEntry> read_panels(Table& cloth) {
   std::vector<PanelEntry> panels;
@@ -54,4 +54,4 @@ std::vector<SeamEntry> read_seams(Table& cloth) {
   return seams;
 }
 
-}  // namespace drape
+}  // namespace drape::app

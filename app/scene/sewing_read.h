@@ -4,9 +4,9 @@
 #include "app/base/table.h"
 #include "app/scene/scene.h"
 
-namespace drape {
+namespace drape::app {
 
 std::vector<PanelEntry> read_panels(Table& cloth);
 std::vector<SeamEntry> read_seams(Table& cloth);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -12,7 +12,7 @@
 #include "app/base/table.h"
 #include "constraints/shape.h"
 
-namespace drape {
+namespace drape::app {
 
 // place      a point [m], which goes with the shape when it is moved
 // direction  a vector of any length but zero
@@ -159,4 +159,4 @@ void for_each_field(const F& f) {
   std::apply([&](const auto&... field) { (f(field), ...); }, Described<Kind>::fields);
 }
 
-}  // namespace drape
+}  // namespace drape::app

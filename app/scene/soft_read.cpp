@@ -5,7 +5,7 @@
 #include "app/scene/obstacle_read.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 void read_counts(Table& table, SoftEntry& soft) {
@@ -92,4 +92,4 @@ SoftEntry read_soft(Table& table, const std::filesystem::path& folder) {
   return soft;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -4,9 +4,9 @@
 #include "app/base/table.h"
 #include "app/scene/scene.h"
 
-namespace drape {
+namespace drape::app {
 
 // Reads all keys but the name and the pins, which are read as a cloth's.
 SoftEntry read_soft(Table& table, const std::filesystem::path& folder);
 
-}  // namespace drape
+}  // namespace drape::app

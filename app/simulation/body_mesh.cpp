@@ -1,6 +1,6 @@
 #include "app/simulation/body_mesh.h"
 
-namespace drape {
+namespace drape::app {
 
 TriangleMesh present_mesh(const MovingBody& body, double time) {
   TriangleMesh mesh = mesh_of(body.obstacle().shape);
@@ -10,4 +10,4 @@ TriangleMesh present_mesh(const MovingBody& body, double time) {
   return mesh;
 }
 
-}  // namespace drape
+}  // namespace drape::app

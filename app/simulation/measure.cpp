@@ -6,7 +6,7 @@
 
 #include "mesh/base/hash.h"
 
-namespace drape {
+namespace drape::app {
 
 Distribution distribution(std::vector<double> values) {
   if (values.empty()) return {};
@@ -19,4 +19,4 @@ Distribution distribution(std::vector<double> values) {
   return {at(0.5), at(0.95), values.back(), sum / static_cast<double>(values.size())};
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -6,7 +6,7 @@
 #include "solver/assembly/cloth.h"
 #include "solver/system/measure.h"
 
-namespace drape {
+namespace drape::app {
 
 // p95 is the 95th percentile. Percentiles are values that occur (nearest rank).
 struct Distribution {
@@ -14,4 +14,4 @@ struct Distribution {
 };
 Distribution distribution(std::vector<double> values);  // all zero when there are no values
 
-}  // namespace drape
+}  // namespace drape::app

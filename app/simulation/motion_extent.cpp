@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 using Eigen::Quaterniond;
@@ -57,4 +57,4 @@ std::string described(const Motion& motion, const MotionSource& source, const Ve
          rounded(extent.turn * 180 / std::numbers::pi, 4) + " deg" + (ends ? "" : " in the run");
 }
 
-}  // namespace drape
+}  // namespace drape::app

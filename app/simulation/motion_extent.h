@@ -7,7 +7,7 @@
 
 #include "app/scene/scene.h"
 
-namespace drape {
+namespace drape::app {
 
 struct MotionExtent {
   double way = 0, turn = 0;
@@ -20,4 +20,4 @@ MotionExtent motion_extent(const Motion& motion, const Vec3& X, double start, do
 // followed for `duration` [s], to the end of the run.
 std::string described(const Motion& motion, const MotionSource& source, const Vec3& X, double duration);
 
-}  // namespace drape
+}  // namespace drape::app

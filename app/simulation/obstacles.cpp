@@ -6,7 +6,7 @@
 #include "mesh/base/errors.h"
 #include "mesh/base/match.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 Shape load_body(const ObstacleEntry& entry, Body& body, Names& messages) {
@@ -109,4 +109,4 @@ void add_obstacles(const Scene& scene, bool keep_level_sets, Simulation& simulat
   }
 }
 
-}  // namespace drape
+}  // namespace drape::app

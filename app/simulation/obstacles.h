@@ -4,10 +4,10 @@
 
 #include "app/simulation/simulation.h"
 
-namespace drape {
+namespace drape::app {
 
 // Adds the bodies to the constraints. keep_level_sets: whether a level set that had to be made is
 // kept beside its mesh.
 void add_obstacles(const Scene& scene, bool keep_level_sets, Simulation& simulation);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -10,7 +10,7 @@
 #include "mesh/pattern/flat_pattern.h"
 #include "mesh/triangles/topology.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 // As drape triangulate writes it and reads it again.
@@ -90,4 +90,4 @@ void load_parts(const Scene& scene, Simulation& simulation) {
   }
 }
 
-}  // namespace drape
+}  // namespace drape::app

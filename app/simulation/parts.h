@@ -3,7 +3,7 @@
 
 #include "app/simulation/simulation.h"
 
-namespace drape {
+namespace drape::app {
 
 // Cloths first, then soft bodies. Throws InputError: a mesh that cannot be read or simulated, a lattice beyond the
 // memory that is free.
@@ -11,4 +11,4 @@ void load_parts(const Scene& scene, Simulation& simulation);
 
 SoftPart load_soft(const SoftEntry& entry, Names& messages);
 
-}  // namespace drape
+}  // namespace drape::app

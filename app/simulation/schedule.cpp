@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 constexpr double whole = 1e-6;  // of a step: what is less than that off is not off
@@ -109,4 +109,4 @@ std::optional<long> Schedule::frame() const {
   return *index_ / grid_.per_frame();
 }
 
-}  // namespace drape
+}  // namespace drape::app

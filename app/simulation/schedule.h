@@ -8,7 +8,7 @@
 
 #include <optional>
 
-namespace drape {
+namespace drape::app {
 
 // The times t_i.
 class StepGrid {
@@ -62,4 +62,4 @@ class Schedule {
   long steps_ = 0, done_ = 0;
 };
 
-}  // namespace drape
+}  // namespace drape::app

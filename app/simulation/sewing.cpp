@@ -7,7 +7,7 @@
 #include "mesh/base/errors.h"
 #include "mesh/pattern/panels.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 // The seams of an entry: its two curves, or all that the mesh declares.
@@ -74,4 +74,4 @@ void tell_of_gathers(const OpenSeam& seam, Names& messages) {
                      (much ? "; is it the right pair?" : ""));
 }
 
-}  // namespace drape
+}  // namespace drape::app

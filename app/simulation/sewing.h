@@ -4,7 +4,7 @@
 #include "app/scene/scene.h"
 #include "solver/assembly/seam.h"
 
-namespace drape {
+namespace drape::app {
 
 // Throws InputError when a panel is no group of the mesh or shares a vertex with another one.
 void place_panels(const ClothEntry& entry, TriangleMesh& mesh, Names& messages);
@@ -15,4 +15,4 @@ std::vector<SeamPlan> seam_plans(const ClothEntry& entry, const TriangleMesh& me
 // Says what is gathered.
 void tell_of_gathers(const OpenSeam& seam, Names& messages);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -7,7 +7,7 @@
 #include "app/simulation/warnings.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 void pin_down(const PinEntry& pin, const Cloth& cloth, const Scene& scene, Simulation& simulation) {
@@ -47,4 +47,4 @@ Simulation make_simulation(const Scene& scene, bool keep_level_sets) {
   return simulation;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -10,7 +10,7 @@
 #include "mesh/obj/examine.h"
 #include "solver/assembly/assembly.h"
 
-namespace drape {
+namespace drape::app {
 
 // A mesh or level set of an obstacle as it was loaded, for `drape check`.
 struct Body {
@@ -32,4 +32,4 @@ struct Simulation : Assembly {
 // whether a level set that had to be made is kept beside its mesh (app/scene/level_set_cache.h).
 Simulation make_simulation(const Scene& scene, bool keep_level_sets = true);
 
-}  // namespace drape
+}  // namespace drape::app

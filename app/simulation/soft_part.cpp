@@ -5,7 +5,7 @@
 #include "app/simulation/parts.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 // What a particle takes, with its springs, its blocks of the matrix and of a preconditioner, and what a
@@ -53,4 +53,4 @@ SoftPart load_soft(const SoftEntry& entry, Names& messages) {
   return part;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -1,6 +1,6 @@
 #include "app/simulation/time_loop.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 int first_not_finite(const State& state) {
@@ -34,4 +34,4 @@ const StepReport& TimeLoop::step() {
   return report_;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -5,7 +5,7 @@
 #include "app/simulation/schedule.h"
 #include "app/simulation/simulation.h"
 
-namespace drape {
+namespace drape::app {
 
 // Takes a simulation through a schedule, a step at a time. Keeps a reference to the simulation.
 class TimeLoop {
@@ -35,4 +35,4 @@ void march(Steps& steps, const GoOn& go_on) {
   while (!steps.over() && !interrupted() && go_on(steps.step())) continue;
 }
 
-}  // namespace drape
+}  // namespace drape::app

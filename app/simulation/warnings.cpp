@@ -5,7 +5,7 @@
 #include "app/simulation/schedule.h"
 #include "solver/forces/choi_ko.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 std::string body_name(const Obstacle& obstacle, const std::string& name_given) {
@@ -137,4 +137,4 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
         "obstacle (drop: --floor or --onto) or pins");
 }
 
-}  // namespace drape
+}  // namespace drape::app

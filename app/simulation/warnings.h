@@ -3,9 +3,9 @@
 
 #include "app/simulation/simulation.h"
 
-namespace drape {
+namespace drape::app {
 
 // Adds "warning: ..." lines to simulation.messages.
 void add_warnings(const Scene& scene, Simulation& simulation);
 
-}  // namespace drape
+}  // namespace drape::app

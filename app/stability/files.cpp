@@ -4,7 +4,7 @@
 #include "app/base/json.h"
 #include "app/stability/stability.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 std::string theory_in_words(const std::optional<double>& theory) {
@@ -101,4 +101,4 @@ std::string stability_csv(const StabilityTable& t) {
   return text;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -9,7 +9,7 @@
 #include "app/simulation/time_loop.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 // Round numbers of their own: the standard's distributions differ from library to library.
@@ -140,4 +140,4 @@ std::optional<StabilityRow> largest_stable_step(const Scene& given, const std::s
   return row;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -14,7 +14,7 @@
 #include "app/scene/scene.h"
 #include "solver/stability/stability.h"
 
-namespace drape {
+namespace drape::app {
 
 struct StabilityOptions {
   double time = 1;  // s, duration of every run
@@ -45,4 +45,4 @@ Spectrum spectrum_of(const Scene& scene);
 std::optional<StabilityRow> largest_stable_step(const Scene& scene, const std::string& integrator,
                                                 const StabilityOptions& options, const Spectrum& spectrum);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -9,7 +9,7 @@
 #include "mesh/base/errors.h"
 #include "mesh/base/threads.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 void read(const std::string& text, const char* option, const Dimension& dimension, double& value,
@@ -104,4 +104,4 @@ int stability(const std::filesystem::path& path, const StabilityWords& words, co
   return 0;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -4,7 +4,7 @@
 #include "app/run/common_options.h"
 #include "app/stability/search.h"
 
-namespace drape {
+namespace drape::app {
 
 // As on the command line; empty when not given.
 struct StabilityWords {
@@ -25,4 +25,4 @@ std::string stability_text(const StabilityTable& table);  // for people to read
 std::string stability_json(const StabilityTable& table);
 std::string stability_csv(const StabilityTable& table);
 
-}  // namespace drape
+}  // namespace drape::app

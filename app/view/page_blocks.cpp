@@ -5,7 +5,7 @@
 #include <new>
 #include <stdexcept>
 
-namespace drape {
+namespace drape::app {
 
 std::string base64(std::string_view bytes) {
   static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -52,4 +52,4 @@ std::string PageBlocks::html() const {
   return html;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace drape {
+namespace drape::app {
 
 class PageBlocks {
  public:
@@ -20,4 +20,4 @@ class PageBlocks {
 std::string base64(std::string_view bytes);
 std::string compressed(std::string_view bytes);  // a zlib stream
 
-}  // namespace drape
+}  // namespace drape::app

@@ -8,7 +8,7 @@
 #include "app/view/track.h"
 #include "mesh/obj/obj.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 using FrameValues = std::function<std::vector<double>(int frame)>;  // component by component
@@ -216,4 +216,4 @@ PageData page_data(const Recording& recording) {
   return page;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -11,7 +11,7 @@
 #include "app/recording/recording.h"
 #include "app/view/page_blocks.h"
 
-namespace drape {
+namespace drape::app {
 
 struct PageData {
   Json head;
@@ -32,4 +32,4 @@ std::string index_bytes(const std::vector<int>& list);
 // The sides of the mesh's polygons (of its triangles when it has no document), each once, two vertices each.
 std::vector<int> polygon_sides(const TriangleMesh& mesh);
 
-}  // namespace drape
+}  // namespace drape::app

@@ -3,7 +3,7 @@
 #include "app/recording/scene_record.h"
 #include "app/view/page_data.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 class Facts {
@@ -95,4 +95,4 @@ Json page_facts(const Recording& recording) {
   return facts.rows();
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace drape {
+namespace drape::app {
 
 // The page of `drape view` without its data. Places in it: @@TITLE@@ (twice) and @@DATA@@.
 std::string_view page_template();  // empty: the viewer is not in this build
@@ -14,4 +14,4 @@ std::string_view plot_style(), plot_script();  // empty: the viewer is not in th
 
 std::string missing_viewer();  // why, and what to do
 
-}  // namespace drape
+}  // namespace drape::app

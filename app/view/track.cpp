@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 using Frame = std::vector<std::uint16_t>;
@@ -113,4 +113,4 @@ Json TrackWriter::finish() {
   return Json::Members{{"min", std::move(min)}, {"step", std::move(step)}, {"chunks", chunks_}};
 }
 
-}  // namespace drape
+}  // namespace drape::app

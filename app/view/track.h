@@ -16,7 +16,7 @@
 #include "app/base/json.h"
 #include "app/view/page_blocks.h"
 
-namespace drape {
+namespace drape::app {
 
 struct ValueRange {
   double low = 0, high = 0;
@@ -60,4 +60,4 @@ class TrackWriter {
   long not_finite_ = 0;
 };
 
-}  // namespace drape
+}  // namespace drape::app

@@ -11,7 +11,7 @@
 #include "app/view/page_template.h"
 #include "mesh/base/errors.h"
 
-namespace drape {
+namespace drape::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ int view(const ViewWords& words) {
   return 0;
 }
 
-}  // namespace drape
+}  // namespace drape::app

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace drape {
+namespace drape::app {
 
 struct ViewWords {
   std::string folder, out;  // as on the command line; an empty `out` stands for FOLDER/view.html
@@ -17,4 +17,4 @@ std::string view_html(const std::filesystem::path& folder);
 
 bool has_viewer();  // whether this build has the viewer
 
-}  // namespace drape
+}  // namespace drape::app

@@ -7,7 +7,7 @@
 #include "mesh/distance/closest_on_triangle.h"
 #include "mesh/triangles/normals.h"
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 double value(const std::array<double, 4>& c, double s) { return c[0] + s * (c[1] + s * (c[2] + s * c[3])); }
@@ -96,4 +96,4 @@ double steepness(const StraightWay& x, const std::array<StraightWay, 3>& corners
   return n.dot(way) / (n.norm() * way.norm());
 }
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -9,7 +9,7 @@
 
 #include "mesh/base/vectors.h"
 
-namespace drape {
+namespace drape::internal {
 
 // From `from` at s = 0 to `to` at s = 1.
 struct StraightWay {
@@ -31,4 +31,4 @@ int crossings(const StraightWay& x, const std::array<StraightWay, 3>& corners, d
 // an area or a way.
 double steepness(const StraightWay& x, const std::array<StraightWay, 3>& corners, double s);
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <utility>
 
-namespace drape {
+namespace drape::internal {
 MovingBoxes::MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places) {
   std::vector<std::pair<Vec3, int>> middles;
   middles.reserve(faces.size());
@@ -87,4 +87,4 @@ void MovingBoxes::refit(const std::vector<Face>& faces, const std::vector<Vec3>&
     }
 }
 
-}  // namespace drape
+}  // namespace drape::internal

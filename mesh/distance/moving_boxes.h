@@ -17,7 +17,7 @@
 
 #include "mesh/distance/surface_faces.h"
 
-namespace drape {
+namespace drape::internal {
 
 class MovingBoxes {
  public:
@@ -126,4 +126,4 @@ void MovingBoxes::along(const Vec3& x0, const Vec3& x1, double from, const Ask& 
   }
 }
 
-}  // namespace drape
+}  // namespace drape::internal

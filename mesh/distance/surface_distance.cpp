@@ -21,6 +21,9 @@
 #include "mesh/triangles/normals.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
 constexpr double touching = 1e-12;  // m: nearer than this the point is on the surface

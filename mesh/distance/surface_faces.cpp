@@ -10,7 +10,7 @@
 #include "mesh/triangles/normals.h"
 #include "mesh/triangles/topology.h"
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 constexpr double flat = 1e-13;  // height / longest edge of a triangle that has no area
@@ -135,4 +135,4 @@ SurfaceFaces surface_faces(const TriangleMesh& mesh) {
   return surface;
 }
 
-}  // namespace drape
+}  // namespace drape::internal

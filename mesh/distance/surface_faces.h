@@ -11,7 +11,7 @@
 
 #include "mesh/triangles/triangle_mesh.h"
 
-namespace drape {
+namespace drape::internal {
 
 struct Face {
   Triangle v;
@@ -34,4 +34,4 @@ Eigen::AlignedBox3d box_of(const SurfaceFaces& surface, const std::vector<Vec3>&
 // Whether a triangle of these corners has an area beyond rounding.
 bool has_area(const Vec3& a, const Vec3& b, const Vec3& c);
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -13,7 +13,7 @@
 #include "mesh/distance/surface_faces.h"
 #include "mesh/triangles/normals.h"
 
-namespace drape {
+namespace drape::internal {
 
 template <class Places>
 class SurfacePose {
@@ -88,4 +88,4 @@ struct Moving {
   }
 };
 
-}  // namespace drape
+}  // namespace drape::internal

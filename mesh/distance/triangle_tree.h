@@ -1,6 +1,5 @@
 // Triangles that stand, in embree's tree: which are near a point, which a ray meets first. The one door to
 // embree, which works in float, here about a centre; exact answers are made from what it proposes.
-// Internal to the library (not installed).
 #pragma once
 
 #include <memory>

@@ -7,6 +7,9 @@
 #include "mesh/triangles/topology.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
 std::vector<Triangle> wound(TriangleMesh surface) {

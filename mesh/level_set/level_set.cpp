@@ -13,6 +13,9 @@
 #include "mesh/triangles/topology.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
 constexpr double least_band = 3;  // voxels
@@ -132,5 +135,7 @@ std::size_t LevelSet::bytes() const {
   return sizeof g + g.bricks.size() * sizeof(std::int32_t) +
          (g.far.size() + g.nodes.size() + g.coefficients.size()) * sizeof(float);
 }
+
+bool has_openvdb() { return reads_openvdb(); }
 
 }  // namespace drape

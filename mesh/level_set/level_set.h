@@ -25,7 +25,9 @@
 
 namespace drape {
 
-struct VoxelGrid;  // mesh/level_set/voxel_grid.h, internal
+namespace internal {
+struct VoxelGrid;  // mesh/level_set/voxel_grid.h
+}
 
 // How far the grid is from the mesh it was made of, measured at a fixed set of sample points in the band.
 struct LevelSetError {
@@ -72,9 +74,9 @@ class LevelSet {
   std::optional<LevelSetError> error() const;  // none for a .vdb file of another program
 
  private:
-  explicit LevelSet(std::shared_ptr<const VoxelGrid> grid) : grid_(std::move(grid)) {}
+  explicit LevelSet(std::shared_ptr<const internal::VoxelGrid> grid) : grid_(std::move(grid)) {}
 
-  std::shared_ptr<const VoxelGrid> grid_;
+  std::shared_ptr<const internal::VoxelGrid> grid_;
   Mat3 rotation_ = Mat3::Identity();
   Vec3 translate_ = Vec3::Zero();
 };

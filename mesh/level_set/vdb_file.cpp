@@ -20,7 +20,7 @@
 #include <sstream>
 #endif
 
-namespace drape {
+namespace drape::internal {
 
 #ifdef DRAPE_HAVE_OPENVDB
 namespace {
@@ -255,7 +255,7 @@ void multiply(VoxelGrid& grid, double scale) {
 
 }  // namespace
 
-bool has_openvdb() { return true; }
+bool reads_openvdb() { return true; }
 
 VdbFile read_vdb(const std::filesystem::path& path, double scale) {
   if (!std::filesystem::exists(path)) throw InputError(path.string() + ": no such file");
@@ -292,10 +292,10 @@ namespace {
 }
 }  // namespace
 
-bool has_openvdb() { return false; }
+bool reads_openvdb() { return false; }
 VdbFile read_vdb(const std::filesystem::path& path, double) { missing(path); }
 std::string format_vdb(const VoxelGrid&) { missing("the level set"); }
 
 #endif
 
-}  // namespace drape
+}  // namespace drape::internal

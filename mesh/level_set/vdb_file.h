@@ -11,7 +11,7 @@
 
 #include "mesh/level_set/voxel_grid.h"
 
-namespace drape {
+namespace drape::internal {
 
 struct VdbFile {
   VoxelGrid grid;
@@ -21,5 +21,6 @@ struct VdbFile {
 // Throw InputError: no such file, no OpenVDB file, no level set in it; no OpenVDB here.
 VdbFile read_vdb(const std::filesystem::path& path, double scale);
 std::string format_vdb(const VoxelGrid& grid);
+bool reads_openvdb();  // whether this build does
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 // Four floats of a row as doubles (the last one belongs to nobody).
@@ -173,4 +173,4 @@ SurfacePoint VoxelGrid::far_away(const Vec3& x) const {
   return {std::sqrt((x - y).squaredNorm() + d * d), unit(x - x.cwiseMax(box.min()).cwiseMin(box.max()))};
 }
 
-}  // namespace drape
+}  // namespace drape::internal

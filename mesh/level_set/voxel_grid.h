@@ -17,7 +17,7 @@
 
 #include "mesh/level_set/level_set.h"
 
-namespace drape {
+namespace drape::internal {
 
 using Index = std::array<int, 3>;
 
@@ -73,4 +73,4 @@ void fill_bricks(VoxelGrid& grid, const NodeDistance& distance);
 
 LevelSetError measure_error(const VoxelGrid& grid, const SurfaceDistance& surface);
 
-}  // namespace drape
+}  // namespace drape::internal

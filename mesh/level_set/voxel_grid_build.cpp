@@ -9,7 +9,7 @@
 #include "mesh/level_set/voxel_grid.h"
 #include "mesh/triangles/topology.h"
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 constexpr double half_diagonal = 0.8660254037844386;  // of a cube of side 1
@@ -232,4 +232,4 @@ LevelSetError measure_error(const VoxelGrid& grid, const SurfaceDistance& surfac
   return error;
 }
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -6,6 +6,8 @@
 
 namespace drape {
 
+using namespace internal;
+
 std::vector<Polyline> polylines(const TriangleMesh& mesh) {
   std::vector<Polyline> lines;
   if (!mesh.document) return lines;

@@ -4,7 +4,7 @@
 
 #include "mesh/obj/obj_scan.h"
 
-namespace drape::obj {
+namespace drape::internal::obj {
 
 void Warnings::add(int line, const std::string& kind, const std::string& what) {
   const auto [found, fresh] = warnings_.try_emplace(kind, Warning{line, what, 0});
@@ -86,4 +86,4 @@ std::vector<VertexGroup> Groups::collect(const ObjDocument& document, const std:
   return collected;
 }
 
-}  // namespace drape::obj
+}  // namespace drape::internal::obj

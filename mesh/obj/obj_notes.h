@@ -10,7 +10,7 @@
 
 #include "mesh/obj/obj.h"
 
-namespace drape::obj {
+namespace drape::internal::obj {
 
 class Warnings {
  public:
@@ -53,4 +53,4 @@ class Groups {
   std::size_t faces_at_group_ = 0;
 };
 
-}  // namespace drape::obj
+}  // namespace drape::internal::obj

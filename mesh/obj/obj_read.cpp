@@ -14,6 +14,8 @@
 
 namespace drape {
 
+using namespace internal;
+
 namespace {
 
 using obj::next_word;

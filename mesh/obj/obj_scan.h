@@ -12,7 +12,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace drape::obj {
+namespace drape::internal::obj {
 
 inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
@@ -112,4 +112,4 @@ class LineScanner {
   int line_ = 0, next_line_ = 1;
 };
 
-}  // namespace drape::obj
+}  // namespace drape::internal::obj

@@ -6,7 +6,7 @@
 
 #include "mesh/pattern/predicates.h"
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 std::size_t z(int i) { return static_cast<std::size_t>(i); }
@@ -274,4 +274,4 @@ void Delaunay::mark_inside(const std::vector<char>& closed) {
   }
 }
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -13,7 +13,7 @@
 
 #include "mesh/pattern/curve.h"
 
-namespace drape {
+namespace drape::internal {
 
 class Delaunay {
  public:
@@ -95,4 +95,4 @@ class Delaunay {
   std::vector<Corner> suspects_;
 };
 
-}  // namespace drape
+}  // namespace drape::internal

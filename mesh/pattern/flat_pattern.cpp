@@ -7,6 +7,9 @@
 #include "mesh/triangles/topology.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
 [[noreturn]] void fail(std::size_t face, const std::string& what) {

@@ -8,6 +8,9 @@
 #include "mesh/obj/obj_scan.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
 // A place in a file, or what is spoken of where there is none.

@@ -8,7 +8,7 @@
 #include "mesh/base/errors.h"
 #include "mesh/pattern/predicates.h"
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 std::size_t z(int i) { return static_cast<std::size_t>(i); }
@@ -214,4 +214,4 @@ void check_pieces(const Pattern& pattern, const Sides& sides, double tolerance) 
   PieceChecker(pattern, sides, tolerance).check();
 }
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 namespace mp = boost::multiprecision;
@@ -75,4 +75,4 @@ int incircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   return exact_incircle(a, b, c, d);
 }
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -8,9 +8,9 @@
 
 #include "mesh/pattern/curve.h"
 
-namespace drape {
+namespace drape::internal {
 
 int orient2d(const Vec2& a, const Vec2& b, const Vec2& c);
 int incircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -10,7 +10,7 @@
 #include "mesh/pattern/sharp_corners.h"
 #include "mesh/triangles/extent.h"
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 std::size_t z(int i) { return static_cast<std::size_t>(i); }
@@ -350,4 +350,4 @@ Refined refine(const Pattern& pattern, Sides& sides, double edge, double min_ang
   return refined;
 }
 
-}  // namespace drape
+}  // namespace drape::internal

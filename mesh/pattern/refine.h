@@ -16,7 +16,7 @@
 #include "mesh/pattern/delaunay.h"
 #include "mesh/pattern/sides.h"
 
-namespace drape {
+namespace drape::internal {
 
 struct Refined {
   std::vector<Delaunay> panels;    // vertex v of panel p of Sides is v + Delaunay::kBoxCorners
@@ -30,4 +30,4 @@ Refined refine(const Pattern& pattern, Sides& sides, double edge, double min_ang
 // Whether a triangle's shortest edge spans a sharp corner.
 bool at_sharp_corner(const Sides& sides, const Delaunay& mesh, int panel, const Delaunay::Face& face);
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -5,7 +5,7 @@
 #include <map>
 #include <numbers>
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 constexpr double kSharp = std::numbers::pi / 3;  // rad
@@ -152,4 +152,4 @@ bool span_sharp_corner(const Sides& sides, const Delaunay& mesh, int panel, int 
   return false;
 }
 
-}  // namespace drape
+}  // namespace drape::internal

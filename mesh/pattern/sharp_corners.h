@@ -6,7 +6,7 @@
 #include "mesh/pattern/delaunay.h"
 #include "mesh/pattern/sides.h"
 
-namespace drape {
+namespace drape::internal {
 
 inline constexpr double kSameFraction = 1e-7;  // fractions of a run that count as one
 
@@ -27,4 +27,4 @@ int corner_of(const Sides& sides, int leg, bool at_end);
 // Whether two vertices of a panel are on different legs of a sharp corner, equally far from it.
 bool span_sharp_corner(const Sides& sides, const Delaunay& mesh, int panel, int u, int w);
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -11,7 +11,7 @@
 #include "mesh/base/errors.h"
 #include "mesh/pattern/sharp_corners.h"
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 std::size_t z(int i) { return static_cast<std::size_t>(i); }
@@ -325,19 +325,6 @@ std::string place_of(const Vec2& x) {
   return text;
 }
 
-double enclosed_area(const Chain& loop) {
-  double twice = 0;
-  const Vec2 origin = loop.segments.front().start;
-  for (const Segment& s : loop.segments) {
-    constexpr int parts = 64;
-    for (int i = 0; i < parts; ++i) {
-      const Vec2 a = point(s, double(i) / parts) - origin, b = point(s, double(i + 1) / parts) - origin;
-      twice += a.x() * b.y() - a.y() * b.x();
-    }
-  }
-  return twice / 2;
-}
-
 Chain wound(const Chain& loop, bool left) {
   if ((enclosed_area(loop) > 0) == left) return loop;
   Chain turned = loop;
@@ -351,4 +338,4 @@ Sides cut_sides(const Pattern& pattern, double edge, double tolerance, double mi
   return SideCutter(pattern, edge, tolerance, min_angle).cut();
 }
 
-}  // namespace drape
+}  // namespace drape::internal

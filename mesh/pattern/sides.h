@@ -15,7 +15,7 @@
 
 #include "mesh/pattern/pattern.h"
 
-namespace drape {
+namespace drape::internal {
 
 struct ChainRun {
   int panel;
@@ -65,4 +65,4 @@ std::string place_of(const Vec2& x);  // as messages say it
 // The loop turned to have its area on its left (`left`) or right.
 Chain wound(const Chain& loop, bool left);
 
-}  // namespace drape
+}  // namespace drape::internal

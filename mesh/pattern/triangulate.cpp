@@ -13,6 +13,9 @@
 #include "mesh/pattern/refine.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
 std::size_t z(int i) { return static_cast<std::size_t>(i); }

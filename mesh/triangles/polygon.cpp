@@ -7,7 +7,7 @@
 
 #include "mesh/triangles/normals.h"
 
-namespace drape {
+namespace drape::internal {
 
 namespace {
 
@@ -167,4 +167,4 @@ bool PolygonCutter::clip_ears(std::vector<Triangle>& triangles) {
   return left == 3;
 }
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -12,7 +12,7 @@
 
 #include "mesh/triangles/triangle_mesh.h"
 
-namespace drape {
+namespace drape::internal {
 
 class PolygonCutter {
  public:
@@ -39,4 +39,4 @@ class PolygonCutter {
   std::vector<int> before_, after_;  // corners that are still there, as a ring
 };
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -10,6 +10,8 @@
 
 namespace drape {
 
+using namespace internal;
+
 Bdf::Bdf(System& system, Constraints& constraints, std::unique_ptr<LinearSolver> solver,
          const StepOptions& options, int order)
     : system_(system),

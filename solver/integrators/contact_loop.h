@@ -8,7 +8,7 @@
 #include "mesh/base/stopwatch.h"
 #include "solver/integrators/integrator.h"
 
-namespace drape {
+namespace drape::internal {
 
 // What a solve within the contacts gave: read by the loop, owned by the solver.
 struct ContactTrial {
@@ -48,4 +48,4 @@ bool settle_contacts(ContactStep& contacts, int most, Attempt& attempt, StepRepo
   }
 }
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -9,6 +9,8 @@
 
 namespace drape {
 
+using namespace internal;
+
 void HeldMotion::begin(const State& state, double h, StepReport& report) {
   const Stopwatch watch(report.collide_ms);
   contacts_ =

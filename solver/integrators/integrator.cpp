@@ -11,6 +11,8 @@
 
 namespace drape {
 
+using namespace internal;
+
 void check_step(const System& system, const State& state, double h) {
   if (!(h > 0) || !std::isfinite(h))
     throw InputError("time step = " + std::to_string(h) + " s: a time step is greater than zero");

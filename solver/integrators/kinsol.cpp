@@ -22,7 +22,8 @@
 #include "solver/integrators/sundials_integrators.h"
 #include "solver/linear/sundials.h"
 
-namespace drape {
+namespace drape::internal {
+
 namespace {
 
 // How Newton's direction is found and how far it is followed.
@@ -319,4 +320,4 @@ std::unique_ptr<Integrator> make_newton_kinsol(System& system, Constraints& cons
   return std::make_unique<NewtonKinsol>(system, constraints, std::move(solver), options);
 }
 
-}  // namespace drape
+}  // namespace drape::internal

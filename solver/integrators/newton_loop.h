@@ -4,7 +4,7 @@
 
 #include "solver/integrators/integrator.h"
 
-namespace drape {
+namespace drape::internal {
 
 class NewtonLoop {
  public:
@@ -28,4 +28,4 @@ class NewtonLoop {
   bool full_ = false;  // the last step was taken whole
 };
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -3,7 +3,7 @@
 
 #include "solver/integrators/integrator.h"
 
-namespace drape {
+namespace drape::internal {
 
 std::unique_ptr<Integrator> make_newton_kinsol(System& system, Constraints& constraints,
                                                std::unique_ptr<LinearSolver> solver,
@@ -15,4 +15,4 @@ std::unique_ptr<Integrator> make_sundials_ode(std::string_view name, System& sys
                                               std::unique_ptr<LinearSolver> solver,
                                               const StepOptions& options);  // null: no such method
 
-}  // namespace drape
+}  // namespace drape::internal

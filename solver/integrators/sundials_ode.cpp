@@ -19,7 +19,8 @@
 #include "solver/integrators/sundials_integrators.h"
 #include "solver/linear/sundials.h"
 
-namespace drape {
+namespace drape::internal {
+
 namespace {
 
 constexpr std::array<IntegratorInfo, 4> methods = {{
@@ -319,4 +320,4 @@ std::unique_ptr<Integrator> make_sundials_ode(std::string_view name, System& sys
   return nullptr;
 }
 
-}  // namespace drape
+}  // namespace drape::internal

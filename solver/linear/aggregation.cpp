@@ -4,7 +4,7 @@
 
 #include "solver/linear/row_sum.h"
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 constexpr int none = -1, alone = -2;
@@ -140,4 +140,4 @@ int smoothed_aggregation(const Smoother& A, double theta, const ProjectedBlocks*
   return aggregates;
 }
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -8,9 +8,9 @@
 #include "solver/linear/projected_block.h"
 #include "solver/linear/smoother.h"
 
-namespace drape {
+namespace drape::internal {
 
 // Makes P and returns how many columns it has. projected: gives the S_i; null: all of them the identity.
 int smoothed_aggregation(const Smoother& A, double theta, const ProjectedBlocks* projected, BlockRows& P);
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -7,7 +7,7 @@
 #include "solver/linear/preconditioner.h"
 #include "solver/linear/projected_block.h"
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 using Mat3f = Eigen::Matrix3f;
@@ -129,4 +129,4 @@ class BlockIc0 final : public Preconditioner {
 
 std::unique_ptr<Preconditioner> make_block_ic0() { return std::make_unique<BlockIc0>(); }
 
-}  // namespace drape
+}  // namespace drape::internal

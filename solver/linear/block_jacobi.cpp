@@ -4,7 +4,7 @@
 #include "solver/linear/preconditioner.h"
 #include "solver/linear/projected_block.h"
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 class BlockJacobi final : public Preconditioner {
@@ -62,4 +62,4 @@ std::unique_ptr<Preconditioner> make_preconditioner(std::string_view name) {
   return nullptr;
 }
 
-}  // namespace drape
+}  // namespace drape::internal

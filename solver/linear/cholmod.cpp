@@ -13,6 +13,9 @@
 #include "solver/linear/residual.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
 // What the BLAS underneath is, where that makes it slow. OpenBLAS may take a new processor for an old one,

@@ -9,6 +9,9 @@
 #include "solver/linear/residual.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
 class EigenLdlt final : public LinearSolver {

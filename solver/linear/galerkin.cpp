@@ -4,7 +4,7 @@
 
 #include "solver/linear/row_sum.h"
 
-namespace drape {
+namespace drape::internal {
 
 void transpose(const BlockRows& P, int columns, BlockRows& R) {
   Mirror by_column;
@@ -74,4 +74,4 @@ const SymmetricRows& Galerkin::coarse(const Smoother& A, const BlockRows& P, con
   return coarse_;
 }
 
-}  // namespace drape
+}  // namespace drape::internal

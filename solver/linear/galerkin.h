@@ -7,7 +7,7 @@
 #include "solver/linear/smoother.h"
 #include "solver/linear/sparse_rows.h"
 
-namespace drape {
+namespace drape::internal {
 
 // The upper triangle of a symmetric matrix, each row's diagonal block first; gone through whole, row by row.
 class SymmetricRows {
@@ -47,4 +47,4 @@ class Galerkin {
   SymmetricRows coarse_;
 };
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -7,6 +7,8 @@
 
 namespace drape {
 
+using namespace internal;
+
 std::unique_ptr<LinearSolver> make_eigen_ldlt();
 std::unique_ptr<LinearSolver> make_eigen_cg();
 #ifdef DRAPE_HAVE_CHOLMOD

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace drape {
+namespace drape::internal {
 
 struct Mirror {
   std::vector<int> start{0}, row, place;  // columns + 1; one an entry, rows ascending within a column
@@ -33,4 +33,4 @@ struct Mirror {
   }
 };
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -18,7 +18,7 @@
 #include "solver/linear/galerkin.h"
 #include "solver/linear/preconditioner.h"
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 // More than a few percent cuts couplings that the finest sheets need: 0.08 took 65 iterations where 0.02
@@ -173,4 +173,4 @@ class Multigrid final : public Preconditioner {
 
 std::unique_ptr<Preconditioner> make_multigrid() { return std::make_unique<Multigrid>(); }
 
-}  // namespace drape
+}  // namespace drape::internal

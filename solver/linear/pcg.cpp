@@ -13,7 +13,7 @@
 #include "mesh/base/stopwatch.h"
 #include "solver/linear/residual.h"
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 class Pcg final : public LinearSolver {
@@ -176,4 +176,4 @@ std::unique_ptr<LinearSolver> make_pcg(std::string name, bool prefiltered,
   return std::make_unique<Pcg>(std::move(name), prefiltered, std::move(preconditioner));
 }
 
-}  // namespace drape
+}  // namespace drape::internal

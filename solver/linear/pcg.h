@@ -3,10 +3,10 @@
 
 #include "solver/linear/preconditioner.h"
 
-namespace drape {
+namespace drape::internal {
 
 // prefiltered: the reading of Tamstorf et al. (ppcg), else that of Baraff & Witkin (mpcg).
 std::unique_ptr<LinearSolver> make_pcg(std::string name, bool prefiltered,
                                        std::unique_ptr<Preconditioner> preconditioner);
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -10,6 +10,9 @@
 #include "solver/linear/residual.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
 // PETSc is started once a process and stopped at its end.

@@ -7,7 +7,7 @@
 
 #include "solver/linear/linear_solver.h"
 
-namespace drape {
+namespace drape::internal {
 
 class Preconditioner {
  public:
@@ -40,4 +40,4 @@ std::unique_ptr<Preconditioner> make_multigrid();
 // "block-jacobi", "block-ic0", "multigrid"; null for any other name.
 std::unique_ptr<Preconditioner> make_preconditioner(std::string_view name);
 
-}  // namespace drape
+}  // namespace drape::internal

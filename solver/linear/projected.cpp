@@ -4,6 +4,8 @@
 
 namespace drape {
 
+using namespace internal;
+
 void ProjectedSystem::build_pattern(const BlockMatrix& A) {
   const int n = 3 * A.rows();
   matrix_.resize(n, n);

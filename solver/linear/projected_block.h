@@ -8,7 +8,7 @@
 #include "solver/linear/mirror.h"
 #include "solver/matrix/block_matrix.h"
 
-namespace drape {
+namespace drape::internal {
 
 class ProjectedBlocks {
  public:
@@ -91,4 +91,4 @@ inline bool positive_definite(const Mat3& b) {
   return b(0, 0) > 0 && minor > 0 && b.determinant() > 0;
 }
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -6,7 +6,7 @@
 #include "mesh/base/parallel.h"
 #include "solver/linear/linear_solver.h"
 
-namespace drape {
+namespace drape::internal {
 
 // r <- S (b - A dv)
 inline void residual(const BlockMatrix& A, const VecX& b, const Filter& filter, const VecX& dv, VecX& r) {
@@ -54,4 +54,4 @@ inline void finish(const BlockMatrix& A, const VecX& b, const Filter& filter, co
     report.reason = StopReason::iteration_limit;
 }
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -5,7 +5,7 @@
 
 #include "solver/linear/sparse_rows.h"
 
-namespace drape {
+namespace drape::internal {
 
 struct WideBlock {  // three of the four lanes count
   Four column[3] = {};
@@ -59,4 +59,4 @@ class RowSum {
   std::vector<WideBlock> sum_;
 };
 
-}  // namespace drape
+}  // namespace drape::internal

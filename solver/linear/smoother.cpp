@@ -1,6 +1,6 @@
 #include "solver/linear/smoother.h"
 
-namespace drape {
+namespace drape::internal {
 
 template <class F>
 void Smoother::for_rows_of(bool odd, const F& f) const {
@@ -48,4 +48,4 @@ void Smoother::up(const VecX& r, VecX& x) const {
     });
 }
 
-}  // namespace drape
+}  // namespace drape::internal

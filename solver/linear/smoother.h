@@ -16,7 +16,7 @@
 #include "solver/linear/projected_block.h"
 #include "solver/linear/sparse_rows.h"
 
-namespace drape {
+namespace drape::internal {
 
 class Smoother {
  public:
@@ -84,4 +84,4 @@ void Smoother::build(const Rows& A) {
   });
 }
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -9,7 +9,7 @@
 #include "mesh/base/parallel.h"
 #include "solver/matrix/four.h"
 
-namespace drape {
+namespace drape::internal {
 
 template <int width>
 class SparseRows {
@@ -98,4 +98,4 @@ Four times(const BlockRows::Row& row, const double* x) {
   return sum + sum1 + sum2;
 }
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -12,7 +12,7 @@
 
 #include "mesh/base/vectors.h"
 
-namespace drape::sundials {
+namespace drape::internal::sundials {
 
 class Context {  // its owners cannot be copied either
  public:
@@ -66,4 +66,4 @@ SUNLinearSolver our_solver(Owner& owner, SUNContext context) {
   return solver;
 }
 
-}  // namespace drape::sundials
+}  // namespace drape::internal::sundials

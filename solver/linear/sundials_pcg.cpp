@@ -8,6 +8,9 @@
 #include "solver/linear/sundials.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
 class SundialsPcg final : public LinearSolver {

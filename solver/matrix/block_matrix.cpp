@@ -7,6 +7,9 @@
 #include "solver/matrix/four.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
 // y[0..2] += the sums of the lanes of p, q, r.

@@ -5,7 +5,7 @@
 #include <immintrin.h>
 #endif
 
-namespace drape {
+namespace drape::internal {
 
 typedef double Four __attribute__((vector_size(32), aligned(8)));
 inline Four load(const double* p) { return *reinterpret_cast<const Four*>(p); }
@@ -18,4 +18,4 @@ inline Four load(const float* p) {
 #endif
 }
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -20,6 +20,7 @@
 namespace {
 
 using namespace drape;
+using namespace drape::app;
 using namespace drape::bench;
 
 LinearSystem hung_sheet(int side) {

@@ -8,9 +8,9 @@
 
 int main(int count, char** words) {
   if (count != 4) return 2;
-  drape::set_data_folder(DRAPE_DATA);
-  const drape::Scene scene = drape::read_scene(words[1], {});
-  drape::Simulation simulation = drape::make_simulation(scene);
+  drape::app::set_data_folder(DRAPE_DATA);
+  const drape::app::Scene scene = drape::app::read_scene(words[1], {});
+  drape::app::Simulation simulation = drape::app::make_simulation(scene);
   const long steps = static_cast<long>(scene.simulation.duration / scene.simulation.time_step + 0.5);
   for (long step = 1; step <= steps; ++step) {
     if (!simulation.advance(scene.simulation.time_step).done) return 1;
@@ -20,5 +20,5 @@ int main(int count, char** words) {
   std::printf("%s: %d particles, %zu open seams, state %s, expected %s\n", words[1],
               simulation.state.particles(), simulation.cloths[0].seams.size(), hash.c_str(), words[2]);
   if (hash != words[2]) return 1;
-  return drape::run(scene, {.out = words[3], .frames = drape::Frames::none, .quiet = true});
+  return drape::app::run(scene, {.out = words[3], .frames = drape::app::Frames::none, .quiet = true});
 }

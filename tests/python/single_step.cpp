@@ -8,6 +8,8 @@
 
 int main() {
   using namespace drape;
+  using namespace drape::app;
+  using namespace drape::internal;
   for (const char* const integrator : {"implicit-euler", "bdf2", "symplectic-euler"}) {
     TriangleMesh sheet = grid(11, 11, 1.0, 1.0);
     for (Vec3& x : sheet.positions) x[1] = 0.3021;

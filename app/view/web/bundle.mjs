@@ -50,5 +50,5 @@ const functions = [
   function_of("plot_style", (await bundled("compare.css")).text),
   function_of("plot_script", await script_of("src/compare.js")),
 ];
-writeFileSync(out, `// Made by app/view/web/bundle.mjs.\n#include "app/view/page_template.h"\n\nnamespace drape {\n
-${functions.join("\n")}\n}  // namespace drape\n`);
+writeFileSync(out, `// Made by app/view/web/bundle.mjs.\n#include "app/view/page_template.h"\n\nnamespace drape::app {\n
+${functions.join("\n")}\n}  // namespace drape::app\n`);
