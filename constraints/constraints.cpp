@@ -9,7 +9,7 @@ namespace drape {
 
 void Constraints::add(Obstacle obstacle) {
   bodies_.emplace_back(std::move(obstacle), static_cast<int>(bodies_.size()));
-  step_.held.clear();  // all that is known of particles is prepared anew
+  step_.held.clear();  // so that prepare() makes all that is known of the particles anew
 }
 
 void Constraints::pin(int particle) { pin(std::vector<int>{particle}); }
@@ -55,7 +55,7 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
   step_.h = h;
   step_.foresight = foresight;
   step_.work = 0;
-  if (x.size() != step_.x_end.size() || x != step_.x_end) {  // a state from elsewhere
+  if (x.size() != step_.x_end.size() || x != step_.x_end) {  // the state was changed from outside
     contacts_.look_again();
     faces_.look_again();
   }

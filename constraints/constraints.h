@@ -1,5 +1,6 @@
-// What particles may do: pins, bodies in the way, and what touches them. A step begins with begin_step and
-// goes on with the ContactStep that it gives (constraints/contact_step.h).
+// What particles may do: some are pinned, bodies are in the way of others, and some touch those bodies. A
+// step begins with Constraints::begin_step and goes on with the ContactStep that this returns
+// (constraints/contact_step.h).
 #pragma once
 
 #include <string_view>
@@ -12,7 +13,7 @@
 namespace drape {
 
 struct ContactOptions {
-  double recovery_speed = 0.25;  // m/s, at which a particle that starts inside a body is brought out
+  double recovery_speed = 0.25;  // speed [m/s] at which a particle that starts inside a body is brought out
 };
 
 class ContactStep;
@@ -22,20 +23,21 @@ class Constraints {
   explicit Constraints(ContactOptions options = {}) : options_(options), contacts_(options.recovery_speed) {}
 
   void add(Obstacle obstacle);  // throws InputError
-  void pin(int particle);       // stays where it is; twice is once
+  void pin(int particle);       // holds the particle where it is; pinning it twice is pinning it once
   void pin(const std::vector<int>& particles);
-  // Are carried along, from where they are at time 0 (x [m], all particles): by a body, or by a motion of
-  // their own. A particle is pinned once, in the way named first.
+  // These particles are carried along from where they are at time 0 (x [m] has the places of all particles):
+  // by a body, or by a motion of their own. A particle is pinned once, in the way that is named first.
   void pin_to_body(const std::vector<int>& particles, int body, const VecX& x);
   void pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x);
 
-  // Particles become one: particle i is number particle_of[i] from now on, and one of those is pinned if any
-  // of its parts was, in the way of the lowest of them that was. Contacts are found anew; bodies stay as they
-  // are.
+  // Several particles become one: particle i gets the number particle_of[i]. The new particle is pinned if
+  // any of its parts was, in the way of the lowest-numbered part that was pinned. Contacts are found anew;
+  // bodies stay as they are.
   void merge(const std::vector<int>& particle_of);
 
-  // The triangles of the cloth, so that corners and rims of bodies do not come through between the vertices.
-  // They push by a force, which the system needs, too: solver/forces/face_contact_force.h.
+  // Adds the triangles of the cloth, so that corners and rims of bodies do not come through between the
+  // vertices. The triangles are pushed by a force, which the System needs, too:
+  // solver/forces/face_contact_force.h.
   void add_faces(const std::vector<ClothFace>& faces) { faces_.add(faces); }
   const FaceContacts& faces() const { return faces_; }
 
@@ -44,12 +46,14 @@ class Constraints {
   const std::vector<MovingPin>& moving_pins() const { return pins_.moving(); }
   const std::vector<Contact>& contacts() const { return contacts_.contacts(); }  // of the last completed step
 
-  double work() const { return step_.work; }  // J, that moving bodies and pins did in the last step
-  // Begins the step from x [m], v [m/s] at t for h [s] and finds what touches. masses [kg].
+  double work() const { return step_.work; }  // of moving bodies and pins in the last step [J]
+  // Begins the step of length h [s] from x [m] and v [m/s] at time t [s], and finds what touches.
+  // masses [kg].
   [[nodiscard]] ContactStep begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses,
                                        double t, double h, Foresight foresight = Foresight::ahead);
 
-  // How deep each particle is inside a body: 0 outside [m]. For the start and the end of a run.
+  // How deep each particle is inside a body [m]; 0 where it is outside. Meant for the start and the end of a
+  // run.
   std::vector<double> penetration(const VecX& x) const;
 
  private:
@@ -61,7 +65,7 @@ class Constraints {
   PinSet pins_;
   ParticleContacts contacts_;
   FaceContacts faces_;
-  StepMotion step_;  // of the step under way, and what is known from the last one
+  StepMotion step_;  // the step under way, and what is known from the last one
   VecX x_new_;       // scratch
 };
 

@@ -45,7 +45,8 @@ Mat3 Contact::locked_directions() const {
 }
 
 void add_plane(Contact& contact, const ContactPlane& plane) {
-  // The part of the normal that the planes already held do not span: too small, and it says nothing new.
+  // `rest` is the part of the normal that the planes already held do not span. Where it is too small, the new
+  // plane adds no constraint.
   Vec3 rest = plane.normal;
   const Mat3 Q = contact.locked_directions();
   for (int k = 0; k < contact.planes; ++k) rest -= Q.col(k).dot(rest) * Q.col(k);
@@ -59,7 +60,7 @@ void add_plane(Contact& contact, const ContactPlane& plane) {
     std::swap(contact.plane[k], contact.plane[k - 1]);
 }
 
-// N^T N of the planes' normals, with ones on the unused part of its diagonal.
+// N^T N, with the planes' normals as the columns of N, and ones on the unused part of the diagonal.
 static Mat3 gram(const Contact& contact) {
   Mat3 G = Mat3::Identity();
   for (int i = 0; i < contact.planes; ++i)

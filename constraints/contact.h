@@ -2,18 +2,20 @@
 //   A plane is the body's surface, offset by the margin, linearised at the point nearest the particle's path:
 //   gap = (x - point on the offset surface) . n, negative inside.
 //
-//   make     gap < 0, or the predicted path x -> x + h v meets the offset surface
-//   target   gap >= 0: arrive exactly on the surface, v.n = v_b.n - gap / h
-//            gap <  0: move with it, v.n = v_b.n, come out by y.n = min(-gap, recovery speed x h) [BW, 6]
-//   release  the constraint would pull: r.n < 0
-//   stick    |r_T| <= mu_s r.n: locked in all directions
-//   slide    otherwise: locked along n, and rubbed by mu_k r.n against the sliding direction. The friction is
-//            the damper c = mu_k (r.n / h) / |v_T|, taken implicitly: it can stop the motion and never turn
-//            it round. In the step in which it comes loose, it is the impulse mu_k (r.n) r_T/|r_T|. Before
-//            the first solve of a step r.n is that of the last step, its arrival impulse exchanged for the
-//            one of now: else an impact would rub twice.
-// r = A dv - b [N s]: the impulse of the constraint on the particle.
-//                                           [Baraff & Witkin 1998 (BW), section 5.2; Noh & Jung, 4]
+//   make     a contact begins where gap < 0, or where the predicted path x -> x + h v meets the offset
+//            surface
+//   target   gap >= 0: the particle arrives exactly on the surface, v.n = v_b.n - gap / h
+//            gap <  0: it moves with the body, v.n = v_b.n, and comes out by y.n = min(-gap, recovery speed
+//            x h) [BW98, 6]
+//   release  a contact ends where the constraint would pull: r.n < 0
+//   stick    where |r_T| <= mu_s r.n: the particle is locked in all directions
+//   slide    otherwise: the particle is locked along n, and mu_k r.n rubs against the sliding direction. The
+//            friction is the damper c = mu_k (r.n / h) / |v_T|, taken implicitly: it can stop the motion and
+//            never turn it round. In the step in which the particle comes loose, friction is the impulse
+//            mu_k (r.n) r_T/|r_T|. Before the first solve of a step r.n is taken from the last step, with its
+//            arrival impulse replaced by that of this step: otherwise an impact would rub twice.
+// r = A dv - b [N s] is the impulse of the constraint on the particle.
+//                                           [Baraff & Witkin 1998 (BW98), section 5.2; Noh & Jung, section 4]
 #pragma once
 
 #include <algorithm>
@@ -34,31 +36,32 @@ enum class Grip { stick, breaking_loose, slide };
 
 struct Contact {
   int particle;
-  int planes = 0;                     // 1 to 3; 0: released in this step
-  std::array<ContactPlane, 3> plane;  // deepest first
+  int planes = 0;                     // 1 to 3; 0: the contact was released in this step
+  std::array<ContactPlane, 3> plane;  // the deepest first
   Grip grip = Grip::stick;
-  int changes = 0;                       // of the grip within this step
-  double normal_impulse = 0;             // N s, the sum over the planes, of the last solve
-  double arrival_impulse = 0;            // N s, of it: what takes away the approach to the planes that hold
-  Vec3 friction_impulse = Vec3::Zero();  // N s, while breaking loose
-  Vec3 slip = Vec3::Zero();  // m/s, tangential velocity against the body: expected at the end of this step
-  Vec3 last_slip = Vec3::Zero();  // m/s, at the end of the step before
+  int changes = 0;                       // how often the grip has changed within this step
+  double normal_impulse = 0;             // sum over the planes [N s], of the last solve
+  double arrival_impulse = 0;            // the part that stops the approach to the planes that hold [N s]
+  Vec3 friction_impulse = Vec3::Zero();  // impulse of friction while breaking loose [N s]
+  Vec3 slip = Vec3::Zero();  // tangential velocity against the body, expected at the end of this step [m/s]
+  Vec3 last_slip = Vec3::Zero();  // the same at the end of the step before [m/s]
 
   bool active() const { return planes > 0; }
-  // The directions the planes lock, orthonormal, one a column; the rest of the columns are zero.
+  // The directions that the planes lock: orthonormal, one in a column; the remaining columns are zero.
   Mat3 locked_directions() const;
   Vec3 body_velocity() const { return plane[0].body_velocity; }
 };
 
-// How far off the margin what touched still does [m]: round-off and a small lift are not a release.
+// How far off the margin a particle that touched in the last step is still taken to touch [m]: round-off and
+// a small lift do not release it.
 inline double touching_range(double margin) { return std::max(0.5 * margin, 1e-6); }
 
-// Adds a plane unless it says nothing new; keeps the deepest first.
+// Adds a plane unless the planes that are there imply it already; keeps the deepest first.
 void add_plane(Contact& contact, const ContactPlane& plane);
 
-// The vector with the given component along each plane's normal, and none across them.
+// The vector in the span of the normals that has the given component along each plane's normal.
 Vec3 along_planes(const Contact& contact, const std::array<double, 3>& components);
-// The multipliers of the planes: r = sum lambda_k n_k + a part tangential to all.
+// The multipliers lambda_k of the planes: r = sum lambda_k n_k + a part that is tangential to all planes.
 std::array<double, 3> multipliers(const Contact& contact, const Vec3& r);
 
 }  // namespace drape

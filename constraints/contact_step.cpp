@@ -25,7 +25,8 @@ void ContactStep::clear_impulses() {
   for (MovingBody& body : constraints_->bodies_) body.clear_impulse();
 }
 
-// The other side of an impulse on a particle, which ends the step with v and is pushed at body_velocity.
+// Gives the body the reaction to its impulse on a particle, which ends the step with v and is pushed at
+// body_velocity.
 void ContactStep::push(int body, int particle, const Vec3& v, const Vec3& body_velocity,
                        const Vec3& impulse) {
   const StepMotion& step = constraints_->step_;
@@ -40,7 +41,7 @@ void ContactStep::receive(const VecX& v, const VecX& r) {
     if (!c.active()) continue;
     Vec3 rest = r.segment<3>(3 * c.particle);
     const std::array<double, 3> lambda = multipliers(c, rest);
-    for (int k = 1; k < c.planes; ++k) {  // of several bodies each has its plane's part
+    for (int k = 1; k < c.planes; ++k) {  // where several bodies touch, each gets the part of its plane
       const ContactPlane& p = c.plane[k];
       const Vec3 part = lambda[k] * p.normal;
       push(p.obstacle, c.particle, v.segment<3>(3 * c.particle), p.body_velocity, part);
@@ -126,7 +127,7 @@ void ContactStep::respond(ContactMode mode, const VecX& x, const VecX& v, const 
     again = move_bodies(noise);
   }
   if (!moved) return;
-  for (const MovingPin& pin : moving_pins()) {  // with the body as it moves now
+  for (const MovingPin& pin : moving_pins()) {  // the body that carries them has changed its motion
     const Vec3 velocity = pins.velocity(pin.particle);
     x_new.segment<3>(3 * pin.particle) = step.place(pin.particle) + step.h * velocity;
     v_new.segment<3>(3 * pin.particle) = velocity;

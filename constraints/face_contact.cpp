@@ -10,9 +10,9 @@ namespace drape {
 namespace {
 
 constexpr double slow = 1e-3;    // m/s
-constexpr int most_changes = 3;  // of a contact within a step, as of a particle's
-constexpr int most_steps = 24;   // of the search for the lowest point
-constexpr double fine = 0.01;    // of the size of a triangle: where the search ends
+constexpr int most_changes = 3;  // of a contact within a step, as for the contacts of particles
+constexpr int most_steps = 24;   // steps of the search for the lowest point
+constexpr double fine = 0.01;    // where the search ends, as a share of the size of the triangle
 const Vec3 middle = Vec3::Constant(1.0 / 3);
 
 struct Corners {
@@ -34,11 +34,11 @@ struct Lowest {
   double distance;
 };
 
-// The point of the triangle nearest to the body, from its middle or, if that is nearer, from where it is
-// likely to be: first towards the closest point of the surface (alternating projections, which find a corner
-// or a rim at once), then down the slope of the distance along the triangle, by ever smaller steps where that
-// does not come nearer. On a surface as smooth as the cloth that lies on it the first alone would creep.
-// [Cheney & Goldstein 1959]
+// Finds the point of the triangle that is nearest to the body. The search starts from the middle of the
+// triangle or from the likely point, whichever is nearer. Its first step goes towards the closest point of
+// the surface (alternating projections, which find a corner or a rim at once) [Cheney & Goldstein 1959]. The
+// further steps go down the slope of the distance along the triangle, halved where they do not come nearer:
+// on a surface as smooth as the cloth that lies on it, projections alone would creep.
 template <class Distance>
 Lowest lowest_point(const Corners& t, const Distance& distance, double enough, const Vec3& likely) {
   Vec3 p = t.middle();
@@ -65,7 +65,7 @@ Lowest lowest_point(const Corners& t, const Distance& distance, double enough, c
     const auto [q, feature] = closest_on_triangle(wanted, t.a, t.b, t.c);
     if ((q - p).squaredNorm() < fine * fine * size * size) {
       if (first) continue;
-      break;  // at the rim of the triangle, and the slope leads out of it
+      break;  // p is at the rim of the triangle, and the slope leads out of it
     }
     const SurfacePoint there = distance(q);
     if (there.distance < here.distance - 1e-9) {
@@ -174,7 +174,7 @@ void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX
   if (room > reach) return;
   const Lowest end = lowest_point(
       Corners(face, x_new), [&](const Vec3& p) { return body.near_end(p); }, offset, likely);
-  if (start.distance > offset && end.distance > offset) return;  // on its way past
+  if (start.distance > offset && end.distance > offset) return;  // the triangle passes by
   const ContactPlane plane = body.plane(start.point, body.at_start(start.point), body.carried(start.point));
   const double depth = std::max(plane.gap + body.obstacle().margin - offset, -std::max(recovery, offset));
   FaceContact contact{.body = body.number(),

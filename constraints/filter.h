@@ -1,7 +1,9 @@
-// Which changes of velocity a particle may take, and which are given.   [Baraff & Witkin 1998, section 5.1]
+// Which changes of velocity a particle is free to make, and which are prescribed.
+//                                                                [Baraff & Witkin 1998, section 5.1]
 //   dv_i = S_i (free part) + z_i
-//   S = I: free; I - p p^T: locked along p; I - p p^T - q q^T: along two; 0: locked
-//   z: given change in the locked directions
+//   S = I: the particle is free; I - p p^T: it is locked along p; I - p p^T - q q^T: along p and q;
+//   0: entirely
+//   z is the prescribed change in the locked directions
 // Only constrained particles are stored, sorted by number. S [3x3], z [m/s].
 #pragma once
 
@@ -21,9 +23,9 @@ class Filter {
  public:
   void clear() { entries_.clear(); }
   void reserve(std::size_t n) { entries_.reserve(n); }
-  // Each particle once.
+  // To be called at most once for each particle.
   void constrain(int particle, const Mat3& S, const Vec3& z) { entries_.push_back({particle, S, z}); }
-  // Renames particle p to number[p] and sorts.
+  // Particle p gets the number number[p]; the entries are sorted again.
   void renumber(const std::vector<int>& number);
 
   const std::vector<FilterEntry>& entries() const { return entries_; }

@@ -1,18 +1,19 @@
 // The first meeting of a straight path with a shape.
-//   f(s) = phi(x(s)) - margin,  f'(s) = n . direction,  s [m] the way gone along the path
-// Convex shapes: f is convex, so Newton's step from the left never passes the first root and a rising f stays
-// clear.
+//   f(s) = phi(x(s)) - margin,  f'(s) = n . direction,  s [m]: the length gone along the path
+// For convex shapes f is convex: Newton's step from the left never passes the first root, and a path on which
+// f rises stays clear.
 //
-// Others: f cannot fall faster than 1, so that a step of |f| is safe [Hart 1996, sphere tracing]. Where |f|
-// is below a resolution r, Newton's step is taken, at most r long; if f rises after it, the lowest f between
-// is sought. A path that slides along a surface costs about length / r distances. Missed can be only what is
-// thinner than r - 2 margin and hidden from the path by a nearer surface. r = 1 mm for paths up to 256 mm, a
-// 256th of longer ones.
+// For other shapes f cannot fall faster than 1, so that a step of |f| is safe [Hart 1996, sphere tracing].
+// Where |f| is below a resolution r, Newton's step is taken, at most r long; if f rises after it, the lowest
+// f in between is sought. A path that slides along a surface costs about length / r evaluations of the
+// distance. The search can miss only what is thinner than r - 2 margin and hidden from the path by a nearer
+// surface. r = 1 mm for paths up to 256 mm, and a 256th of the length for longer ones.
 //
-// Against a surface that deforms, s [m] counts the most by which the two can come nearer to each other,
-//   length = |x1 - x0 - m| + max_i |u_i - m|,  u_i displacements of the vertices, m their mean,
-// so that f still falls no faster than 1; f' = n . (x1 - x0 - u) / length, u that of the closest point. What
-// a margin below r / 2 could let through is found as a root of the triangles' cubics (mesh/distance/crossing.h).
+// Against a surface that deforms, s [m] counts the most by which path and surface can approach each other,
+//   length = |x1 - x0 - m| + max_i |u_i - m|,  u_i: the displacements of the vertices, m: their mean,
+// so that f still falls no faster than 1; f' = n . (x1 - x0 - u) / length, u being the displacement of the
+// closest point. What could slip through where the margin is below r / 2 is found as a root of the triangles'
+// cubics (mesh/distance/crossing.h).
 #include <algorithm>
 #include <cmath>
 
@@ -21,21 +22,21 @@
 namespace drape {
 namespace {
 
-constexpr double touch = 1e-8;       // m: f below this is a meeting
-constexpr double sliding = 1e-9;     // a slope that is none
+constexpr double touch = 1e-8;       // f below this is a meeting [m]
+constexpr double sliding = 1e-9;     // a slope below this counts as none
 constexpr double resolution = 1e-3;  // m
-constexpr double rounding = 1e-12;   // m: what goes with a moving surface goes no farther from it
-constexpr int resolved_steps = 256;  // of a long path
+constexpr double rounding = 1e-12;   // a particle that goes with a moving surface strays no farther [m]
+constexpr int resolved_steps = 256;  // steps of length r in a long path
 constexpr int most_steps = 2 * resolved_steps;
 constexpr int most_halvings = 40;
 
-// f and f' at a place of the path.
+// f and f' at one place of the path.
 struct Station {
   double s = 0, f = 0, slope = 0;
   SurfacePoint surface{};
 };
 
-// direction: of the particle for a metre of s; a unit vector where the surface stands.
+// direction: the way of the particle for a metre of s; a unit vector where the surface does not deform.
 struct Path {
   const Shape& shape;
   Vec3 start, direction;
@@ -58,7 +59,7 @@ struct Path {
 
 bool nearer_still(const Station& here) { return here.f <= touch && here.slope < -sliding; }
 
-// Between `clear` (f > touch) and `met` (f <= touch): where f first falls to the touch, to rounding.
+// Finds where f first falls to `touch`, to rounding, between `clear` (f > touch) and `met` (f <= touch).
 Station meeting(const Path& path, Station clear, Station met) {
   for (int i = 0; i < most_halvings && met.f < -touch && met.s - clear.s > touch; ++i) {
     const double safe = clear.s + clear.f;
@@ -68,8 +69,8 @@ Station meeting(const Path& path, Station clear, Station met) {
   return met;
 }
 
-// f rises at `right`; clear at both ends, was it down to the touch between? Halves the part where the slope
-// turns until Lipschitz' bound shows it clear.
+// f rises at `right`, and both ends are clear: did f fall to `touch` in between? The part in which the slope
+// turns is halved until the Lipschitz bound shows that it is clear.
 std::optional<Station> dip(const Path& path, Station left, Station right) {
   for (int i = 0; i < most_halvings && left.f + right.f < right.s - left.s; ++i) {
     const Station middle = path.at(0.5 * (left.s + right.s));
@@ -98,7 +99,7 @@ std::optional<Hit> first_hit_any(const Path& path) {
   const double r = resolution_of(path);
   Station here = path.at(0);
   if (nearer_still(here)) return path.hit(here);
-  bool leaving = here.f <= touch;  // within the margin from the start, and not yet out of it
+  bool leaving = here.f <= touch;  // the path starts within the margin and is not yet out of it
   for (int i = 0; i < most_steps && here.s < path.length; ++i) {
     const double newton = here.slope < -sliding ? std::min(here.f / -here.slope, r) : r;
     const double step = std::max(std::abs(here.f), newton);
@@ -114,12 +115,12 @@ std::optional<Hit> first_hit_any(const Path& path) {
     here = there;
   }
   if (here.s < path.length && here.f < r)
-    return path.hit(here);  // too long a way to follow: stop where it is near
+    return path.hit(here);  // the path is too long to follow: it stops where it is near the surface
   return std::nullopt;
 }
 
-// The advancement along the distance, and what it may not see: a surface gone through within r, and one that
-// meets a path which starts within the margin and leaves.
+// First the advancement along the distance; then what that may not see: a surface that the path goes through
+// within r, and one that is met by a path that starts within the margin and leaves.
 std::optional<Hit> first_hit_deforming(const SurfaceDistance& surface, const Path& path) {
   const Station start = path.at(0);
   if (start.f > touch &&
@@ -130,11 +131,11 @@ std::optional<Hit> first_hit_deforming(const SurfaceDistance& surface, const Pat
   const bool seen = 2 * path.margin >= resolution_of(path) && !leaves;
   const bool too_far = std::abs(start.surface.distance) > path.length;
   if (seen || too_far || (hit && hit->fraction == 0)) return hit;
-  const bool on_it = !surface.closed() && start.surface.distance <= touch;  // and not yet going through it
+  const bool on_it = !surface.closed() && start.surface.distance <= touch;  // and not yet through it
   const double from = on_it ? 2 * touch / path.length : 0;
   const auto s = surface.first_crossing(path.start, path.start + path.length * path.direction, from);
   if (!s || (hit && hit->fraction <= *s)) return hit;
-  return path.hit(path.at(std::max(0.0, *s * path.length - touch)));  // on the side that it comes from
+  return path.hit(path.at(std::max(0.0, *s * path.length - touch)));  // on the side that the path comes from
 }
 
 }  // namespace

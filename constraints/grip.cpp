@@ -1,4 +1,5 @@
-// How contacts hold: what sticks, slides or is let go, and what that is to a solve.
+// How contacts hold: which of them stick, slide or are let go, and what filter and friction a solve gets from
+// them.
 #include <algorithm>
 
 #include "constraints/particle_contacts.h"
@@ -6,12 +7,11 @@
 namespace drape {
 namespace {
 
-// A contact changes its mind this often within a step, then keeps its grip until the next one.
+// A contact changes its grip this often within a step at most; then it keeps its grip until the next step.
 constexpr int most_changes = 3;
-// A particle whose sliding the friction could stop a million times over within the step is taken to have
-// stopped.
+// A particle counts as stopped where friction could stop its sliding a million times over within the step.
 constexpr double stop_fraction = 1e-6;
-// Friction that came out more than this many times mu N is made anew.
+// Where friction came out more than this many times mu N, the damper is made anew.
 constexpr double overrubbed = 1.05;
 
 Vec3 tangential(const Contact& contact, const Vec3& v) {
@@ -23,7 +23,7 @@ const Friction& friction_of(const ParticleContacts::Bodies& bodies, const Contac
   return bodies[contact.plane[0].obstacle].obstacle().friction;
 }
 
-// The speeds along the normals that the planes ask for at the end of the step [m/s].
+// The speeds along the normals that the planes prescribe for the end of the step [m/s].
 std::array<double, 3> normal_speeds(const Contact& contact, double h) {
   std::array<double, 3> speeds = {};
   for (int k = 0; k < contact.planes; ++k) {
@@ -33,7 +33,7 @@ std::array<double, 3> normal_speeds(const Contact& contact, double h) {
   return speeds;
 }
 
-// What stops the approach at the planes, whatever else pushes [N s].
+// The impulse that stops the approach to the planes, whatever else pushes [N s].
 double arrival_impulse(const Contact& contact, const StepMotion& step) {
   std::array<double, 3> change = normal_speeds(contact, step.h);
   for (int k = 0; k < contact.planes; ++k)
@@ -115,12 +115,12 @@ bool ParticleContacts::update_grip(const Bodies& bodies, const StepMotion& step,
   const std::array<double, 3> lambda = multipliers(c, r);
   const auto weakest =
       static_cast<std::size_t>(std::min_element(lambda.begin(), lambda.begin() + c.planes) - lambda.begin());
-  if (lambda[weakest] < -noise) {  // it would pull the particle towards the body: let go
+  if (lambda[weakest] < -noise) {  // it would pull the particle towards the body, so it is let go
     for (auto k = static_cast<int>(weakest); k + 1 < c.planes; ++k) c.plane[k] = c.plane[k + 1];
     --c.planes;
     c.arrival_impulse = arrival_impulse(c, step);
     if (!c.active()) return true;
-    // It slides along what still holds, more ways than before.
+    // The particle slides along the planes that still hold, in more directions than before.
     c.last_slip = tangential(c, step.velocity(c.particle) - c.body_velocity());
     c.slip = c.last_slip;
     return true;
@@ -143,13 +143,13 @@ bool ParticleContacts::update_grip(const Bodies& bodies, const StepMotion& step,
       }
       break;
     case Grip::breaking_loose:
-      if (slip.dot(c.friction_impulse) > 0) next = Grip::stick;  // friction would drive the motion
+      if (slip.dot(c.friction_impulse) > 0) next = Grip::stick;  // otherwise friction would drive the motion
       break;
     case Grip::slide:
       if (step.mass(c.particle) * slip.norm() < stop_fraction * mu.kinetic * normal)
         next = Grip::stick;
       else if (slip.norm() * rubbed > overrubbed * mu.kinetic * normal * c.slip.norm()) {
-        c.slip = slip;  // faster than was expected: the damper rubbed with more than mu N
+        c.slip = slip;  // it slides faster than expected: the damper rubbed with more than mu N
         ++c.changes;
         return true;
       }

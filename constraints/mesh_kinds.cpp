@@ -10,7 +10,7 @@
 namespace drape::internal::kinds {
 namespace {
 
-// Of the vertices that carry triangles.
+// The box of the vertices that belong to triangles.
 Eigen::AlignedBox3d box_of(const TriangleMesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const Triangle& t : mesh.triangles)
@@ -29,7 +29,7 @@ Vec3 middle_of(const LevelSetBody& body) { return body->to_world((body->lower() 
 Eigen::AlignedBox3d bounds_of(const MeshBody& body) { return box_of(body->mesh()); }
 Eigen::AlignedBox3d bounds_of(const DeformingBody& body) { return box_of(body.surface->mesh()); }
 
-// Of the corners of the grid's box, which may be turned.
+// The box of the corners of the grid's own box, which may be turned.
 Eigen::AlignedBox3d bounds_of(const LevelSetBody& body) {
   const Eigen::AlignedBox3d grid(body->lower(), body->upper());
   Eigen::AlignedBox3d box;
@@ -50,15 +50,16 @@ std::optional<UniformSolid> uniform_solid(const MeshBody& body, double mass) {
 
 std::optional<UniformSolid> uniform_solid(const DeformingBody&, double) { return std::nullopt; }
 
-// Summed over cubes along the grid's axes, as small as its voxels where these are not too many; a cube of side h that
-// the surface passes, at a distance phi from the cube's middle, counts by the share 1/2 - phi/h.
+// The integrals are sums over cubes along the grid's axes, as small as its voxels unless these are too many.
+// A cube of side h that the surface passes, at a distance phi from the middle of the cube, counts by the
+// share 1/2 - phi/h.
 std::optional<UniformSolid> uniform_solid(const LevelSetBody& body, double mass) {
   constexpr double most = 3e5;  // cubes
   const Vec3 extent = body->upper() - body->lower(), corner = body->lower();
   const double h = std::max(body->voxel(), std::cbrt(extent.prod() / most));
   const Vec3 count = (extent / h).array().ceil().max(1.0);
   double volume = 0;
-  Vec3 first = Vec3::Zero();   // integral of x, from the middle
+  Vec3 first = Vec3::Zero();   // integral of x, measured from the middle
   Mat3 second = Mat3::Zero();  // integral of x x^T
   const Vec3 origin = middle_of(body);
   for (double i = 0; i < count.x(); ++i)
@@ -72,7 +73,7 @@ std::optional<UniformSolid> uniform_solid(const LevelSetBody& body, double mass)
         first += share * x;
         second += share * (x * x.transpose() + h * h / 12 * Mat3::Identity());
       }
-  if (!(volume > 0)) return std::nullopt;  // thinner than the grid
+  if (!(volume > 0)) return std::nullopt;  // the solid is thinner than the grid resolves
   const Vec3 offset = first / volume;
   second = second / volume - offset * offset.transpose();
   return UniformSolid{volume * h * h * h, origin + offset,

@@ -1,15 +1,15 @@
-// The answers of shape.h for shapes that are meshes, or were made of one.
+// The answers to the questions of shape.h for shapes that are meshes, or were made of one.
 #pragma once
 
 #include "constraints/shape.h"
 
 namespace drape::internal::kinds {
 
-// What is true of a kind of shape, whatever its sizes.
+// What holds for a kind of shape, whatever its sizes.
 struct Nature {
   std::string_view name;
   bool convex;  // every straight line meets the solid in one piece
-  bool reacts;  // it may have a mass and move by what acts on it
+  bool reacts;  // it may have a mass and be moved by what acts on it
 };
 
 constexpr Nature nature(const MeshBody&) { return {"mesh", false, true}; }

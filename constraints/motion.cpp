@@ -46,7 +46,7 @@ double slope(double h0, double h1, double d0, double d1) {
   return (w0 + w1) / (w0 / d0 + w1 / d1);
 }
 
-// At every keyframe, from the changes between one and the next; at rest at the ends.
+// The slopes at every keyframe, from the changes between one and the next; at the two ends they are zero.
 std::vector<Vec3> slopes(const std::vector<Keyframe>& keyframes, const std::vector<Vec3>& changes) {
   std::vector<Vec3> found(keyframes.size(), Vec3::Zero());
   for (std::size_t k = 1; k + 1 < keyframes.size(); ++k) {
@@ -86,7 +86,7 @@ void check_order(const Keyframe& before, const Keyframe& next) {
 
 Vec3 unwrapped(const Quaterniond& rotation, const Vec3& before) {
   const double sine = rotation.vec().norm();
-  if (!(sine > no_turn * std::abs(rotation.w()))) {  // any axis will do
+  if (!(sine > no_turn * std::abs(rotation.w()))) {  // a whole number of turns, about any axis
     const double angle = before.norm();
     return angle > 0 ? Vec3(whole_turn * std::round(angle / whole_turn) / angle * before) : Vec3::Zero();
   }

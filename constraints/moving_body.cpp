@@ -69,8 +69,8 @@ ContactPlane MovingBody::plane_at(const Vec3& x, const Vec3& normal, double gap)
 
 ContactPlane MovingBody::plane(const Vec3& x, const SurfacePoint& at_start, const Vec3& x_new) const {
   if (!turns_ && !deforms()) return plane_at(x, at_start.normal, at_start.distance - obstacle_.margin);
-  // Where it will be in the body's frame: what slides on a turning body is not turned with it, and would be
-  // driven round by the tilt of the normal.
+  // Where the particle will be in the body's frame: a particle that slides on a turning body does not turn
+  // with it, and the tilt of the normal would drive it round.
   const Vec3 X = drape::carried(obstacle_.shape, start_.to_body(x)), way = end_.to_body(x_new) - X;
   const Vec3 n = deforms() ? closest(obstacle_.shape, X, 1).normal : at_start.normal;
   const Vec3 slid = way - n.dot(way) * n;
@@ -83,7 +83,7 @@ std::optional<ContactPlane> MovingBody::meeting(const Vec3& x0, const Vec3& x1) 
   const auto hit = first_hit(obstacle_.shape, X0, X1, obstacle_.margin);
   if (!hit) return std::nullopt;
   const SurfacePoint& s = hit->surface;
-  const Vec3 way = X1 - drape::carried(obstacle_.shape, X0);  // against the surface
+  const Vec3 way = X1 - drape::carried(obstacle_.shape, X0);  // relative to the surface
   const double gap = -hit->fraction * way.dot(s.normal) + s.distance - obstacle_.margin;
   return plane_at(x0, s.normal, std::max(gap, 0.0));
 }

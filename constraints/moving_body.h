@@ -1,12 +1,14 @@
-// A body through the steps of a motion. Contact is asked in the body's own frame, where it stands still: a
-// particle that goes straight from x0 to x1 while the body goes from its pose at t to the one at t + h is
-// seen there on the way from X0 = pose(t)^-1 x0 to X1 = pose(t + h)^-1 x1, taken as straight. So a fast body
-// is met as surely as a body at rest is by a fast particle.
+// A body as it moves through the steps. Contact is looked for in the body's own frame, where the body stands
+// still: a particle that goes straight from x0 to x1 while the body goes from its pose at t to the one at
+// t + h is seen there on the way from X0 = pose(t)^-1 x0 to X1 = pose(t + h)^-1 x1, which is taken as
+// straight. So a fast body meets a particle as surely as a fast particle meets a body at rest.
 //   carried   where the body takes the point x until the end of the step: c = pose(t + h) X0, and further
-//             where it deforms
-//   velocity  v_b = (c - x) / h: of the body at x, the mean over the step, so that x + h v_b stays with it
-//   plane     the surface at the end of the step nearest to where the particle will have slid to by x + h v:
-//             its normal n, and its gap from the carried point. v.n = v_b.n - gap / h arrives exactly on it.
+//             where the body deforms
+//   velocity  v_b = (c - x) / h: the mean velocity of the body at x over the step, so that x + h v_b stays
+//             with it
+//   plane     the surface at the end of the step that is nearest to where the particle will have slid by
+//             x + h v: its normal n, and its gap from the carried point. v.n = v_b.n - gap / h arrives
+//             exactly on it.
 //                                                    [Baraff & Witkin 1998, 5.2, in the frame of the body]
 // x [m], v [m/s], t, h [s].
 #pragma once
@@ -20,17 +22,17 @@ namespace drape {
 
 class MovingBody {
  public:
-  MovingBody(Obstacle obstacle, int number);  // number: of the planes it makes
+  MovingBody(Obstacle obstacle, int number);  // number: names this body in the planes that it makes
 
   const Obstacle& obstacle() const { return obstacle_; }
   int number() const { return number_; }
-  double step() const { return h_; }         // s
+  double step() const { return h_; }         // length of the step under way [s]
   const Pose& pose() const { return now_; }  // at the end of the last completed step
-  // The body that reacts, null when it does not.
+  // The state of a body that reacts; null when it does not react.
   const ReactingBody* reacting() const { return reacting_ ? &*reacting_ : nullptr; }
 
-  // A point that the body carries with it, from where it is now; of a body that deforms, by the triangle
-  // beside it.
+  // A point that the body carries with it, marked where the body stands at the end of the last completed
+  // step. A body that deforms carries it with the triangle beside it.
   struct Mark {
     Vec3 place;  // m, in the body's frame
     std::optional<SurfaceDistance::Anchor> anchor;
@@ -38,36 +40,37 @@ class MovingBody {
   Mark mark(const Vec3& x) const;
 
   void begin_step(double t, double h);
-  bool end_step();  // false: its reaction has not converged. A step that is abandoned does not move it.
+  bool end_step();  // false: the reaction has not converged. A step that is abandoned does not move the body.
 
-  // What the particles push it with in this step, from zero; where it then moves otherwise than it was taken
-  // to `correct` is true, and the planes it made are to be moved (velocity has changed).
+  // The impulses of the particles on the body in this step, summed from zero. Where they make the body move
+  // otherwise than was assumed, `correct` is true, and the planes that it made must be updated (their
+  // velocity has changed).
   void clear_impulse();
   void push(const Vec3& impulse, const Vec3& place, double approach = 0);
   bool correct(double noise) { return reacting_ && reacting_->correct(end_, noise); }
 
-  // Signed distance at the last completed step's end.
+  // Signed distance at the end of the last completed step [m].
   double distance(const Vec3& x) const { return closest(obstacle_.shape, now_.to_body(x), 1).distance; }
 
-  // Of the step under way: the surface at its start and at its end.
+  // The closest point of the surface at the start and at the end of the step under way.
   SurfacePoint near_start(const Vec3& x) const;
   SurfacePoint near_end(const Vec3& x) const;
   SurfacePoint at_start(const Vec3& x) const;  // in the body's frame
   Vec3 carried(const Vec3& x) const;
   Vec3 carried(const Mark& mark) const;
   Vec3 velocity(const Vec3& x) const { return (carried(x) - x) / h_; }
-  // By how much the distance of a particle from the body can change on its way.
+  // The most by which the distance of a particle from the body can change on its way [m].
   double travel(const Vec3& x0, const Vec3& x1) const;
   ContactPlane plane(const Vec3& x, const SurfacePoint& at_start, const Vec3& x_new) const;
-  // How far the way leads away from the plane that moves with the body: negative, it comes nearer [m].
+  // How far the way leads away from the plane that moves with the body [m]; negative where it comes nearer.
   double approach(const Vec3& x0, const Vec3& x1, const ContactPlane& plane) const {
     return (x1 - carried(x0)).dot(plane.normal);
   }
   // The plane in which the way first meets the surface offset by the margin.
   std::optional<ContactPlane> meeting(const Vec3& x0, const Vec3& x1) const;
-  // Where the way ends if the surface stops it: nothing that was outside ends inside or behind it, nothing
-  // that was `depth` inside (distance at the start, when negative) ends deeper. The normal there; nothing
-  // when it is free.
+  // Moves x1 to where the way ends if the surface stops it, and returns the normal there; returns nothing
+  // when the way is free. A particle that was outside does not end inside or behind the body, and one that
+  // was `depth` inside (start_distance = -depth) does not end deeper.
   std::optional<Vec3> stop(const Vec3& x0, Vec3& x1, double start_distance) const;
 
  private:
@@ -77,7 +80,7 @@ class MovingBody {
   Obstacle obstacle_;
   int number_;
   double h_ = 0;
-  bool turns_ = false;  // in this step
+  bool turns_ = false;  // whether the body turns in this step
   Pose now_, start_, end_;
   std::optional<ReactingBody> reacting_;
 };

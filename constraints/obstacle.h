@@ -1,12 +1,13 @@
 // A body in the cloth's way: a shape that may move and that rubs.
-//   friction  Coulomb's coefficients [-]: static holds up to mu_s N, kinetic rubs with mu_k N
-//   margin    the cloth comes to rest this far outside the surface [m]: vertices stop at phi = margin, so
-//             that the straight edges between them stay clear of a curved body
-//   motion    where the body is at a time; the shape is given in the body's own frame, which is the world's
-//             where nothing moves
-//   restitution  which part of the normal velocity an impact gives back [-], with the contact mode
-//             "restitution" only (constraints/response.h)
-//   rigid     its mass, when it falls and the cloth pushes it (constraints/reacting_body.h)
+//   friction  Coulomb's coefficients [-]: static friction holds up to mu_s N, kinetic friction rubs with
+//             mu_k N
+//   margin    how far outside the surface the cloth comes to rest [m]: vertices stop at phi = margin, so that
+//             the straight edges between them stay clear of a curved body
+//   motion    where the body is at each time; the shape is given in the body's own frame, which is the
+//             world's where nothing moves
+//   restitution  which part of the normal velocity an impact gives back [-]; only the contact mode
+//                "restitution" uses it (constraints/response.h)
+//   rigid     the body's mass, when it falls and the cloth pushes it (constraints/reacting_body.h)
 #pragma once
 
 #include <optional>
@@ -30,8 +31,9 @@ struct Obstacle {
   Friction friction = {};
   double margin = 2e-3;  // m
   Motion motion = {};
-  double restitution = 0;               // k_r, 0 to 1
-  std::optional<RigidBody> rigid = {};  // reacts to the cloth, and then has no motion given but its start
+  double restitution = 0;  // k_r, 0 to 1
+  // When set, the body reacts to the cloth; its motion then gives only where it starts.
+  std::optional<RigidBody> rigid = {};
 };
 
 // Throws InputError when the shape, a coefficient of friction or the margin makes no sense.

@@ -14,7 +14,7 @@ const ContactPlane* plane_with(const Contact* contact, int obstacle) {
   return nullptr;
 }
 
-// f(particle, chunk) for all that is not held.
+// Calls f(particle, chunk) for every particle that is not held.
 template <class F>
 void for_free(const StepMotion& step, const F& f) {
   const int n = static_cast<int>(step.held.size());
@@ -29,7 +29,7 @@ void for_free(const StepMotion& step, const F& f) {
 void ParticleContacts::prepare(int particles, std::size_t bodies) {
   const auto n = static_cast<std::size_t>(particles);
   particles_ = n;
-  clearance_.assign(n * bodies, 0.0);  // nothing known yet: look at once
+  clearance_.assign(n * bodies, 0.0);  // nothing is known yet, so the first step looks at every particle
   trial_.clear();
   committed_.clear();
   if (bodies == 0) return;  // pins need no more memory than this
@@ -41,7 +41,7 @@ void ParticleContacts::prepare(int particles, std::size_t bodies) {
   responses_.resize(chunks);
   deepest_.resize(chunks);
   guarded_.resize(chunks);
-  trial_.reserve(n);  // so that no step allocates, however many touch
+  trial_.reserve(n);  // so that no step allocates, however many particles touch
   committed_.reserve(n);
   friction_.reserve(n);
   for (auto& found : found_) found.reserve(chunk_size);

@@ -1,9 +1,10 @@
 // The particles that touch bodies, in one step and from step to step: which they are, how they hold (stick,
-// slide, let go), and what that is to a solve. constraints/contact.h has the equations.
-//   particle_contacts.cpp   where contacts are found: at the start, along the way, and what the guard stops
-//   grip.cpp                how they hold, after each solve: here friction is decided
+// slide, are let go), and what filter and friction a solve gets from them. constraints/contact.h has the
+// equations.
+//   particle_contacts.cpp   where contacts are found: at the start, along the way, and by the guard
+//   grip.cpp                how they hold after each solve: friction is decided there
 //   respond.cpp             the response of constraints/response.h, for explicit methods
-// Scratch of the step under way is kept from step to step, so that no step allocates.
+// The scratch memory is kept from step to step, so that no step allocates.
 #pragma once
 
 #include <array>
@@ -16,7 +17,7 @@
 
 namespace drape {
 
-// What rubs on a sliding particle in this step: f = -D (v - v_b), and an impulse.
+// What friction does to a sliding particle in this step: the force f = -D (v - v_b), and an impulse.
 struct ContactFriction {
   int particle, body;
   Mat3 damping;        // N s/m
@@ -26,9 +27,9 @@ struct ContactFriction {
 
 struct ContactReport {
   int contacts = 0;
-  int guarded = 0;        // particles stopped at a surface after the solve, outside the equations
+  int guarded = 0;        // particles that were stopped at a surface after the solve, outside the equations
   bool converged = true;  // the motion of bodies that react agrees with the impulses on them
-  double deepest = 0;     // m, how far the deepest particle was inside a body when the step began
+  double deepest = 0;     // how deep the deepest particle was inside a body when the step began [m]
 };
 
 // An impulse of a body on a particle, see constraints/response.h.
@@ -49,21 +50,22 @@ class ParticleContacts {
   bool prepared(int particles, std::size_t bodies) const {
     return clearance_.size() == static_cast<std::size_t>(particles) * bodies;
   }
-  void prepare(int particles, std::size_t bodies);  // for other particles or bodies: all is forgotten
+  void prepare(int particles, std::size_t bodies);  // forgets all, for other particles or bodies
   void look_again();                                // the particles were moved from outside
-  void open();                                      // a step begins, without contacts
+  void open();                                      // begins a step without contacts
 
-  // Finds what touches in the motion that is foreseen.
+  // Finds the particles that touch a body in the predicted motion.
   void find(const Bodies& bodies, const StepMotion& step);
-  // Finds what the motion found would pass through; true when there is any.
+  // Finds the particles that would pass through a body in the motion x_new; true when there are any.
   bool find_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new);
-  // Takes the reaction r [N s] of a solve that gave v [m/s]; impulses below `noise` [N s] are its round-off.
-  // True when a contact is let go, sticks or slides otherwise than the solve took it to.
+  // Takes the reaction r [N s] of a solve that gave v [m/s]; impulses below `noise` [N s] count as round-off.
+  // True when a contact is let go, or sticks or slides otherwise than the solve assumed.
   bool react(const Bodies& bodies, const StepMotion& step, const VecX& v, const VecX& r, double noise);
-  // The bodies move otherwise than they were taken to.
+  // Updates the contacts when the bodies do not move as was assumed.
   void follow(const Bodies& bodies, const StepMotion& step);
 
-  // In place of find and react: a free motion to x, v ends at x_new, v_new after the response of the bodies.
+  // Takes the place of find and react: a free motion to x, v ends at x_new, v_new after the response of the
+  // bodies.
   void respond(ContactMode mode, const Bodies& bodies, const StepMotion& step, const VecX& x, const VecX& v,
                VecX& x_new, VecX& v_new);
   template <class F>  // f(response) for every one, in the order of the particles
@@ -72,18 +74,18 @@ class ParticleContacts {
       for (const ContactResponse& response : responses) f(response);
   }
 
-  // The last line of defence, outside the equations: no particle that was outside a body ends inside it, or
-  // behind it; none that was inside ends deeper.
+  // Corrects the motion after the solve, outside the equations: no particle that was outside a body ends
+  // inside or behind it, and none that was inside ends deeper.
   void guard(const Bodies& bodies, const StepMotion& step, VecX& x_new, VecX& v_new, ContactReport& report);
   void commit();
 
-  // S and z of what touches; the dampers and impulses of what slides.
+  // S and z of the particles that touch; the dampers and impulses of those that slide.
   void filter(const StepMotion& step, const VecX& v, Filter& filter) const;
   const std::vector<ContactFriction>& make_friction(const Bodies& bodies, const StepMotion& step);
   const std::vector<ContactFriction>& friction() const { return friction_; }  // as it was made last
   const VecX& correction() const { return correction_; }                      // y [m]; empty without bodies
 
-  const std::vector<Contact>& touching() const { return trial_; }  // those let go have no planes
+  const std::vector<Contact>& touching() const { return trial_; }  // contacts that were let go have no planes
   const std::vector<Contact>& contacts() const { return committed_; }
 
  private:
@@ -108,10 +110,11 @@ class ParticleContacts {
 
   double recovery_speed_;  // m/s
   std::size_t particles_ = 0;
-  std::vector<Contact> trial_, committed_;      // of the step under way; of the last completed one
-  std::vector<int> contact_of_, committed_of_;  // particle -> its place in those, -1: none
-  std::vector<double> clearance_;  // body, particle -> a distance within which no surface was [m]
-  VecX correction_;                // m
+  std::vector<Contact> trial_, committed_;      // contacts of the step under way; of the last completed one
+  std::vector<int> contact_of_, committed_of_;  // particle -> its place in those; -1: none
+  // By body and particle: a distance within which there was no surface of the body [m].
+  std::vector<double> clearance_;
+  VecX correction_;  // m
   std::vector<ContactFriction> friction_;
   // By chunk of particles, so that threads do not share them.
   std::vector<std::vector<Contact>> found_;

@@ -29,7 +29,7 @@ void PinSet::pin_along(const std::vector<int>& particles, const Motion& motion, 
 
 void PinSet::renumber(const std::vector<int>& number_of) {
   const auto number = [&](int i) { return number_of[i]; };
-  std::vector<int> first(number_of.size(), -1);  // pin of a number
+  std::vector<int> first(number_of.size(), -1);  // new number -> the lowest pinned particle that gets it
   for (int i : pinned_)
     if (int& owner = first[number(i)]; owner < 0) owner = i;
   std::erase_if(moving_, [&](const MovingPin& pin) { return first[number(pin.particle)] != pin.particle; });

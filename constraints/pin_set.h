@@ -1,4 +1,4 @@
-// The particles that are held: where they are, or carried along by a body or on a path of their own.
+// The particles that are held: they stay where they are, or a body or a path of their own carries them along.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace drape {
 // A pinned particle that is carried along.
 struct MovingPin {
   int particle;
-  int body;  // that carries it; -1: its own path
+  int body;  // number of the body that carries the particle; -1: its own path does
   int path;
   MovingBody::Mark mark;
 };
@@ -22,16 +22,17 @@ class PinSet {
   void pin(const std::vector<int>& particles);
   void pin_to_body(const std::vector<int>& particles, const MovingBody& body, const VecX& x);
   void pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x);
-  // Particle i is number[i] from now on; of pins that become one the lowest stays.
+  // Particle i gets the number number[i]; where several pins become one, the pin of the lowest particle
+  // stays.
   void renumber(const std::vector<int>& number);
 
   const std::vector<int>& pinned() const { return pinned_; }  // ascending
   const std::vector<MovingPin>& moving() const { return moving_; }
 
-  // The velocities that bring the moving pins to where they are carried by the end of the step.
+  // Finds the velocities that bring the moving pins to where they are carried by the end of the step.
   void move(const std::vector<MovingBody>& bodies, const StepMotion& step);
   Vec3 velocity(int particle) const { return velocity_.segment<3>(3 * particle); }  // of a moving pin [m/s]
-  // Everything that is held gets its target: dv = velocity of the pin - v.
+  // Every particle that is held gets its target: dv = velocity of the pin - v.
   void filter(const StepMotion& step, const VecX& v, Filter& filter) const;
 
  private:

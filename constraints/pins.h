@@ -1,4 +1,5 @@
-// Choosing the vertices of a cloth that are held: by number, by a box in space, by a group of the OBJ file.
+// Rules that choose the vertices of a cloth that are held: by number, by a box in space, by a group of the
+// OBJ file.
 #pragma once
 
 #include <string>
@@ -10,18 +11,18 @@
 namespace drape {
 
 struct PinVertices {
-  std::vector<int> vertices;  // from 0
+  std::vector<int> vertices;  // counted from 0
 };
 struct PinBox {
-  Vec3 lower, upper;  // m, corners included
+  Vec3 lower, upper;  // corners of the box [m]; they belong to it
 };
 struct PinGroup {
   std::string name;
 };
 using PinRule = std::variant<PinVertices, PinBox, PinGroup>;
 
-// The vertices the rule selects, ascending. Throws InputError when it selects nothing, naming what there is
-// to choose from.
+// Returns the vertices that the rule selects, ascending. Throws InputError when there are none; the message
+// names what there is to choose from.
 std::vector<int> select(const PinRule& rule, const TriangleMesh& mesh);
 
 }  // namespace drape

@@ -1,7 +1,7 @@
 // Where a rigid body is.
-//   x = R X + t,  X a point of the body where it was drawn, x the same point where it is now   [m]
+//   x = R X + t,  X: a point of the body where it was drawn, x: the same point where it is at the time   [m]
 //   R rotation (orthonormal, right-handed), t translation [m]
-// A pose that stands for nothing being moved is the default, R = 1 and t = 0.
+// The default, R = 1 and t = 0, leaves everything where it was drawn.
 #pragma once
 
 #include "mesh/base/vectors.h"
@@ -18,7 +18,7 @@ struct Pose {
   Vec3 direction_to_body(const Vec3& d) const { return rotation.transpose() * d; }
 };
 
-// First the right one: (a * b).to_world(X) = a.to_world(b.to_world(X)).
+// Applies the right one first: (a * b).to_world(X) = a.to_world(b.to_world(X)).
 inline Pose operator*(const Pose& a, const Pose& b) {
   return {a.rotation * b.rotation, a.to_world(b.translation)};
 }

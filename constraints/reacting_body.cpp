@@ -13,8 +13,9 @@
 namespace drape {
 namespace {
 
-constexpr double close_enough = 1e-3;  // of the change of velocity in the step
-constexpr double round_off = 1e-12;    // of the velocity: what floats freely without gravity has no more
+constexpr double close_enough = 1e-3;  // share of the change of velocity in the step
+// A share of the velocity: for a body that floats freely without gravity there is no larger scale.
+constexpr double round_off = 1e-12;
 
 Mat3 turned_by(const Vec3& angle) {
   const double a = angle.norm();
@@ -26,7 +27,7 @@ Mat3 turned_by(const Vec3& angle) {
 void check(const RigidBody& body) {
   if (!(body.mass > 0) || !std::isfinite(body.mass))
     throw InputError("mass = " + std::to_string(body.mass) + " kg: a mass is positive");
-  if (body.mass < 1e-9)  // lighter than a grain of dust: a slip of the unit, and 1 / m is out of all range
+  if (body.mass < 1e-9)  // lighter than a grain of dust: a mistaken unit, and 1 / m is out of all range
     throw InputError("mass: a body that reacts has a microgram at least");
   const Eigen::SelfAdjointEigenSolver<Mat3> principal(body.inertia);
   const Vec3& I = principal.eigenvalues();  // ascending
@@ -57,7 +58,7 @@ Pose ReactingBody::moved() const {
 }
 
 Pose ReactingBody::begin_step(double h) {
-  const double share = last_h_ > 0 ? h / last_h_ : 0;  // of the last step's impulses
+  const double share = last_h_ > 0 ? h / last_h_ : 0;  // of the impulses of the last step
   h_ = h;
   q_.head<3>() = v_ + h * body_.gravity + share * last_J_ / body_.mass;
   q_.tail<3>() = radius_ * (world_inertia(pose_).inverse() * (L_ + share * last_T_));
@@ -90,7 +91,7 @@ ReactingBody::Vec6 ReactingBody::difference() const {
 
 double ReactingBody::change() const { return (h_ * body_.gravity).norm() + J_.norm() / body_.mass; }
 
-// What touches it can throw it back at twice the speed at which they met, and no faster.
+// The cloth can throw the body back at twice the speed at which they met, and no faster.
 void ReactingBody::stay_in_reach() {
   const double reach = 2 * (meeting_ + (h_ * body_.gravity).norm());
   const Vec6 away = q_ - q_free_;
@@ -106,7 +107,7 @@ bool ReactingBody::correct(Pose& end, double noise) {
     const double Z = J_.norm() / std::max(approach_, h_ * body_.gravity.norm() + 1e-12);
     relaxation_ = 1 / (1 + Z / body_.mass);
   }
-  if (known_) {  // the newest first, the oldest falls out
+  if (known_) {  // the newest change comes first, and the oldest falls out
     changes_ = std::min(changes_ + 1, most_changes);
     for (int k = changes_ - 1; k > 0; --k) {
       dq_.col(k) = dq_.col(k - 1);
@@ -125,7 +126,7 @@ bool ReactingBody::correct(Pose& end, double noise) {
     const Eigen::VectorXd c = dd.colPivHouseholderQr().solve(-d);
     q_ += dq * c;
     rest += dd * c;
-    if (changes_ == 1 && c[0] > 0)  // how much of d the first change should have been
+    if (changes_ == 1 && c[0] > 0)  // which share of d the first change should have been
       relaxation_ = std::clamp(relaxation_ * (1 + c[0]), 1e-6, 1.0);
   }
   q_ += relaxation_ * rest;

@@ -1,4 +1,4 @@
-// The response of constraints/response.h to a free motion, in the place of a filter.
+// Applies the response of constraints/response.h to a free motion; it takes the place of a filter.
 #include <algorithm>
 
 #include "constraints/particle_contacts.h"
@@ -7,7 +7,7 @@
 namespace drape {
 namespace {
 
-// Between bodies that a particle touches at once the response goes round so often at most.
+// A particle that touches several bodies at once goes from one to the next in at most this many rounds.
 constexpr int most_rounds = 8;
 
 }  // namespace

@@ -64,7 +64,7 @@ bool rebound(StepVelocities& step, const ContactPlane& plane, const Friction& mu
   const Vec3 met = w + s * forced;
   const Vec3 impact = reflected(met, Vec3::Zero(), n, k_r) - met;
   Vec3 end = w + forced + impact;
-  Vec3 after = met + impact + (1 - s) * (step.mean - step.start);  // mean velocity of the rest of the step
+  Vec3 after = met + impact + (1 - s) * (step.mean - step.start);  // mean velocity in the rest of the step
   if (const double pressed = -end.dot(n); pressed > 0) {
     end += pressed * n;
     const double kept = slip_kept(mu, pressed, end.norm());

@@ -1,6 +1,7 @@
-// The built-in shapes, one block for each: what kind it is, where its surface is, what it weighs, how it looks,
-// and which sizes it may have. The questions of shape.h are put to the block of the shape by std::visit. They
-// are asked as kinds::..., which no argument converts to: a shape that lacks an answer does not compile.
+// The built-in shapes, one block for each: what kind it is, where its surface is, what it weighs, how it
+// looks, and which sizes it may have. std::visit puts the questions of shape.h to the block of the shape.
+// They are called as kinds::..., whose parameters nothing converts to: a shape that lacks an answer does not
+// compile.
 //
 // Moments of inertia of a solid of uniform density about its own axes, m mass [kg]:
 //   sphere   2/5 m r^2
@@ -68,7 +69,7 @@ AlignedBox3d box_about(const Vec3& centre, const Reach& reach) {
   return {lower, upper};
 }
 
-// The part of a unit vector across an axis, from its part along the axis.
+// The length of the part of a unit vector across an axis, from its part along the axis.
 double across_part(double along) { return std::sqrt(std::max(0.0, 1 - along * along)); }
 
 void require(bool fine, const char* message, double value) {
@@ -104,7 +105,7 @@ Vec3 middle_of(const Plane& plane) { return plane.point; }
 void make_unit(Plane& plane) { plane.normal.normalize(); }
 Mat3 axes_of(const Plane&) { return Mat3::Identity(); }
 
-// It ends where its normal goes along an axis of the world.
+// The half space of a plane has a bound only where its normal is along an axis of the world.
 AlignedBox3d bounds_of(const Plane& plane) {
   const Vec3 n = plane.normal.normalized();
   Vec3 lower = Vec3::Constant(-endless), upper = -lower;
@@ -162,8 +163,8 @@ void check(const Sphere& sphere) {
 
 constexpr Nature nature(const Bowl&) { return {"bowl", false, false}; }
 
-// The middle of the shell is half a sphere: below its rim the nearest point lies along the radius, above it
-// on the rim.
+// The middle surface of the shell is half a sphere: for a point below its rim the nearest point of it lies
+// along the radius, for one above on the rim.
 SurfacePoint closest(const Bowl& bowl, const Vec3& x) {
   const Vec3 axis = bowl.axis.normalized();
   const double middle = bowl.radius + bowl.thickness / 2;
@@ -183,7 +184,7 @@ Vec3 middle_of(const Bowl& bowl) { return bowl.centre; }
 void make_unit(Bowl& bowl) { bowl.axis.normalize(); }
 Mat3 axes_of(const Bowl& bowl) { return turn(Vec3::UnitX(), bowl.axis); }
 
-// Downwards the outer half sphere, upwards the ring that is its rim.
+// The bowl reaches as far as the outer half sphere downwards, and as far as the ring that is its rim upwards.
 AlignedBox3d bounds_of(const Bowl& bowl) {
   const Vec3 axis = bowl.axis.normalized();
   const double half = bowl.thickness / 2;
@@ -214,7 +215,7 @@ constexpr Nature nature(const Box&) { return {"box", true, true}; }
 
 SurfacePoint closest(const Box& box, const Vec3& x) {
   const Vec3 p = box.rotation.transpose() * (x - box.centre);
-  const Vec3 depth = p.cwiseAbs() - box.size / 2;  // beyond each pair of faces
+  const Vec3 depth = p.cwiseAbs() - box.size / 2;  // how far beyond each pair of faces
   const Vec3 sign = p.unaryExpr([](double c) { return c < 0 ? -1.0 : 1.0; });
   const Vec3 beyond = depth.cwiseMax(0.0);
   const double d = beyond.norm();
@@ -311,7 +312,7 @@ SurfacePoint closest(const Plate& plate, const Vec3& x) {
   const double rho = outwards.norm();
   const Vec3 radial = direction_or(outwards, rho, across(axis));
   const Vec3 upwards = height < 0 ? Vec3(-axis) : axis;
-  const double beside = rho - (plate.radius - plate.rim);  // beyond the core's wall
+  const double beside = rho - (plate.radius - plate.rim);  // how far beyond the core's wall
   const double above = std::abs(height) - (plate.height / 2 - plate.rim);
   const double out = std::max(beside, 0.0), up = std::max(above, 0.0);
   const double d = std::sqrt(out * out + up * up);
@@ -333,7 +334,7 @@ AlignedBox3d bounds_of(const Plate& plate) {
 }
 
 TriangleMesh mesh_of(const Plate& plate) {
-  constexpr int round_the_rim = 8;  // pieces of a quarter of a circle
+  constexpr int round_the_rim = 8;  // pieces in a quarter of a circle
   const double half = plate.height / 2, wall = half - plate.rim, core = plate.radius - plate.rim;
   Outline outline;
   outline.emplace_back(0, -half);
@@ -348,12 +349,14 @@ TriangleMesh mesh_of(const Plate& plate) {
   return placed(turned(outline, around), turn(Vec3::UnitY(), plate.axis), plate.centre);
 }
 
-// The core's part of the axis is a cylinder. Beyond, at t in [0, r] past its end, rho = c + s, s = sqrt(r^2 - t^2),
-// c the core's radius and r the rim; the integrals of t^i s^j over t are in closed form.
+// Along the axis, the core's part is a cylinder. Beyond it, at t in [0, r] past its end, the disc's radius is
+// rho = c + s with s = sqrt(r^2 - t^2), where c is the core's radius and r the rim; the integrals of t^i s^j
+// over t have closed forms.
 std::optional<UniformSolid> uniform_solid(const Plate& plate, double mass) {
   const double R = plate.radius, r = plate.rim, c = R - r, H = plate.height / 2 - r;
   const double r2 = r * r, r3 = r2 * r, r4 = r3 * r, r5 = r4 * r, c2 = c * c;
-  const double rho2 = c2 * r + c * pi * r2 / 2 + 2 * r3 / 3;  // int rho^2, and times t, and times t^2
+  // The integrals of rho^2, of t rho^2 and of t^2 rho^2 over t; then that of rho^4.
+  const double rho2 = c2 * r + c * pi * r2 / 2 + 2 * r3 / 3;
   const double t_rho2 = c2 * r2 / 2 + 2 * c * r3 / 3 + r4 / 4;
   const double t2_rho2 = c2 * r3 / 3 + c * pi * r4 / 8 + 2 * r5 / 15;
   const double rho4 =

@@ -1,4 +1,5 @@
-// A step as the constraints see it: where the particles begin, how long it takes, and which are held anyway.
+// A step as the constraints see it: where the particles begin, how long it takes, and which particles are
+// held in any case.
 // Internal to the library's constraints.
 #pragma once
 
@@ -10,20 +11,20 @@ namespace drape {
 
 // How far contacts are looked for when a step begins.
 enum class Foresight {
-  ahead,  // along the motion x -> x + h v that is foreseen
+  ahead,  // along the predicted motion x -> x + h v
   here,   // where the particles are: for motions that vibrate within a step
-  none,   // contact is answered after the motion, see ContactStep::respond
+  none,   // nowhere: contact is answered after the motion, see ContactStep::respond
 };
 
 struct StepMotion {
   double t = 0, h = 0;  // s
-  double last_h = 0;    // s, of the last completed step
+  double last_h = 0;    // length of the last completed step [s]
   Foresight foresight = Foresight::ahead;
-  double work = 0;             // J, that moving bodies and pins do on the particles
+  double work = 0;             // work of moving bodies and pins on the particles [J]
   VecX x, v;                   // at the start [m], [m/s]
   VecX x_end;                  // where the last completed step ended [m]
   std::vector<double> masses;  // kg
-  std::vector<char> held;      // of each particle: pinned, or without mass
+  std::vector<char> held;      // per particle: it is pinned, or it has no mass
 
   bool is_held(int particle) const { return held[particle] != 0; }
   double mass(int particle) const { return masses[particle]; }

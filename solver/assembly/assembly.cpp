@@ -13,7 +13,7 @@
 namespace drape {
 namespace {
 
-// The cloth's triangles between its particles, numbered from its first.
+// The cloth's triangles between its particles, numbered from its first particle.
 TriangleMesh between_particles(const Cloth& cloth) {
   TriangleMesh mesh = cloth.mesh;
   for (Triangle& t : mesh.triangles)
@@ -69,7 +69,7 @@ void add_edges(const std::vector<LatticePair>& pairs, const std::vector<Vec3>& p
 Assembly::Assembly(const Vec3& gravity, ContactOptions contact)
     : constraints(std::make_unique<Constraints>(contact)), gravity_(gravity) {}
 
-// The particles come after those that are there.
+// Appends the particles of the part to those that are there.
 Cloth& Assembly::take(Cloth cloth, const std::vector<Vec3>& positions, const std::vector<double>& masses) {
   masses_.insert(masses_.end(), masses.begin(), masses.end());
   const VecX own = stacked(positions);

@@ -1,11 +1,12 @@
 // Cloths, soft bodies, bodies and pins as one system that is stepped, while seams close and are merged.
-//   Assembly all;                                  gravity and the way of contact, by default the usual ones
+//   Assembly all;                                  gravity and options of contact, the usual ones by default
 //   all.add(...)                                   every cloth and soft body
 //   all.constraints->add(...), all.pin(...)        bodies and pins, in any order
 //   all.use("implicit-euler", "mpcg+block-ic0")    makes the system, and may change the integrator later
 //   all.advance(h)                                 steps, as often as you like
-// Merging two particles adds their masses and momenta; positions are averaged by mass, so that the centre of mass
-// stays, and what is pinned stays where its first pin holds it. Then system and integrator are made anew.
+// Where two particles are merged their masses and momenta are added. Positions are averaged by mass, so that
+// the centre of mass stays; a pinned particle stays where its first pin holds it. Then the system and the
+// integrator are made anew.
 #pragma once
 
 #include <functional>
@@ -26,26 +27,30 @@ struct Assembly {
   std::vector<Cloth> cloths;  // cloths and soft bodies as they were added
   std::unique_ptr<System> system;
   std::unique_ptr<Constraints> constraints;
-  std::unique_ptr<Integrator> integrator;  // refers to the two above
+  std::unique_ptr<Integrator> integrator;  // refers to `system` and `constraints`
   State state;
-  std::vector<State> outgrown;     // as it was when particles became one: arrays may look at it still
-  MakeIntegrator make_integrator;  // makes the integrator, now and again when particles have become one
-  double given = 0;  // J, by seams so far: their pull, and what the cloth gets when they are merged
+  // The states from before particles became one; they are kept because arrays may still look at them.
+  std::vector<State> outgrown;
+  // Makes the integrator, at first and again whenever particles have become one.
+  MakeIntegrator make_integrator;
+  // Energy that seams have given so far [J]: by their pull, and to the cloth when they are merged.
+  double given = 0;
 
-  // The reference is good until the next one is added. Throw InputError when a mesh cannot be simulated, a
-  // fabric or a material is none, or use() was called already.
+  // The reference is valid until the next part is added. Both throw InputError when a mesh cannot be
+  // simulated, when a fabric or a material makes no sense, or when use() was called before.
   Cloth& add(ClothPart part);
   Cloth& add(SoftPart part);
 
-  // Holds what the rule selects of cloths[k] where it is. Throws InputError when that is nothing.
+  // Holds the particles that the rule selects of cloths[k] where they are. Throws InputError when it selects
+  // nothing.
   void pin(const PinRule& rule, std::size_t k = 0);
 
-  // Makes the system when it is called first, and takes this integrator from now on. Corners and rims of bodies
-  // are kept off the inside of triangles when there are bodies by then.
+  // Makes the system at the first call, and steps with this integrator from then on. If there are bodies by
+  // the first call, their corners and rims are kept from coming through triangles.
   void use(MakeIntegrator make);
   void use(const std::string& integrator, const std::string& linear_solver, const StepOptions& options = {});
 
-  // One step, h [s]. Seams go on closing; those that have closed are merged after it.
+  // Takes one step of h [s]. Seams go on closing in it; those that have closed are merged after it.
   StepReport advance(double h);
 
   const Cloth& cloth_of(int particle) const;
@@ -54,7 +59,7 @@ struct Assembly {
   using Forces = std::vector<std::unique_ptr<Force>>;
 
   Cloth& take(Cloth cloth, const std::vector<Vec3>& positions, const std::vector<double>& masses);
-  // Adds the forces of a part as it is sewn by now, and notes its edges.
+  // Adds the forces of a part, as far as it has been sewn, and notes its edges.
   void connect(Cloth& cloth, Forces& forces) const;
   void connect(Cloth& cloth, const Connections& connections, Forces& forces) const;
   void make_system(std::vector<double> masses, Forces forces);
@@ -62,7 +67,7 @@ struct Assembly {
   State merged_state(const std::vector<double>& masses, const std::vector<int>& number) const;
 
   Vec3 gravity_;
-  // Until the system is made.
+  // These are in use until the system is made.
   std::vector<double> masses_;    // kg
   Forces forces_;                 // of all parts
   std::vector<ClothFace> faces_;  // of all parts

@@ -1,8 +1,8 @@
-// A cloth or a soft body: what is simulated as particles and written as a mesh.
-//   A cloth's vertices are particles, joined by the connections of its model. When a seam has been merged several
-//   vertices are one particle. A soft body is a lattice of particles; its mesh is the surface of the lattice, or
-//   another one that the lattice carries.
-// ClothPart and SoftPart are plain data, which an Assembly (solver/assembly/assembly.h) makes a Cloth of.
+// A cloth or a soft body: it is simulated as particles and written as a mesh.
+//   The vertices of a cloth are particles, joined by the connections of its model. When a seam has been
+//   merged, several vertices are one particle. A soft body is a lattice of particles; its mesh is the surface
+//   of the lattice, or another one that the lattice carries.
+// ClothPart and SoftPart are plain data from which an Assembly (solver/assembly/assembly.h) makes a Cloth.
 #pragma once
 
 #include <memory>
@@ -21,73 +21,73 @@
 namespace drape {
 
 enum class ClothModel {
-  noh_jung,  // of any triangle mesh (solver/forces/noh_jung.h)
-  choi_ko    // of a regular grid of quads (solver/forces/choi_ko.h)
+  noh_jung,  // for any triangle mesh (solver/forces/noh_jung.h)
+  choi_ko    // for a regular grid of quads (solver/forces/choi_ko.h)
 };
 
 struct ClothPart {
-  std::string name = "cloth";             // stands in messages
-  TriangleMesh mesh;                      // as it starts
-  std::optional<TriangleMesh> rest = {};  // as in solver/forces/noh_jung.h; unset: it rests as it starts
+  std::string name = "cloth";             // used in messages
+  TriangleMesh mesh;                      // as the cloth starts
+  std::optional<TriangleMesh> rest = {};  // as in solver/forces/noh_jung.h; unset: as the cloth starts
   Fabric fabric = {};
   ClothModel model = ClothModel::noh_jung;
   std::vector<SeamPlan> seams = {};
-  std::optional<MeshReport> report = {};  // what examine() says of the mesh; unset: it is asked
+  std::optional<MeshReport> report = {};  // what examine() says of the mesh; unset: examine() is called
 };
 
 struct SoftPart {
-  std::string name = "soft";  // stands in messages
+  std::string name = "soft";  // used in messages
   Lattice lattice;
   SoftMaterial material = {};
-  // A closed mesh that the lattice carries; its volume has the mass. Unset: the surface of the lattice, whose
-  // cells have it.
+  // A closed mesh that the lattice carries; the mass is that of its volume. Unset: the mesh is the surface of
+  // the lattice, and the mass is that of the cells.
   std::optional<TriangleMesh> mesh = {};
-  Pose place = {};  // of lattice and mesh
+  Pose place = {};  // where lattice and mesh are placed
 };
 
-// A pair of particles whose strain is watched, l / L - 1.
+// A pair of particles whose strain l / L - 1 [-] is watched.
 struct RestEdge {
   int i, j;
-  double L;  // m
+  double L;  // length at rest [m]
 };
 
-// Springs of a soft body.
+// How many springs of each kind a soft body has.
 struct LatticeCounts {
   int structural, shear, bend;
 };
 
 struct Cloth {
   std::string name;
-  TriangleMesh mesh;  // as it starts
+  TriangleMesh mesh;  // as the cloth starts
   MeshReport report;
-  int first_particle = 0, end_particle = 0;  // of the system
+  int first_particle = 0, end_particle = 0;  // particles of the system
   Embedding embedding;                       // of the mesh in the particles
-  TriangleMesh rest;                         // its triangle k is the mesh's (solver/forces/noh_jung.h)
+  TriangleMesh rest;                         // its triangle k is that of the mesh (solver/forces/noh_jung.h)
   std::vector<RestEdge> edges;
 
   Fabric fabric;  // of a cloth
   ClothModel model = ClothModel::noh_jung;
-  double limp_below = 0;  // 1/m, the curvature below which it is limp (solver/forces/connections.h)
+  double limp_below = 0;  // curvature [1/m] below which the cloth is limp (solver/forces/connections.h)
 
-  std::optional<LatticeCounts> soft;       // set: a soft body, and no cloth
+  std::optional<LatticeCounts> soft;       // set: this is a soft body and no cloth
   std::shared_ptr<const Lattice> lattice;  // of a soft body
   SoftMaterial material;
 
   struct Stitched {
     OpenSeam seam;
-    Force* force;  // of the system; null: there is nothing left to close
+    Force* force;  // owned by the system; null: there is nothing left to close
   };
-  std::vector<Stitched> seams;  // that are open
+  std::vector<Stitched> seams;  // those that are open
 
-  // Particle i is number[i] from now on.
+  // Particle i gets the number number[i].
   void renumber(const std::vector<int>& number);
 };
 
 // Largest relative stretch of an edge: max (l - L) / L; 0 when none is stretched.
 double largest_strain(const std::vector<Cloth>& cloths, const VecX& x);
 
-// The particles that a pin holds: those in its box; of vertices, all that carry them. Throws InputError when it
-// selects nothing.
+// The particles that a pin holds: a box holds those inside it, and a choice of vertices all that carry them.
+// Throws InputError when the rule selects nothing.
 std::vector<int> pinned_particles(const PinRule& rule, const Cloth& cloth, const VecX& x);
 
 }  // namespace drape

@@ -7,8 +7,8 @@
 
 namespace drape {
 
-// Momentum of the particles that become one, number[i] being what particle i becomes and masses [kg] those
-// that they have then. What is pinned stays where its first pin holds it.
+// The state after particles became one, with their momentum: number[i] is what particle i becomes, and masses
+// [kg] are those of the new particles. A pinned particle stays where its first pin holds it.
 State Assembly::merged_state(const std::vector<double>& masses, const std::vector<int>& number) const {
   const auto count = static_cast<Eigen::Index>(masses.size());
   State merged{state.time, VecX::Zero(3 * count), VecX::Zero(3 * count)};

@@ -16,7 +16,7 @@ using SeamForce = PairForce<SeamSpring>;
 
 const Vec3& at(const std::vector<Vec3>& positions, int v) { return positions[v]; }
 
-// Where the vertices rest; one that lies in several panels has one of its places.
+// Where the vertices rest. A vertex that lies in several panels is given one of its places.
 std::vector<Vec3> rest_places(const TriangleMesh& mesh, const TriangleMesh& rest) {
   std::vector<Vec3> places = mesh.positions;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -52,7 +52,7 @@ OpenSeam open_seam(const SeamPlan& plan, const Fabric& fabric, const TriangleMes
       seam.length_one += (at(places, a) - at(places, a_before)).norm();
       seam.length_two += (at(places, b) - at(places, b_before)).norm();
     }
-    if (a == b) continue;  // where both curves begin or end
+    if (a == b) continue;  // both curves begin or end in this vertex
     seam.pairs.emplace_back(a, b);
     seam.apart.push_back((at(mesh.positions, a) - at(mesh.positions, b)).norm());
   }
@@ -60,7 +60,8 @@ OpenSeam open_seam(const SeamPlan& plan, const Fabric& fabric, const TriangleMes
   seam.edge = 0.5 * (seam.length_one + seam.length_two) / static_cast<double>(edges);
   seam.close = plan.close;
   seam.merge = plan.merge;
-  // As stiff as the cloth while it closes; what is kept for good is held much harder.
+  // A seam that will be merged is as stiff as the cloth while it closes; one that is kept for good is held
+  // much harder.
   constexpr double kept = 1000;
   const double cloth = std::max(fabric.stretch_spring.value_or(fabric.stretch), 1e-3);
   seam.stiffness = plan.stiffness.value_or(seam.merge ? cloth : kept * cloth);
@@ -82,7 +83,7 @@ double OpenSeam::gap(const Embedding& embedding, const VecX& x) const {
   for (const auto& [a, b] : pairs) {
     const double wide =
         (x.segment<3>(3 * embedding.particle(a)) - x.segment<3>(3 * embedding.particle(b))).norm();
-    if (!(wide <= widest)) widest = wide;  // what is no number is not closed
+    if (!(wide <= widest)) widest = wide;  // a gap that is not a number does not count as closed
   }
   return widest;
 }

@@ -1,8 +1,8 @@
-// Seams of a cloth: they close as time goes on, and become one row of particles.
-//   An open seam pulls the two vertices of each of its pairs together (solver/forces/seam_spring.h). Once its time is
-//   over and no pair is farther apart than near_enough of the edges there, the two particles of each pair become
-//   one: mass and momentum are added, and the cloth gets its forces anew, now also across the seam. What merges the
-//   particles is the Assembly (solver/assembly/assembly.h).
+// Seams of a cloth: they close as time goes on, and their two rows of particles become one.
+//   An open seam pulls the two vertices of each of its pairs together (solver/forces/seam_spring.h). Once its
+//   time is over and no pair is farther apart than `near_enough` of the length of the edges there, the two
+//   particles of each pair become one: mass and momentum are added, and the forces of the cloth are made
+//   anew, across the seam as well. The Assembly merges the particles (solver/assembly/assembly.h).
 #pragma once
 
 #include <memory>
@@ -21,11 +21,11 @@ namespace drape {
 
 // What is to be sewn, and when.
 struct SeamPlan {
-  std::string name;                        // stands in messages: "front.left / back.right"
+  std::string name;                        // used in messages: "front.left / back.right"
   std::vector<std::pair<int, int>> pairs;  // vertices of the mesh, along the seam; a pair may be one vertex
-  double close = 1;                        // s, the time at which the seam is closed
+  double close = 1;                        // time at which the seam is closed [s]
   std::optional<double> stiffness =
-      {};             // N/m, of a stitch; unset: the cloth's k_s, kept: a thousand times that
+      {};             // of a stitch [N/m]; unset: k_s of the cloth, or a thousand times that without `merge`
   bool merge = true;  // false: the stitches are kept, and no particles become one
 };
 
@@ -36,32 +36,32 @@ std::vector<SeamPlan> declared_seam_plans(const TriangleMesh& mesh, double close
 struct OpenSeam {
   std::string name;
   std::vector<std::pair<int, int>> pairs;  // of different vertices
-  std::vector<double> apart;               // m, of each pair at the start
-  double edge = 0;                         // m, mean length of the two curves' edges at rest
-  double length_one = 0, length_two = 0;   // m, of the two curves at rest
+  std::vector<double> apart;               // distance of each pair at the start [m]
+  double edge = 0;                         // mean length of the two curves' edges at rest [m]
+  double length_one = 0, length_two = 0;   // lengths of the two curves at rest [m]
   double close = 1;                        // s
   double stiffness = 0;                    // N/m
   bool merge = true;
 
-  double gap(const Embedding& embedding, const VecX& x) const;  // m, of the pair that is farthest apart
-  // It may be merged: its time is over, and its pairs have met.
+  double gap(const Embedding& embedding, const VecX& x) const;  // of the pair that is farthest apart [m]
+  // True when the seam may be merged: its time is over, and its pairs have met.
   bool closed(const Embedding& embedding, const State& state) const;
 };
 
 inline constexpr double near_enough = 0.1;
 
-// Opens seams of a mesh that stands where it starts; rest as in solver/forces/noh_jung.h. Throws InputError when a
-// pair names a vertex that is not there, or a time or a stiffness is none.
+// Opens the seams of a mesh that stands where it starts; `rest` is as in solver/forces/noh_jung.h. Throws
+// InputError when a pair names a vertex that is not there, or when a time or a stiffness makes no sense.
 std::vector<OpenSeam> open_seams(const std::vector<SeamPlan>& plans, const Fabric& fabric,
                                  const TriangleMesh& mesh, const TriangleMesh& rest);
 
-// The force that closes a seam, at the time t [s]; null when all its pairs are one particle already.
+// The force that closes a seam, at the time t [s]; null when each of its pairs is one particle already.
 std::unique_ptr<Force> stitches(const OpenSeam& seam, const Embedding& embedding, double t);
-// Lets a force of stitches() go on to the time t.
+// Moves a force that stitches() made on to the time t [s].
 void close_until(Force& force, const OpenSeam& seam, double t);
 
-// number[i] is what particle i has become already. The result is what it becomes when the pairs of these seams
-// do, too, numbered anew in the same order.
+// number[i] is what particle i has become already. Returns what it becomes when the pairs of these seams
+// become one, too, numbered anew in the same order.
 std::vector<int> merged(const std::vector<int>& number, const std::vector<const OpenSeam*>& seams,
                         const Embedding& embedding);
 

@@ -1,7 +1,9 @@
-// The contact loop, the same for all integrators: solve within the contacts, see what the solution does to
-// them, and solve again until they agree with it.                          [Baraff & Witkin 1998, section 5]
-//   A contact that would pull lets go, one that is pushed harder than it sticks slides, what would pass through
-//   a body is caught. Then bodies that react move as the impulses make them.
+// The contact loop, the same for all integrators: it solves within the contacts, sees what the solution does
+// to them, and solves again until they agree with it.
+//                                                                  [Baraff & Witkin 1998, section 5]
+//   A contact that would pull is let go, one that is pushed along the surface harder than it sticks slides,
+//   and a particle that would pass through a body is caught. Then bodies that react move as the impulses make
+//   them.
 #pragma once
 
 #include "constraints/contact_step.h"
@@ -10,22 +12,23 @@
 
 namespace drape::internal {
 
-// What a solve within the contacts gave: read by the loop, owned by the solver.
+// What a solve within the contacts gave; the loop reads it, the solver owns it.
 struct ContactTrial {
   const VecX& v;  // m/s, at the end of the step
-  const VecX& x;  // m, the motion that v makes
-  const VecX& r;  // N s, what the constraints held the particles with
-  double noise;   // N s, an impulse that may be round-off of the solve
+  const VecX& x;  // the motion that v makes [m]
+  const VecX& r;  // impulses with which the constraints held the particles [N s]
+  double noise;   // an impulse below this may be round-off of the solve [N s]
 };
 
-// An attempt offers
-//   bool solve()                     within the contacts as they are; false: it failed, and so does the loop
-//   ContactTrial trial()             what it gave
-//   void release()                   moves on what is not held any more, before it is judged
-//   bool refine()                    solves more closely the next time; false: it did already
-//   void changed(ContactChange)      contacts are others: makes anew what depends on them
+// An Attempt offers
+//   bool solve()                     solves within the contacts as they are; false: it failed, and so does
+//                                    the loop
+//   ContactTrial trial()             returns what the solve gave
+//   void release()                   moves on what is not held any more, before the contacts are judged
+//   bool refine()                    makes the next solve more accurate; false: it was accurate already
+//   void changed(ContactChange)      the contacts have changed: makes anew what depends on them
 //   void bodies_moved()              the same for bodies that react
-// At most `most` solves are answered by other contacts, for every motion that is tried for a body that reacts.
+// At most `most` solves are answered by other contacts, for each motion that is tried for a body that reacts.
 template <class Attempt>
 bool settle_contacts(ContactStep& contacts, int most, Attempt& attempt, StepReport& report) {
   for (int round = 0;; ++round) {

@@ -29,7 +29,7 @@ void HeldMotion::acceleration(const VecX& x, const VecX& v, VecX& a) {
   for (const auto& force : system_.forces()) force->add_force(x, v, a);
   const std::vector<double>& mass = system_.masses();
   for_chunks(system_.particles(), [&](int begin, int end) {
-    for (int i = begin; i < end; ++i)  // what has no mass is held anyway
+    for (int i = begin; i < end; ++i)  // a particle without mass is held in any case
       a.segment<3>(3 * i) = a.segment<3>(3 * i) / std::max(mass[i], 1e-300) + system_.gravity_acceleration();
   });
   power_ = 0;
@@ -54,7 +54,7 @@ void HeldMotion::count(double duration, const VecX& x, const VecX& v) {
     pulled_.segment<3>(3 * e.particle) += duration * pull_.segment<3>(3 * e.particle);
 }
 
-// The constrained step with the mass alone.
+// The constrained step with the mass alone, as an Attempt of settle_contacts.
 class HeldMotion::ContactSolve {
  public:
   ContactSolve(HeldMotion& motion, const State& state, const VecX& x, const VecX& v, double h)
@@ -96,7 +96,7 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
       contacts_->respond(contact_, x, v, pulled_, x_new_, v_new_, impulse_noise(h));
     }
     contacts_->settle_faces(x_new_, v_new_);
-    if (!contacts_->bodies_agree(0.5)) {  // what is nearer is counted as not converged
+    if (!contacts_->bodies_agree(0.5)) {  // a smaller difference counts as not converged
       report.done = false;
       report.failure = {.what = "the motion of a body that reacts and that of the cloth do not agree",
                         .force = {}};
@@ -110,7 +110,7 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
   return true;
 }
 
-// The velocity without the constraints: what they took at the start and during the step is given back.
+// Finds the velocity without the constraints: what they took at the start and during the step is given back.
 void HeldMotion::set_free(const VecX& v) {
   v_free_ = v;
   for (const FilterEntry& e : held_.entries())
@@ -118,9 +118,9 @@ void HeldMotion::set_free(const VecX& v) {
       v_free_.segment<3>(3 * e.particle) -= pulled_.segment<3>(3 * e.particle) / mass + e.z;
 }
 
-// What was held and is let go, or comes loose, gets back the velocity that was taken from it at the start,
-// less friction; it moves from the next step on. Not h (I - S) M^-1 f, which is explicit: where the cloth is
-// stiff and h long it is far more than the particle would gain.
+// A particle that was held and is let go, or comes loose, gets back the velocity that was taken from it at
+// the start, less friction; it moves from the next step on. It does not get h (I - S) M^-1 f, which is
+// explicit: where the cloth is stiff and h long, that is far more than the particle would gain.
 void HeldMotion::let_go(const VecX& x, const VecX& v) {
   for (const Contact& c : contacts_->touching()) {
     if (c.active() && c.grip != Grip::breaking_loose) continue;
@@ -139,14 +139,15 @@ void HeldMotion::let_go(const VecX& x, const VecX& v) {
   }
 }
 
-// N s, below which an impulse is round-off.
+// The impulse below which all is round-off [N s].
 double HeldMotion::impulse_noise(double h) const {
   double heaviest = 0;
   for (double m : system_.masses()) heaviest = std::max(heaviest, m);
   return 1e-9 * heaviest * h * system_.gravity_acceleration().norm();
 }
 
-// S (A dv - b) = 0 within the filter, A = m + h D of what rubs: one particle at a time.
+// Solves S (A dv - b) = 0 within the filter, one particle at a time; A = m + h D, where D is the damper of
+// friction.
 void HeldMotion::move_within_constraints(const State& state, const VecX& x, double h) {
   x_new_ = x;
   v_new_ = v_free_;
@@ -176,7 +177,8 @@ void HeldMotion::move_within_constraints(const State& state, const VecX& x, doub
   for (const Contact& c : contacts_->touching()) {
     const int i = 3 * c.particle;
     r_.segment<3>(i) += mass(c.particle) * (v_new_.segment<3>(i) - v_free_.segment<3>(i));
-    // Along the planes as far as they say; across them as it came, and not h v: within a step it may vibrate.
+    // Along the normals the place is the one that the planes ask for; across them it is where the method came
+    // to, and not h v, because the particle may vibrate within a step.
     const Mat3 Q = c.locked_directions();
     const Vec3 wanted = h * v_new_.segment<3>(i) - (x.segment<3>(i) - state.x.segment<3>(i));
     x_new_.segment<3>(i) += Q * (Q.transpose() * wanted) + contacts_->correction().segment<3>(i);

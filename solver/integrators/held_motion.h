@@ -1,15 +1,16 @@
-// Pins, contact and friction for integrators that follow dx/dt = v, dv/dt = M^-1 f and know no constraints.
-//   begin     finds what touches. What that locks is held during the step: it starts
-//             with its target velocity, v_0 = v_n + z, and has the acceleration S M^-1 f.
-//   finish    solves the constrained step with the mass alone, particle by particle: from the velocity that
-//             a particle would have had,
-//               v_free = v_1 - z + integral of (I - S) M^-1 f over the step,
-//             come the impulse that holds it, r = m (v - v_free) and friction, hence what is released, sticks
-//             and slides (what is let go moves from the next step on); what touches moves to x = x_n +
-//             correction + h v.      [constraints/contact.h]
-//   So contact is of first order in h, whatever the method between; the rest keeps the method's order.
-// With a contact mode other than "constraint" only pins are held: what touches a body moves freely, and
-// finish changes where it went and how fast by the response of the body.      [constraints/response.h]
+// Pins, contact and friction for integrators that follow dx/dt = v, dv/dt = M^-1 f and have no constraints.
+//   begin     finds what touches. The directions that this locks are held during the step: there a particle
+//             starts with its target velocity, v_0 = v_n + z, and it has the acceleration S M^-1 f.
+//   finish    solves the constrained step with the mass alone, particle by particle. The velocity that a
+//             particle would have had without constraints is
+//               v_free = v_1 - z + integral of (I - S) M^-1 f over the step.
+//             From it follow friction and the impulse that holds the particle, r = m (v - v_free), and hence
+//             what is released, sticks and slides (a particle that is let go moves from the next step on). A
+//             particle that touches moves to x = x_n + correction + h v.      [constraints/contact.h]
+//   So contact is of first order in h, whatever the method in between; the other particles keep the method's
+//   order.
+// With a contact mode other than "constraint" only pins are held: a particle that touches a body moves
+// freely, and finish changes its place and velocity by the response of the body (constraints/response.h).
 // x [m], v [m/s], h [s], f [N], r [N s].
 #pragma once
 
@@ -30,14 +31,15 @@ class HeldMotion {
   const Filter& held() const { return held_; }  // in particle order
 
   void acceleration(const VecX& x, const VecX& v, VecX& a);  // S M^-1 f
-  double power() const { return power_; }  // W, that bodies and what holds particles gave to them there
-  // The force at x, v, whose acceleration was asked for last, acts for so long [s], on bodies that react,
-  // too.
+  double power() const { return power_; }  // of bodies and pins at the last acceleration() [W]
+  // Counts that the force at x, v acts for this duration [s], on bodies that react as well. The acceleration
+  // at x, v must be the one that was asked for last.
   void count(double duration, const VecX& x, const VecX& v);
-  bool counts() const;  // something is held by a body
+  bool counts() const;  // whether a body holds anything
 
-  // State(t) -> State(t + h), when the method came from v_start to x, v. False, and why in the report, when
-  // they are not finite, or do not agree with the bodies that react; the state is as it was then.
+  // Advances State(t) -> State(t + h) when the method came from v_start to x, v. Returns false when x and v
+  // are not finite, or do not agree with the bodies that react; the report then says why, and the state is
+  // unchanged.
   bool finish(const VecX& x, const VecX& v, double h, const StepOptions& options, State& state,
               StepReport& report);
 
@@ -55,11 +57,13 @@ class HeldMotion {
   std::optional<ContactStep> contacts_;  // of the step under way
   Filter held_, filter_;
   VecX v_start_, v_free_, x_new_, v_new_, r_;
-  VecX pull_, pulled_;  // N, N s, of what holds particles, besides bringing them to their velocity
+  // The force [N], and its impulse [N s], that holds particles, besides the impulse that brings them to their
+  // velocity.
+  VecX pull_, pulled_;
   double power_ = 0;
 };
 
-// Where x or v is not a finite number, and the force that is not either.
+// The failure of a step: the particle at which x or v is not finite, and the force that is not finite there.
 StepFailure not_finite(const System& system, const VecX& x, const VecX& v, const std::string& what);
 
 }  // namespace drape

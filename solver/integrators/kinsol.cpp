@@ -1,13 +1,13 @@
 // "newton-kinsol": the equation of implicit Euler, solved to newton_tolerance by KINSOL of SUNDIALS.
 //   F(v) = S [ M (v - v_n) - h f(x_bar + h v, v) + friction ] = 0,   x_bar = x_n + correction,
-//   v = its target in the locked directions;   Newton's direction A dv = -F, A = M + h D + h^2 K of here;
-//   KINSOL looks along it for less |F|.                        [Dennis & Schnabel 1996, algorithm A6.3.1]
-// |F| has false minima where edges go slack. Where that search ends in one, KINSOL goes on from there with
-// directions that are cut short by halves until they lower the incremental potential Phi(v), of which F is the
-// gradient (solver/integrators/merit.h). (To go by Phi from the start takes longer: kinks keep its steps
-// short.) The last resort is the majorant K; then the step is halved.
-// When the contacts do not agree with the solution, they change and KINSOL begins again from it. x [m], v
-// [m/s], M [kg], f [N], h [s], F [N s].
+//   v = its target in the locked directions;   Newton's direction: A dv = -F, A = M + h D + h^2 K at v;
+//   KINSOL looks along it for a smaller |F|.                    [Dennis & Schnabel 1996, algorithm A6.3.1]
+// |F| has false minima where edges go slack. Where the search ends in one, KINSOL goes on from there with
+// directions that are halved until they lower the incremental potential Phi(v), of which F is the gradient
+// (solver/integrators/merit.h). (Searching by Phi from the start takes longer, because kinks keep its steps
+// short.) After that K is replaced by the majorant; if that fails as well, the step is halved.
+// When the contacts do not agree with the solution, they change and KINSOL begins again from it.
+// x [m], v [m/s], M [kg], f [N], h [s], F [N s].
 #include <kinsol/kinsol.h>
 #include <kinsol/kinsol_ls.h>
 
@@ -28,7 +28,7 @@ namespace {
 
 // How Newton's direction is found and how far it is followed.
 struct Search {
-  int strategy = KIN_LINESEARCH;  // of KINSOL, by |F|; KIN_NONE: by Phi
+  int strategy = KIN_LINESEARCH;  // of KINSOL, by |F|; KIN_NONE: halved by Phi
   Stiffness stiffness = Stiffness::tangent;
 };
 
@@ -57,7 +57,7 @@ class NewtonKinsol final : public Integrator {
     KINSetJacFn(kinsol_, [](N_Vector v, N_Vector, SUNMatrix, void* self, N_Vector, N_Vector) {
       return static_cast<NewtonKinsol*>(self)->set_up(v);
     });
-    KINSetMaxSetupCalls(kinsol_, 1);  // a new matrix for every direction
+    KINSetMaxSetupCalls(kinsol_, 1);  // makes a new matrix for every direction
   }
   ~NewtonKinsol() override {
     KINFree(&kinsol_);
@@ -85,7 +85,7 @@ class NewtonKinsol final : public Integrator {
 
   System& system_;
   Constraints& constraints_;
-  std::optional<ContactStep> contacts_;  // of the step under way
+  std::optional<ContactStep> contacts_;  // those of the step under way
   StepOptions options_;
   sundials::Context context_;
   NewtonMatrix newton_;
@@ -94,12 +94,12 @@ class NewtonKinsol final : public Integrator {
   SUNMatrix matrix_ = nullptr;
   StepReport report_;
   State before_;
-  Filter filter_, held_;  // of the velocity at the start of the solve; the same with z = 0
+  Filter filter_, held_;  // at the velocity at the start of the solve; the same with z = 0
   std::vector<ContactFriction> friction_;
   Search search_;
   double h_ = 0, scale_ = 0;  // s, N s
-  RoundOff noise_;            // where A was assembled last
-  bool solved_ = false;       // the last equation, to its tolerance
+  RoundOff noise_;            // at the point where A was assembled last
+  bool solved_ = false;       // whether the last equation was solved to its tolerance
   VecX x_, x_bar_, v_, v_n_, v_here_, F_, f_scale_, one_, b_, dv_, minus_F_;
 };
 
@@ -117,7 +117,7 @@ StepReport NewtonKinsol::advance(State& state, double h) {
   return report_;
 }
 
-// KINSOL's solution within the contacts as they are, from the last one on.
+// KINSOL's solution within the contacts as they are, starting from the last solution.
 class NewtonKinsol::ContactSolve {
  public:
   ContactSolve(NewtonKinsol& kinsol, const State& state) : kinsol_(kinsol), state_(state) {}
@@ -130,12 +130,12 @@ class NewtonKinsol::ContactSolve {
     kinsol_.friction_ = kinsol_.contacts_->friction();
     return kinsol_.solve();
   }
-  ContactTrial trial() {  // what is left of the equation in the locked directions is the reaction
+  ContactTrial trial() {  // the equation leaves the reaction in the locked directions
     kinsol_.equation(kinsol_.v_);
     return {kinsol_.v_, kinsol_.x_, kinsol_.F_, 2 * kinsol_.report_.residual * kinsol_.scale_};
   }
   void release() {}
-  bool refine() { return false; }  // every solve is to the tolerance
+  bool refine() { return false; }  // every solve is to the tolerance already
   void changed(const ContactChange&) {}
   void bodies_moved() {}
 
@@ -150,7 +150,7 @@ bool NewtonKinsol::attempt(State& state, const Piece& piece) {
   v_n_ = state.v;
   scale_ = 0;
   const VecX f = system_.force(state.x, state.v);
-  for (int i = 0; i < system_.particles(); ++i)  // an impulse that is known to act
+  for (int i = 0; i < system_.particles(); ++i)  // the impulse of gravity is known to act
     scale_ += std::pow(system_.masses()[i] * system_.gravity_acceleration().norm(), 2);
   scale_ = h * std::max({std::sqrt(scale_), 1e-3 * std::sqrt(dot(f, f)), 1e-12});
   f_scale_.setConstant(1 / scale_);
@@ -163,7 +163,7 @@ bool NewtonKinsol::attempt(State& state, const Piece& piece) {
   for (int i = 0; i < system_.particles(); ++i) v_.segment<3>(3 * i) += h * system_.gravity_acceleration();
   ContactSolve solve(*this, state);
   if (!settle_contacts(*contacts_, options_.max_contact_solves, solve, report_)) return false;
-  if (!contacts_->bodies_agree() && !piece.shortest)  // the report says so then
+  if (!contacts_->bodies_agree() && !piece.shortest)  // in the shortest piece the report says it instead
     return fail("the motion of a body that reacts and that of the cloth do not agree");
   x_ = x_bar_ + h * v_;
   if (!x_.allFinite()) return fail("the new positions are not finite numbers");
@@ -196,11 +196,12 @@ bool NewtonKinsol::solve() {
   }
   report_.residual = norm;
   solved_ = norm <= wanted;
-  if (v_.allFinite() && (flag >= 0 || solved_)) return true;  // or its steps have shrunk to nothing
+  if (v_.allFinite() && (flag >= 0 || solved_)) return true;  // flag >= 0 also where its steps became tiny
   return fail("KINSOL: " + sundials::taken(KINGetReturnFlagName(flag)) + "; a shorter time step may help");
 }
 
-// KINSOL stops by the largest component of F; what counts here is |F|, so it may have to go on.
+// KINSOL stops when the largest component of F is small. Here |F| has to be small, so KINSOL may have to go
+// on.
 int NewtonKinsol::iterate(double wanted, double& norm) {
   const sundials::View u(v_, context_), one(one_, context_), scale(f_scale_, context_);
   KINSetScaledStepTol(kinsol_, 1e-14);
@@ -221,9 +222,9 @@ int NewtonKinsol::iterate(double wanted, double& norm) {
   return flag;
 }
 
-// How much of the direction lowers Phi enough.                        [Nocedal & Wright 2006, section 3.1]
+// Returns the fraction of the direction that lowers Phi enough.  [Nocedal & Wright 2006, section 3.1]
 double NewtonKinsol::step_length(const VecX& v, const VecX& dv, double slope) {
-  if (search_.strategy != KIN_NONE) return 1;  // KINSOL does it
+  if (search_.strategy != KIN_NONE) return 1;  // KINSOL finds the length itself
   const double start = potential(v), allowed = start + noise_.energy(start);
   double length = 1;
   for (int halvings = 0; halvings < 20; ++halvings, length *= 0.5)
@@ -244,7 +245,7 @@ double NewtonKinsol::potential(const VecX& v) {
   return inertia + potential_of_forces(system_, friction_, x_, v, h_, h_);
 }
 
-// F = M (v - v_n) - h f(x_bar + h v, v) + friction, not filtered.
+// Sets F = M (v - v_n) - h f(x_bar + h v, v) + friction, without the filter.
 void NewtonKinsol::equation(const VecX& v) {
   x_ = x_bar_ + h_ * v;
   F_.setZero();
@@ -269,7 +270,7 @@ int NewtonKinsol::residual(N_Vector v, N_Vector F) {
   return F_.allFinite() ? 0 : 1;
 }
 
-// A at v.
+// Assembles A at v.
 int NewtonKinsol::set_up(N_Vector v) {
   v_here_ = sundials::numbers(v);
   assemble(v_here_);
@@ -280,7 +281,7 @@ void NewtonKinsol::assemble(const VecX& v) {
   const Stopwatch watch(report_.assemble_ms);
   x_ = x_bar_ + h_ * v;
   newton_.follow_system();
-  newton_.assemble({x_, v, v, h_, search_.stiffness}, system_.masses(), b_);  // of b nothing is needed
+  newton_.assemble({x_, v, v, h_, search_.stiffness}, system_.masses(), b_);  // b is not used
   newton_.rub(
       friction_.size(), [&](std::size_t f) { return friction_[f].particle; },
       [&](std::size_t f) { return Mat3(h_ * friction_[f].damping); });
@@ -291,7 +292,7 @@ int NewtonKinsol::solve_linear(N_Vector dv, N_Vector minus_F) {
   const Stopwatch watch(report_.solve_ms);
   minus_F_ = sundials::numbers(minus_F);
   dv_.setZero();
-  // No closer than the next residual will be seen.
+  // The solve need not be more accurate than the next residual can show.
   const double wanted = 0.1 * options_.newton_tolerance * scale_ / std::sqrt(dot(minus_F_, minus_F_));
   const double tolerance = std::max(options_.tolerance, std::min(wanted, 1e-2));
   const LinearReport linear =

@@ -9,7 +9,7 @@ namespace drape {
 RoundOff round_off(const BlockMatrix& A, const VecX& x, const VecX& v, double c) {
   constexpr double eps = 8 * std::numeric_limits<double>::epsilon();
   struct Sums {
-    double energy = 0, squares = 0;  // of A_ii e_i^2, and of (A_ii e_i)^2
+    double energy = 0, squares = 0;  // sums of A_ii e_i^2, and of (A_ii e_i)^2
     void operator+=(const Sums& other) { energy += other.energy, squares += other.squares; }
   };
   const Sums all = sum_chunks(A.rows(), [&](int begin, int end) {
@@ -68,7 +68,7 @@ bool Merit::descend(const StepCoefficients& k, const std::vector<ContactFriction
                     const VecX& v_base, const VecX& dv, VecX& v) {
   v += dv;
   const double start = potential(k, friction, v_base);
-  // A tenth of the energy that the fall of one step brings: what a solve to its tolerance may leave.
+  // A tenth of the energy that the fall of one step brings may come from a solve that ends at its tolerance.
   const double allowed = start + 1e-9 * std::abs(start) + 0.05 * fall_energy_ + noise_.energy(start);
   for (int halvings = 0; halvings < 12; ++halvings) {
     if (potential(k, friction, v) <= allowed) return halvings == 0;

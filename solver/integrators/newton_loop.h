@@ -1,5 +1,5 @@
-// How long Newton's iteration goes on, and with which stiffness: as often as was asked for, and further until
-// a step is taken whole. After a step that had to be cut short the next one takes the majorant.
+// How long Newton's iteration goes on, and with which stiffness: it takes as many steps as were asked for,
+// and more until one is taken whole. After a step that had to be cut short, the next one uses the majorant.
 #pragma once
 
 #include "solver/integrators/integrator.h"

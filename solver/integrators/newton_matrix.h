@@ -1,5 +1,5 @@
 // The matrix of an implicit step and its linear solver, with all vectors in particle order:
-//   A = M + c D + c^2 K   at a point (x, v), and what rubs on its diagonal.
+//   A = M + c D + c^2 K   at a point (x, v), with the dampers of friction on its diagonal.
 #pragma once
 
 #include <memory>
@@ -9,11 +9,11 @@
 
 namespace drape {
 
-// Where forces are linearised.
+// The point at which forces are linearised.
 struct Linearisation {
   const VecX& x;  // m
   const VecX& v;  // m/s
-  const VecX& y;  // m, see solver/integrators/bdf.h
+  const VecX& y;  // see solver/integrators/bdf.h [m]
   double c;       // s
   Stiffness stiffness;
 };
@@ -23,22 +23,23 @@ class NewtonMatrix {
   NewtonMatrix(System& system, std::unique_ptr<LinearSolver> solver)
       : system_(system), solver_(std::move(solver)) {}
 
-  // True when the system has another pattern than before: what has its size must be made anew.
+  // True when the system has another pattern than before: what has its size must then be made anew.
   bool follow_system();
-  // A from these masses [kg]; b += c (f - K y).
+  // Assembles A from these masses [kg], and adds c (f - K y) to b.
   void assemble(const Linearisation& at, const std::vector<double>& masses, VecX& b);
-  // c D of what rubs on single particles, in place of what rubbed before. particle(k), block(k), k < count.
+  // Sets the blocks c D of what rubs on single particles, in place of those set before: particle(k) and
+  // block(k) for every k < count.
   template <class Particle, class Block>
   void rub(std::size_t count, const Particle& particle, const Block& block);
 
-  // A dv = b within the filter; dv: in, the guess.
+  // Solves A dv = b within the filter; dv goes in as the guess.
   LinearReport solve(const VecX& b, const Filter& filter, const LinearOptions& options, VecX& dv);
-  // r = A dv - b of the last solve: the impulse with which the constraints hold the particles.
+  // Sets r = A dv - b of the last solve: the impulse with which the constraints hold the particles [N s].
   void reaction(VecX& r);
 
   const BlockMatrix& matrix() const { return *A_; }
-  // The force with the largest stiffness at a particle, or one that is not finite: what to look at when a
-  // solve failed there. The matrix is scratch of this.
+  // The force with the largest stiffness at a particle, or one that is not finite there: to be named when a
+  // solve failed at that particle. Overwrites the matrix.
   std::string stiffest_force(int particle, const Linearisation& at);
 
  private:
@@ -48,7 +49,7 @@ class NewtonMatrix {
   std::unique_ptr<LinearSolver> solver_;
   std::unique_ptr<BlockMatrix> A_;
   Filter filter_;                    // in row order
-  std::vector<DiagonalBlock> rubs_;  // the same
+  std::vector<DiagonalBlock> rubs_;  // in row order
   VecX b_rows_, dv_rows_, r_rows_;
 };
 

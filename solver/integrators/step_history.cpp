@@ -13,7 +13,8 @@ void StepHistory::forget(const System& system) {
 
 void StepHistory::begin(const State& state, const Piece& piece, const ContactStep& contacts) {
   const double h = piece.h;
-  // BDF2 is stable as long as steps grow by less than 1 + sqrt(2).   [Hairer, Norsett & Wanner, III.5]
+  // BDF2 is stable as long as each step is less than 1 + sqrt(2) times the last.
+  //                                                                   [Hairer, Norsett & Wanner, III.5]
   const bool smooth = piece.whole && last_h_ > 0 && h <= 2 * last_h_ && state.x.size() == end_.x.size() &&
                       state.x == end_.x && state.v == end_.v;
   k_.h = h;

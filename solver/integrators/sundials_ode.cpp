@@ -1,14 +1,14 @@
-// "cvode-bdf", "cvode-adams", "arkode-erk", "arkode-dirk": dx/dt = v, dv/dt = S M^-1 f(x, v) by SUNDIALS,
+// "cvode-bdf", "cvode-adams", "arkode-erk", "arkode-dirk": SUNDIALS solves dx/dt = v, dv/dt = S M^-1 f(x, v)
 // with inner steps of its own choice inside each h, so that the error of every inner step is below
 //   relative_tolerance |y| + absolute_tolerance_position [m], absolute_tolerance_velocity [m/s].
-// The implicit ones ask for (I - g J) (dx, dv) = (rx, rv) in Newton's iteration; that is our system,
+// The implicit methods ask for (I - g J) (dx, dv) = (rx, rv) in Newton's iteration; that is our system,
 //   (M + g D + g^2 K) dv = M rv - g K rx,   dx = rx + g dv,
-// with the positive semidefinite K: Newton's iteration may need more rounds for it, its end is the same.
-// Adams' formulas use no matrix (fixed-point iteration), nor does ERK: both need steps as short as the
-// stiffest vibration asks for, and give up after max_inner_steps.
+// with the positive semidefinite K: Newton's iteration may need more rounds with it, but it ends at the same
+// solution. Adams' formulas use no matrix (they iterate to a fixed point), nor does ERK: both need steps as
+// short as the stiffest vibration asks for, and give up after max_inner_steps.
 //                                                      [Hindmarsh et al. 2005; Reynolds et al. 2023]
-// What bodies hold at the start of the step is held in it; contact is settled at its end, by
-// solver/integrators/held_motion.h. Where that changes the motion or what is held, SUNDIALS starts anew.
+// What bodies hold at the start of the step is held during it; solver/integrators/held_motion.h settles
+// contact at its end. Where that changes the motion or what is held, SUNDIALS starts anew.
 #include <arkode/arkode_arkstep.h>
 #include <cvode/cvode.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
@@ -65,10 +65,10 @@ class SundialsOde final : public Integrator {
   SUNLinearSolver linear_ = nullptr;
   SUNNonlinearSolver fixed_point_ = nullptr;
   StepReport report_;
-  double time_ = 0, reached_ = 0;               // s, of SUNDIALS
-  bool going_ = false;                          // it stands at the end of the last step
-  Filter held_;                                 // in the last step
-  long steps_ = 0, rounds_ = 0, rejected_ = 0;  // of SUNDIALS, up to the last step
+  double time_ = 0, reached_ = 0;               // on the clock of SUNDIALS [s]
+  bool going_ = false;                          // SUNDIALS stands at the end of the last step
+  Filter held_;                                 // what was held in the last step
+  long steps_ = 0, rounds_ = 0, rejected_ = 0;  // counts of SUNDIALS up to the last step
   VecX y_, y_before_, x_, v_, a_, f_, b_, dv_;  // y = (x, v)
 };
 
@@ -162,7 +162,7 @@ StepReport SundialsOde::advance(State& state, double h) {
   return report_;
 }
 
-// Goes on from where SUNDIALS stands, when that is where the state is and nothing else is held; else anew.
+// Goes on from where SUNDIALS stands when the state is there and the same is held; otherwise starts anew.
 void SundialsOde::take_up(const State& state) {
   const Eigen::Index n = state.x.size();
   if (going_ && y_.head(n) == state.x && y_.tail(n) == motion_.start_velocity() && same_held(motion_.held()))
@@ -183,7 +183,8 @@ void SundialsOde::take_up(const State& state) {
 
 int SundialsOde::run(double until) {
   if (!motion_.counts()) return run(until, false);
-  // Inner step by inner step, so that bodies get what faces and pins get, by the trapezoidal rule.
+  // Goes inner step by inner step, so that bodies get the impulses on faces and pins, by the trapezoidal
+  // rule.
   const Eigen::Index n = y_.size() / 2;
   const auto count_half = [&](const VecX& y, double from) {
     x_ = y.head(n);
@@ -279,7 +280,7 @@ int SundialsOde::solve_linear(N_Vector d, N_Vector r) {
       b_.segment<3>(3 * i) += system_.masses()[i] * dv_.segment<3>(3 * i);
   }
   const Stopwatch watch(report_.solve_ms);
-  Filter filter;  // what is locked has dv = rv
+  Filter filter;  // in the locked directions dv = rv
   for (const FilterEntry& e : motion_.held().entries()) {
     const Vec3 rv = dv_.segment<3>(3 * e.particle);
     filter.constrain(e.particle, e.S, rv - e.S * rv);

@@ -31,7 +31,8 @@ class Strength {
   std::vector<float> least_;  // theta |A_ii|
 };
 
-// vertex -> aggregate; `alone` for those that take no part. Returns how many aggregates there are.
+// Fills `of`, which maps vertex -> aggregate, or `alone` for vertices that take no part. Returns how many
+// aggregates there are.
 int aggregate(const Graph& strong, std::vector<int>& of) {
   const int n = strong.rows();
   int count = 0;
@@ -40,7 +41,7 @@ int aggregate(const Graph& strong, std::vector<int>& of) {
     for (int k = 0; k < row.count; ++k)
       if (int& other = of[row.column[k]]; other != alone) f(other, k);
   };
-  // What is coupled to nothing strongly is solved by the smoother alone.
+  // A vertex that is strongly coupled to nothing is left to the smoother.
   for (int i = 0; i < n; ++i)
     if (strong[i].count == 0) of[i] = alone;
   // A vertex none of whose neighbours is taken begins an aggregate with all of them.
@@ -53,7 +54,7 @@ int aggregate(const Graph& strong, std::vector<int>& of) {
     each_strong(i, [&](int& other, int) { other = count; });
     ++count;
   }
-  // The others join the aggregate they are coupled to most strongly.
+  // The others join the aggregate to which they are coupled most strongly.
   const std::vector<int> before = of;
   for (int i = 0; i < n; ++i) {
     if (of[i] != none) continue;
@@ -66,7 +67,7 @@ int aggregate(const Graph& strong, std::vector<int>& of) {
       of[i] = other;
     }
   }
-  // What is left forms aggregates with its own kind.
+  // The vertices that are left form aggregates with each other.
   for (int i = 0; i < n; ++i) {
     if (of[i] != none) continue;
     of[i] = count;
@@ -123,7 +124,8 @@ int smoothed_aggregation(const Smoother& A, double theta, const ProjectedBlocks*
         });
         Mat3 filtered, product;
         D.store(filtered.data());
-        // Weak couplings that push may leave no positive diagonal behind: then they do not count.
+        // Weak couplings that push may leave a diagonal block that is not positive definite; they are left
+        // out then.
         if (!positive_definite(filtered)) filtered = Eigen::Map<const Mat3>(A.diagonal(i));
         const Mat3 inverse = -omega * filtered.inverse();
         sum.take([&](int column, const WideBlock& block) {

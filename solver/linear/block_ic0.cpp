@@ -1,8 +1,9 @@
-// Incomplete Cholesky on 3x3 blocks, no fill: P^-1 = L D L^T with L of the pattern of A, in float.
+// Incomplete Cholesky on 3x3 blocks without fill: P^-1 = L D L^T, where L has the pattern of A and is kept in
+// float.
 //   A_jk <- A_jk - A_ij^T D_i^-1 A_ik for every i < j <= k whose block (j, k) is in the pattern, D_i = A_ii;
 //   L_ji = A_ij^T D_i^-1.                                                    [Meijerink & van der Vorst 1977]
-// Where a pivot is not positive the matrix is shifted, A + a diag(A), a growing until it works [Manteuffel
-// 1980], and the report says so. Block rows of A's upper triangle stand in for the columns of L.
+// Where a pivot is not positive, the matrix is shifted to A + a diag(A), and a grows until the factor exists
+// [Manteuffel 1980]; the report says so. Block rows of A's upper triangle take the place of the columns of L.
 
 #include "solver/linear/preconditioner.h"
 #include "solver/linear/projected_block.h"
@@ -21,7 +22,7 @@ class BlockIc0 final : public Preconditioner {
     if (serial_ != A.pattern().serial()) shift_ = 0;
     serial_ = A.pattern().serial();
     pattern_ = &A.pattern();
-    shift_ = shift_ > first_shift ? shift_ / 4 : 0;  // the matrix of the last step needed so much
+    shift_ = shift_ > first_shift ? shift_ / 4 : 0;  // the matrix of the last step needed four times this
     return build(A, filter, report);
   }
 
@@ -35,16 +36,16 @@ class BlockIc0 final : public Preconditioner {
   void apply(const VecX& r, VecX& s) override {
     const std::vector<int>&start = pattern_->row_start(), &column = pattern_->column();
     const int rows = pattern_->rows();
-    const double size = r.cwiseAbs().maxCoeff();  // so that floats neither vanish nor overflow
+    const double size = r.cwiseAbs().maxCoeff();  // scales r so that floats neither vanish nor overflow
     if (size == 0) return s.setZero(), void();
     y_ = (r / size).cast<float>();
-    for (int i = 0; i < rows; ++i) {  // L y = r, column by column; y <- D^-1 y as soon as it stands
+    for (int i = 0; i < rows; ++i) {  // solves L y = r column by column; y <- D^-1 y as soon as it is known
       const Vec3f yi = y_.segment<3>(3 * i);
       for (int k = first(start, i) + 1; k < first(start, i + 1); ++k)
         y_.segment<3>(3 * column[k]).noalias() -= at(k).transpose() * yi;
       y_.segment<3>(3 * i).noalias() = at(first(start, i)) * yi;
     }
-    for (int i = rows - 1; i >= 0; --i) {  // L^T s = y
+    for (int i = rows - 1; i >= 0; --i) {  // solves L^T s = y
       Vec3f sum = y_.segment<3>(3 * i);
       for (int k = first(start, i) + 1; k < first(start, i + 1); ++k)
         sum.noalias() -= at(k) * y_.segment<3>(3 * column[k]);
@@ -80,7 +81,7 @@ class BlockIc0 final : public Preconditioner {
   const Mat3f& at(int slot) const { return lower_[slot]; }
   Mat3& value(int slot) { return values_[slot]; }
 
-  // Leaves D_i^-1 on the diagonal and D_i^-1 A_ij beside it; false when a pivot is not positive.
+  // Leaves D_i^-1 on the diagonal and D_i^-1 A_ij beside it. False when a pivot is not positive.
   bool factorise(const BlockMatrix& A, const ProjectedBlocks& projected, double shift) {
     const std::vector<int>&start = pattern_->row_start(), &column = pattern_->column();
     values_.resize(static_cast<std::size_t>(pattern_->blocks()));
@@ -90,7 +91,7 @@ class BlockIc0 final : public Preconditioner {
     }
     for (int i = 0; i < A.rows(); ++i) {
       const int begin = first(start, i), end = first(start, i + 1);
-      // A pivot that is all but lost is no better than one that is negative.
+      // A pivot that has lost nearly all of its size is no better than a negative one.
       constexpr double least = 1e-3;
       const Mat3 original = projected.block(begin, i, i);
       if (!positive_definite(value(begin)) ||
@@ -103,7 +104,8 @@ class BlockIc0 final : public Preconditioner {
     return true;
   }
 
-  // Row j = column[k] of the matrix loses A_ij^T D_i^-1 A_il for every l >= j of row i: both rows ascend.
+  // Subtracts A_ij^T D_i^-1 A_il from row j = column[k] of the matrix, for every l >= j of row i. Both rows
+  // ascend.
   void eliminate(const Mat3& inverse, int k, int end, const std::vector<int>& column) {
     const int j = column[k];
     const Mat3 factor = value(k).transpose() * inverse;

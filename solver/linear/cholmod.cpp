@@ -1,5 +1,6 @@
-// SuiteSparse's CHOLMOD over the same filtered system: LL^T. The analysis is kept while the serial of the
-// matrix stands.                                       [Chen, Davis, Hager & Rajamanickam 2008, CHOLMOD]
+// LL^T by CHOLMOD of SuiteSparse on the projected system (solver/linear/projected.h). The analysis is kept
+// while the serial of the matrix does not change.                            [Chen, Davis, Hager &
+// Rajamanickam 2008]
 //   The supernodal part of CHOLMOD is GPL (README.md says what that means). Without SuiteSparse this file is
 //   not built.
 #include <cholmod.h>
@@ -18,8 +19,8 @@ using namespace internal;
 
 namespace {
 
-// What the BLAS underneath is, where that makes it slow. OpenBLAS may take a new processor for an old one,
-// and the reference BLAS is slow on any.
+// Says why the BLAS that CHOLMOD uses is slow; empty when it is not. OpenBLAS may mistake a new processor for
+// an old one, and the reference BLAS is slow on any.
 std::string blas_note() {
   using CoreName = char* (*)();
   const auto core_name = reinterpret_cast<CoreName>(dlsym(RTLD_DEFAULT, "openblas_get_corename"));
@@ -35,9 +36,9 @@ std::string blas_note() {
   return {};
 }
 
-// While one of these lives, BLAS has one thread, for its sums would depend on how many there are. The setting
-// belongs to the whole process: the first of several that live at once remembers what it was, and the last one
-// restores it.
+// While one of these lives, BLAS runs in one thread, because its sums would depend on the number of threads.
+// The setting belongs to the whole process: the first of several that live at once remembers what it was, and
+// the last one restores it.
 class OneBlasThread {
  public:
   OneBlasThread() {
@@ -78,7 +79,7 @@ class Cholmod final : public LinearSolver {
     cholmod_start(&common_);
     common_.print = 0;
     common_.supernodal = CHOLMOD_AUTO;
-    common_.final_ll = 1;  // LL^T only: an indefinite matrix is found, not factorised
+    common_.final_ll = 1;  // LL^T only, so that an indefinite matrix is found and not factorised
   }
   Cholmod(const Cholmod&) = delete;
   Cholmod& operator=(const Cholmod&) = delete;

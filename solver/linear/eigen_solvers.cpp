@@ -1,4 +1,5 @@
-// Eigen's own solvers over the same filtered system: a plain baseline to compare with.
+// Eigen's own solvers on the projected system (solver/linear/projected.h), as a plain baseline to compare
+// with.
 //   eigen-ldlt  SimplicialLDLT, AMD ordering
 //   eigen-cg    ConjugateGradient with IncompleteCholesky
 #include <Eigen/IterativeLinearSolvers>

@@ -27,7 +27,7 @@ const SymmetricRows& Galerkin::coarse(const Smoother& A, const BlockRows& P, con
     RowSum sum(columns);
     BlockRows::Chunk& chunk = product_.open(begin, 8 * chunk_size);
     for (int i = begin; i < end; ++i) {
-      const BlockRows::Row own = P[i];  // A_c above its diagonal has no use for columns before these
+      const BlockRows::Row own = P[i];  // A_c above its diagonal needs no columns before these
       const int least = own.count == 0 ? columns : *std::min_element(own.column, own.column + own.count);
       A.each(i, [&](int j, const auto* block) {
         const BlockRows::Row row = P[j];
@@ -44,7 +44,7 @@ const SymmetricRows& Galerkin::coarse(const Smoother& A, const BlockRows& P, con
     RowSum sum(columns);
     BlockRows::Chunk& chunk = coarse_.upper_.open(begin, 8 * chunk_size);
     for (int i = begin; i < end; ++i) {
-      sum.at(i);  // the diagonal first
+      sum.at(i);  // puts the diagonal block first
       const BlockRows::Row row = R[i];
       for (int k = 0; k < row.count; ++k) {
         const BlockRows::Row product = product_[row.column[k]];

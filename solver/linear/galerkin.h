@@ -1,6 +1,6 @@
-// The matrix of the next coarser level, A_c = P^T A P, and what it is made of.       [Gustavson 1978]
-//   Of the symmetric A_c only the upper triangle is computed, and of a block on the diagonal its lower half
-//   alone counts: so it is symmetric to the last bit.
+// The matrix of the next coarser level, A_c = P^T A P, and the parts it is made of.       [Gustavson 1978]
+//   Only the upper triangle of the symmetric A_c is computed, and of each diagonal block only the lower half:
+//   so A_c is symmetric to the last bit.
 #pragma once
 
 #include "solver/linear/mirror.h"
@@ -9,7 +9,8 @@
 
 namespace drape::internal {
 
-// The upper triangle of a symmetric matrix, each row's diagonal block first; gone through whole, row by row.
+// A symmetric matrix, stored as its upper triangle with the diagonal block first in each row; each() goes
+// through whole rows.
 class SymmetricRows {
  public:
   int rows() const { return upper_.rows(); }
@@ -37,9 +38,9 @@ void transpose(const BlockRows& P, int columns, BlockRows& R);
 
 class Galerkin {
  public:
-  // R = P^T. A direction that no vertex of an aggregate may take has no stiffness, and nothing pushes along
-  // it: so that it can be divided by, every diagonal block gets a little, 2e-7 of its trace in each direction
-  // (1 kg where there is no trace).
+  // R = P^T. A direction in which no vertex of an aggregate may move has no stiffness, and nothing pushes
+  // along it. So that the matrix can be inverted there, every diagonal block gets a small addition: 2e-7 of
+  // its trace in each direction (1 kg where there is no trace).
   const SymmetricRows& coarse(const Smoother& A, const BlockRows& P, const BlockRows& R);
 
  private:

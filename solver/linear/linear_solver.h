@@ -1,6 +1,7 @@
-// Solves A dv = b within a filter: S (A dv - b) = 0 and (I - S) dv = z. One verb, and a report that is data.
+// Solves A dv = b within a filter: S (A dv - b) = 0 and (I - S) dv = z. The interface is one function, which
+// returns a report that is plain data.
 //   All vectors, and the filter's particle numbers, are in row order (solver/matrix/block_matrix.h).
-//   A [kg], b [N s], dv [m/s]; the residual is |S (b - A dv)| [N s], computed afresh at the end, outside the
+//   A [kg], b [N s], dv [m/s]; the residual is |S (b - A dv)| [N s], computed anew at the end, outside the
 //   iteration.
 #pragma once
 
@@ -16,28 +17,28 @@ namespace drape {
 
 enum class StopReason {
   converged,
-  iteration_limit,  // stopped early: the residual says how far it came
-  indefinite,       // a direction of negative or zero curvature: A is not positive definite
-  not_finite,       // nan or inf in A, b or the guess
+  iteration_limit,  // stopped early; the residual says how far it came
+  indefinite,       // met a direction of negative or zero curvature: A is not positive definite
+  not_finite,       // met nan or inf in A, b or the guess
 };
 std::string_view name(StopReason reason);
 
 struct LinearOptions {
   double tolerance = 1e-6;  // of the residual, relative to the larger of |S (b - A z)| and scale
   int max_iterations = 0;   // 0: 1000 + 20 sqrt(rows)
-  double scale = 0;         // N s, an impulse that is known to act even where forces cancel in b: h |m g|
+  double scale = 0;         // impulse that acts even where forces cancel in b [N s]: h |m g|
   std::vector<double>* history =
-      nullptr;  // when given: gets the relative residual of every iteration, from 0
+      nullptr;  // when given, gets the relative residual of every iteration, from 0 on
 };
 
 struct LinearReport {
   int iterations = 0;
   double residual = 0;          // relative, as in LinearOptions::tolerance
-  double residual_impulse = 0;  // N s, |S (b - A dv)|
+  double residual_impulse = 0;  // |S (b - A dv)| [N s]
   StopReason reason = StopReason::converged;
-  double setup_ms = 0;  // projection, preconditioner or factor; 0 of it where it was reused
-  double solve_ms = 0;  // all else
-  int analyses = 0;     // how often the pattern was looked at anew: 0 while it stands
+  double setup_ms = 0;  // time of projection, preconditioner or factor [ms]; what is reused takes none
+  double solve_ms = 0;  // time of everything else [ms]
+  int analyses = 0;     // how often the pattern was analysed; 0 while it does not change
   std::string note;     // what the user should know: a shifted factor, slow kernels of a library
 };
 
@@ -45,17 +46,17 @@ class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   virtual std::string_view name() const = 0;
-  // dv: in, the guess (its locked part is replaced by z); out, the solution.
+  // dv goes in as the guess (its locked part is replaced by z) and comes out as the solution.
   virtual LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter,
                              const LinearOptions& options, VecX& dv) = 0;
 };
 
-// "mpcg", and what linear_solvers() lists. Throws InputError for any other name.
+// Makes "mpcg" or any other solver that linear_solvers() lists. Throws InputError for any other name.
 std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name);
 
 struct LinearSolverInfo {
   std::string_view name, summary;
 };
-std::vector<LinearSolverInfo> linear_solvers();  // of this build
+std::vector<LinearSolverInfo> linear_solvers();  // those of this build
 
 }  // namespace drape

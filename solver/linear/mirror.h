@@ -1,5 +1,6 @@
-// A sparse matrix is kept by rows; this finds its entries by columns: which row each stands in, and where.
-//   With it a matrix of which only the upper triangle is stored is gone through whole, row by row.
+// Finds the entries of a sparse matrix, which is kept by rows, by columns: in which row each stands, and
+// where in it.
+//   With it a matrix of which only the upper triangle is stored can be gone through in whole rows.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +9,9 @@
 namespace drape::internal {
 
 struct Mirror {
-  std::vector<int> start{0}, row, place;  // columns + 1; one an entry, rows ascending within a column
+  // `start` has columns + 1 numbers; `row` and `place` have one for every entry, rows ascending within a
+  // column.
+  std::vector<int> start{0}, row, place;
 
   // each(row, f(column, place)) calls f for every entry of the row.
   template <class Each>

@@ -1,12 +1,13 @@
 // A V-cycle of smoothed aggregation as preconditioner.
 //                                      [Vanek, Mandel & Brezina 1996; Tamstorf, Jones & McCormick 2015]
 //   level: x = smooth down (r);  x += P V(P^T (r - A x));  x = smooth up (r, x);    next level: A_c = P^T A P
-// Our own, because it beat PETSc's GAMG on these matrices (tests/bench measures both): blocks of whole
-// vertices, kept in float, and threads that do not change a bit. The finest level is made for every system:
-// it knows what is held. The coarser ones are kept from step to step while they still work: while a solve
-// takes at most a third, and four, more iterations than the same decades of the residual (at least one) took
-// when they were new. Once it does not, even in the middle of a solve, they are built anew. (Waiting longer,
-// for as many iterations as a set-up takes time, was slower in every gallery scene.)
+// It is our own because it was faster than PETSc's GAMG on these matrices (tests/bench measures both): it has
+// blocks of whole vertices, kept in float, and threads that do not change a bit of the result. The finest
+// level is made for every system, because it contains what is held. The coarser levels are kept from step to
+// step while they work well enough: while a solve takes at most 4/3 n + 4 iterations, where n iterations gave
+// the same number of decades of the residual (at least one) when the levels were new. When they no longer do,
+// even in the middle of a solve, they are built anew. (Waiting longer, for as many iterations as a set-up
+// takes time, was slower in every gallery scene.)
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
@@ -21,16 +22,17 @@
 namespace drape::internal {
 namespace {
 
-// More than a few percent cuts couplings that the finest sheets need: 0.08 took 65 iterations where 0.02
-// takes 12 (100 k vertices, 1e-3).
+// A threshold above a few percent cuts couplings that the finest sheets need: 0.08 took 65 iterations where
+// 0.02 takes 12 (100,000 vertices, tolerance 1e-3).
 constexpr double strength = 0.02;
 constexpr int coarsest_rows = 50, most_levels = 12;
-constexpr int most_iterations = 1000;  // more than that with a new one: the next system gets another chance
+// Levels that took more iterations than this even when new are not kept for the next system.
+constexpr int most_iterations = 1000;
 
 struct Level {
   Smoother smoother;
   BlockRows prolongation, restriction;  // to the next coarser level
-  VecX x, r, residual;                  // x, r: of a coarser level
+  VecX x, r, residual;                  // x and r belong to the system of a coarser level
 
   template <class Rows>
   void build(const Rows& A) {
@@ -46,7 +48,7 @@ class Multigrid final : public Preconditioner {
   bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
     fallen_back_ = false;
     reused_ = works_ && count_ > 1 && serial_ == A.pattern().serial();
-    works_ = false;  // until it stands
+    works_ = false;  // until the levels are built
     const ProjectedBlocks projected(A, filter);
     for (int r = 0; r < A.rows(); ++r)
       if (!positive_definite(projected.block(A.pattern().diagonal(r), r, r))) return false;
@@ -63,7 +65,8 @@ class Multigrid final : public Preconditioner {
     return true;
   }
 
-  // It may be too old for this matrix; a new one, then none.
+  // Kept levels may be too old for this matrix, so new ones are built first; where new ones fail,
+  // block-Jacobi takes over.
   bool make_safer(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
     if (fallen_back_) return false;
     works_ = false;
@@ -92,7 +95,7 @@ class Multigrid final : public Preconditioner {
   void forget() override { works_ = false; }
 
  private:
-  // False: A is not positive definite.
+  // Returns false when A is not positive definite.
   bool build(const ProjectedRows& A, const ProjectedBlocks& projected) {
     count_ = 0;
     add_level(A);
@@ -100,11 +103,12 @@ class Multigrid final : public Preconditioner {
       Level& fine = last();
       const int columns = smoothed_aggregation(fine.smoother, strength, count_ == 1 ? &projected : nullptr,
                                                fine.prolongation);
-      if (columns == 0 || 10 * columns > 9 * fine.smoother.rows()) break;  // nothing gained by a coarser one
+      if (columns == 0 || 10 * columns > 9 * fine.smoother.rows()) break;  // coarser gains nothing
       transpose(fine.prolongation, columns, fine.restriction);
       add_level(galerkin_.coarse(fine.smoother, fine.prolongation, fine.restriction));
     }
-    // Of a coarser matrix it says nothing about A that floats could not have done.
+    // A coarser matrix that is not positive definite says nothing about A: rounding to float may have caused
+    // it.
     return factorise(last().smoother) || count_ > 1;
   }
 
@@ -117,7 +121,7 @@ class Multigrid final : public Preconditioner {
 
   bool factorise(const Smoother& A) {
     coarse_.reset();
-    if (A.rows() > 8 * coarsest_rows) return true;  // too large for a dense factor: smoothed only
+    if (A.rows() > 8 * coarsest_rows) return true;  // too large for a dense factor, so it is only smoothed
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * A.rows(), 3 * A.rows());
     for (int r = 0; r < A.rows(); ++r)
       A.each(r, [&](int c, const auto* block) {
@@ -162,7 +166,7 @@ class Multigrid final : public Preconditioner {
   int count_ = 0;
   Galerkin galerkin_;
   Mirror below_;                                       // of the pattern
-  std::optional<Eigen::LLT<Eigen::MatrixXd>> coarse_;  // of the last level; none: smoothed only
+  std::optional<Eigen::LLT<Eigen::MatrixXd>> coarse_;  // of the last level; empty: that is only smoothed
   std::uint64_t serial_ = 0;
   bool works_ = false, reused_ = false, fallen_back_ = false;
   std::unique_ptr<Preconditioner> block_jacobi_ = make_block_jacobi();

@@ -1,11 +1,13 @@
-// The preconditioned conjugate gradient under a filter, in its two readings:
-//   mpcg  Baraff & Witkin's modified CG. The unknown is dv itself; residual and search directions are filtered.
-//         It starts from dv_0 = S guess + z and has the symmetric convergence test of Ascher & Boxerman.
+// The preconditioned conjugate gradient within a filter, in two variants:
+//   mpcg  Baraff & Witkin's modified CG. The unknown is dv itself; residual and search directions are
+//         filtered. It starts from dv_0 = S guess + z and has the symmetric convergence test of Ascher &
+//         Boxerman.
 //                                              [Baraff & Witkin 1998, 5.3; Ascher & Boxerman 2003]
 //   ppcg  plain CG on the prefiltered system (S A S + I - S) y = S (b - A z), dv = y + z, y_0 = S guess. It
-//         takes any preconditioner that was built for the projected matrix. [Tamstorf, Jones & McCormick 2015]
-// In exact arithmetic both take the same steps; so the loop stands here once, and they differ in what they
-// begin from and in what is added at the end.
+//         takes any preconditioner that was built for the projected matrix.
+//                                                              [Tamstorf, Jones & McCormick 2015]
+// In exact arithmetic both take the same steps. So the loop stands here once; the variants differ in what
+// they start from and in what is added at the end.
 #include "solver/linear/pcg.h"
 
 #include <cmath>
@@ -31,7 +33,7 @@ class Pcg final : public LinearSolver {
     {
       const Stopwatch watch(report.solve_ms);
       const double reference = reference_impulse(A, b, filter, options, z_, r_);  // leaves S (b - A z) in r
-      if (reference == 0) dv.setZero();  // nothing pushes: nothing to be relative to, and nothing to do
+      if (reference == 0) dv.setZero();  // no impulse acts, so there is nothing to do
       if (prefiltered_) {
         right_ = r_;
         filter.apply(dv);
@@ -57,7 +59,7 @@ class Pcg final : public LinearSolver {
     if (!preconditioner_->prepare(A, filter, report)) report.reason = StopReason::indefinite;
   }
 
-  // Solves S (right - A x) = 0 in the free directions from x on.
+  // Solves S (right - A x) = 0 in the free directions, starting from x.
   void iterate(const BlockMatrix& A, const VecX& right, const Filter& filter, const LinearOptions& options,
                double reference, VecX& x, LinearReport& report) {
     const int rows = A.rows(), limit = iteration_limit(options, rows);
@@ -68,9 +70,9 @@ class Pcg final : public LinearSolver {
     residual(A, right, filter, x, r_);
     double rr = dot(r_, r_);
     note(rr);
-    const double far_off = 1e12 * (rr + reference * reference);  // no residual of a sound iteration
+    const double far_off = 1e12 * (rr + reference * reference);  // no sound iteration has such a residual
     int restarts = 0, since_ready = 0;
-    double rr_ready = rr;  // when the preconditioner was made ready
+    double rr_ready = rr;  // rr when the preconditioner was made ready
     const auto decades = [&] { return rr > 0 && rr_ready > 0 ? 0.5 * std::log10(rr_ready / rr) : 0; };
     while (report.reason == StopReason::converged) {
       d_.setZero();
@@ -112,7 +114,8 @@ class Pcg final : public LinearSolver {
         note(rr);
       }
       if (report.reason != StopReason::converged || !std::isfinite(rr)) break;
-      // The recurrence drifts from the true residual by round-off: go on from the true one when that matters.
+      // The recurrence drifts from the true residual by round-off; where that matters, the iteration goes on
+      // from the true one.
       residual(A, right, filter, x, r_);
       rr = dot(r_, r_);
       if (rr <= 1.02 * target * target || report.iterations >= limit) break;
@@ -138,7 +141,7 @@ class Pcg final : public LinearSolver {
     residual(A, right, filter, x, r_);
   }
 
-  // x += alpha d, r -= alpha q; returns r.r
+  // x += alpha d, r -= alpha q. Returns r.r of the new r.
   double advance(double alpha, int rows, VecX& solution) {
     return sum_chunks(rows, [&](int begin, int end) {
       double *x = solution.data(), *r = r_.data();
@@ -153,7 +156,7 @@ class Pcg final : public LinearSolver {
 
   void conclude(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
                 double reference, VecX& dv, LinearReport& report) {
-    filter.impose(dv);  // to the last bit
+    filter.impose(dv);  // meets the constraints to the last bit
     residual(A, b, filter, dv, r_);
     report.residual_impulse = std::sqrt(dot(r_, r_));
     report.residual = reference > 0 ? report.residual_impulse / reference : 0;

@@ -1,11 +1,11 @@
-// The conjugate gradient under a filter, with any preconditioner: solver/linear/pcg.cpp says what it does.
+// The conjugate gradient within a filter, with any preconditioner; solver/linear/pcg.cpp has the method.
 #pragma once
 
 #include "solver/linear/preconditioner.h"
 
 namespace drape::internal {
 
-// prefiltered: the reading of Tamstorf et al. (ppcg), else that of Baraff & Witkin (mpcg).
+// prefiltered: the variant of Tamstorf et al. (ppcg); otherwise that of Baraff & Witkin (mpcg).
 std::unique_ptr<LinearSolver> make_pcg(std::string name, bool prefiltered,
                                        std::unique_ptr<Preconditioner> preconditioner);
 

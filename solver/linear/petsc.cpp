@@ -1,7 +1,7 @@
 // "petsc": the prefiltered system by PETSc's KSP CG, preconditioned by its algebraic multigrid GAMG.
-//   PETSc takes blocks of three over memory that is not its own in none of its formats ("block size 3 > 1 is
-//   not supported yet"), so it gets a copy, BAIJ; GAMG wants scalar rows and gets a conversion. One process
-//   here; the calls are those of runs under mpirun.
+//   None of PETSc's formats takes blocks of three in memory that it does not own ("block size 3 > 1 is not
+//   supported yet"), so PETSc gets a copy in the format BAIJ. GAMG wants scalar rows and gets a conversion.
+//   PETSc runs in this one process; the calls are those of runs under mpirun.
 //                                                             [Balay et al., PETSc Users Manual, 3.18]
 #include <petscksp.h>
 
@@ -15,7 +15,7 @@ using namespace internal;
 
 namespace {
 
-// PETSc is started once a process and stopped at its end.
+// Starts PETSc once in a process; it is stopped when the process ends.
 void start_petsc() {
   static const bool started = [] {
     PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
@@ -148,8 +148,8 @@ class Petsc final : public LinearSolver {
   }
 
   KSP ksp_ = nullptr;
-  Mat matrix_ = nullptr, rows_ = nullptr;  // in blocks; the same in scalar rows
-  PetscReal threshold_[1] = {-1};          // nothing dropped: 0.08 took fifteen times as long
+  Mat matrix_ = nullptr, rows_ = nullptr;  // matrix_ is in blocks; rows_ is the same in scalar rows
+  PetscReal threshold_[1] = {-1};          // drops no coupling: with 0.08 a solve took fifteen times as long
   std::uint64_t serial_ = 0;
   Mirror below_;
   std::vector<PetscInt> start_, column_;

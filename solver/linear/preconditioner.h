@@ -1,6 +1,6 @@
-// An approximate inverse of the projected matrix S A S + I - S, for the conjugate gradient.
-//   s = P r,  P symmetric positive definite.  In row order; r [N s], s [m/s].
-//   What it returns outside the range of S does not matter: the iteration filters it.
+// An approximate inverse P of the projected matrix S A S + I - S, for the conjugate gradient.
+//   s = P r,  P symmetric positive definite.  Vectors are in row order; r [N s], s [m/s].
+//   What P returns outside the range of S does not matter, because the iteration filters it.
 #pragma once
 
 #include <memory>
@@ -13,31 +13,31 @@ class Preconditioner {
  public:
   virtual ~Preconditioner() = default;
   virtual std::string_view name() const = 0;
-  // Made ready for this matrix and filter; says in the report's note what was not as usual. False: A is not
+  // Makes it ready for this matrix and filter; the report's note says what was unusual. False: A is not
   // positive definite.
   virtual bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) = 0;
   virtual void apply(const VecX& r, VecX& s) = 0;
-  // It did not act as a positive definite matrix: made safer, at the price of iterations. False: it cannot
-  // be.
+  // Called when it did not act as a positive definite matrix: makes it safer, at the price of more
+  // iterations. False: it cannot be made safer.
   virtual bool make_safer(const BlockMatrix& /*A*/, const Filter& /*filter*/, LinearReport& /*report*/) {
     return false;
   }
-  // One that is kept over several systems says here that it no longer suits this one, after so many
-  // iterations that made the residual smaller by so many powers of ten: it is made ready anew, and the
-  // iteration goes on from where it is.
+  // A preconditioner that is kept over several systems returns true here when it no longer suits this one,
+  // after this many iterations that made the residual smaller by this many powers of ten. It is then made
+  // ready anew, and the iteration goes on from where it is.
   virtual bool outdated(int /*iterations*/, double /*decades*/) const { return false; }
-  virtual void learn(int /*iterations*/, double /*decades*/) {}  // what a whole solve took
-  virtual void forget() {}  // what was kept is not to be used for another system
+  virtual void learn(int /*iterations*/, double /*decades*/) {}  // is told what a whole solve took
+  virtual void forget() {}  // what was kept must not be used for another system
 };
 
 // The inverses of the 3x3 diagonal blocks.                                    [Baraff & Witkin 1998, 5.3]
 std::unique_ptr<Preconditioner> make_block_jacobi();
-// Incomplete Cholesky on the pattern's blocks, no fill.              [Meijerink & van der Vorst 1977]
+// Incomplete Cholesky on the blocks of the pattern, without fill.         [Meijerink & van der Vorst 1977]
 std::unique_ptr<Preconditioner> make_block_ic0();
-// Smoothed aggregation, a V-cycle.            [Vanek, Mandel & Brezina 1996; Tamstorf et al. 2015]
+// A V-cycle of smoothed aggregation.            [Vanek, Mandel & Brezina 1996; Tamstorf et al. 2015]
 std::unique_ptr<Preconditioner> make_multigrid();
 
-// "block-jacobi", "block-ic0", "multigrid"; null for any other name.
+// Makes "block-jacobi", "block-ic0" or "multigrid"; returns null for any other name.
 std::unique_ptr<Preconditioner> make_preconditioner(std::string_view name);
 
 }  // namespace drape::internal

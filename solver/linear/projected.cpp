@@ -43,14 +43,14 @@ void ProjectedSystem::project(const BlockMatrix& A, const VecX& b, const Filter&
   double* value = matrix_.valuePtr();
   for (int j = 0; j < A.rows(); ++j) {
     const FilterEntry* fj = S_of(j);
-    int above = 0;  // how many numbers of the column of the block stand above it
+    int above = 0;  // how many numbers of the column stand above this block
     A.each(j, [&](int i, int slot) {
       const FilterEntry* fi = S_of(i);
       Mat3 block = A.at(slot).transpose();  // block (j, i) of a symmetric matrix, turned to (i, j)
       if (fi) block = fi->S * block;
       if (fj) block = block * fj->S;
       if (fi && i == j) block += Mat3::Identity() - fi->S;
-      // Column c starts c entries lower: its part above the diagonal is not stored.
+      // Column c starts c entries lower, because its part above the diagonal is not stored.
       for (int c = 0; c < 3; ++c)
         for (int r = (i == j ? c : 0); r < 3; ++r)
           value[static_cast<std::ptrdiff_t>(matrix_.outerIndexPtr()[3 * j + c]) + above + r - c] =

@@ -1,8 +1,8 @@
-// The filtered system as an ordinary sparse one, for solvers that know no filter.
+// The filtered system as an ordinary sparse one, for solvers that have no filter.
 //                                                                 [Tamstorf, Jones & McCormick 2015]
 //   (S A S + I - S) y = S (b - A z),   dv = S y + z
-// The lower triangle, column by column; its pattern is kept while the serial of the matrix stands, values are
-// refilled.
+// The lower triangle is stored column by column. Its pattern is kept while the serial of the matrix does not
+// change; the values are refilled for every system.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -19,7 +19,7 @@ class ProjectedSystem {
 
   const Matrix& matrix() const { return matrix_; }  // lower triangle of S A S + I - S
   const VecX& right_side() const { return right_; }
-  double reference() const { return reference_; }  // N s, what a residual is relative to
+  double reference() const { return reference_; }  // the impulse that a residual is relative to [N s]
 
  private:
   void build_pattern(const BlockMatrix& A);

@@ -1,4 +1,4 @@
-// The blocks of the projected matrix S A S + I - S, one by one, for preconditioners that make their own copy.
+// The blocks of the projected matrix S A S + I - S, one by one, for preconditioners that copy them.
 #pragma once
 
 #include <Eigen/LU>
@@ -20,7 +20,7 @@ class ProjectedBlocks {
 
   bool free(int row) const { return entry_[row] < 0; }
   Mat3 S(int row) const { return free(row) ? Mat3(Mat3::Identity()) : entry(row).S; }
-  // Nothing of this row may move.
+  // True when the particle of this row may not move at all.
   bool locked(int row) const { return !free(row) && entry(row).S.isZero(0); }
 
   // The block (row, column) that stands in the slot.
@@ -41,7 +41,7 @@ class ProjectedBlocks {
   std::vector<int> entry_;  // row -> entry of the filter, -1: free
 };
 
-// What stands below the diagonal of the base, by rows: the place of an entry is the slot of its transpose.
+// The blocks below the diagonal of the base, by rows: the place of an entry is the slot of its transpose.
 inline Mirror below_diagonal(const BlockPattern& pattern) {
   Mirror below;
   below.build(pattern.rows(), pattern.rows(), [&](int r, const auto& f) {
@@ -50,7 +50,7 @@ inline Mirror below_diagonal(const BlockPattern& pattern) {
   return below;
 }
 
-// The same of the whole matrix, the overlay included.
+// The same for the whole matrix, with the overlay.
 inline Mirror below_diagonal(const BlockMatrix& A) {
   Mirror below;
   below.build(A.rows(), A.rows(), [&](int r, const auto& f) {
@@ -61,7 +61,7 @@ inline Mirror below_diagonal(const BlockMatrix& A) {
   return below;
 }
 
-// The projected base of the matrix with both its halves, row by row: what a preconditioner is made from.
+// The projected base of the matrix with both its halves, row by row, from which a preconditioner is made.
 class ProjectedRows {
  public:
   ProjectedRows(const BlockMatrix& A, const ProjectedBlocks& projected, const Mirror& below)
@@ -85,7 +85,7 @@ class ProjectedRows {
   const Mirror& below_;
 };
 
-// Of a symmetric block, by its leading minors.
+// Decides for a symmetric block by its leading minors.
 inline bool positive_definite(const Mat3& b) {
   const double minor = b(0, 0) * b(1, 1) - b(0, 1) * b(1, 0);
   return b(0, 0) > 0 && minor > 0 && b.determinant() > 0;

@@ -1,4 +1,5 @@
-// What every linear solver shares: the residual outside the iteration, and the size it is compared with.
+// What all linear solvers share: the residual outside the iteration, and the impulse that it is compared
+// with.
 #pragma once
 
 #include <cmath>
@@ -22,7 +23,8 @@ inline int iteration_limit(const LinearOptions& options, int rows) {
   return 1000 + static_cast<int>(20 * std::sqrt(static_cast<double>(rows)));
 }
 
-// |S (b - A z)|: the right-hand side of the projected system. r is scratch.
+// The norm |S (b - A z)| [N s] of the right-hand side of the projected system, or options.scale where that is
+// larger. Fills z, and leaves S (b - A z) in r.
 inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filter& filter,
                                 const LinearOptions& options, VecX& z, VecX& r) {
   z.setZero();
@@ -40,7 +42,7 @@ inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filte
   return std::max(std::sqrt(dot(r, r)), options.scale);
 }
 
-// Ends the report of a solver that has no residual of its own; the constraints are met to the last bit.
+// Completes the report of a solver that has no residual of its own; dv meets the constraints to the last bit.
 inline void finish(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
                    double reference, VecX& dv, VecX& scratch, LinearReport& report) {
   scratch.resize(dv.size());

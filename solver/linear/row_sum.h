@@ -1,4 +1,4 @@
-// One row of a sparse product in the making: which columns it has, and the sums of their blocks.
+// One row of a sparse product while it is summed: which columns it has, and the sums of their blocks.
 #pragma once
 
 #include <vector>
@@ -43,7 +43,7 @@ class RowSum {
     return sum_[place];
   }
 
-  // f(column, sum) in the order in which the columns came; then the row is empty again.
+  // Calls f(column, sum) in the order in which the columns came; then the row is empty again.
   template <class F>
   void take(const F& f) {
     for (std::size_t k = 0; k < column_.size(); ++k) {

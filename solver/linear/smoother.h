@@ -1,13 +1,13 @@
-// A matrix of a multigrid level in the three parts that Gauss-Seidel sweeps over, and its symmetric block
-// sweeps: one pass over the matrix on the way down, residual included, and one on the way up.
+// A matrix of a multigrid level in the three parts of Gauss-Seidel's method, and its symmetric sweeps by
+// blocks. The sweep down goes over the matrix once, residual included, and so does the sweep up.
 //   A = L + D + U:   down from x = 0:  (L + D) x = r,  r - A x = -U x;      up:  (D + U) x_new = r - L x
 //                                                              [Briggs, Henson & McCormick 2000]
-// Rows are cut into chunks at least as long as the bandwidth; all even chunks come before all odd ones, and
-// that order says what is L and what is U. Chunks of one kind do not touch each other, so they are swept side
-// by side, and the sweep up is the adjoint of the sweep down, whatever the number of threads.
-// L and U are kept in float; what that takes from a row's sum goes to D, which stays in double: the mass of a
-// fine sheet's vertex is a millionth of its stiffness, and float alone would lose it. (On the finest level:
-// coarser matrices come in float, and have more mass.)
+// Rows are cut into chunks at least as long as the bandwidth. All even chunks come before all odd ones, and
+// that order says what is L and what is U. Two chunks of one kind have no coupling, so they are swept in
+// parallel, and the sweep up is the adjoint of the sweep down, whatever the number of threads.
+// L and U are kept in float. What the rounding takes from the sum of a row is added to D, which is kept in
+// double: the mass of a vertex of a fine sheet is a millionth of its stiffness, and would be lost in float.
+// (This matters on the finest level only: coarser matrices come in float, and have more mass.)
 #pragma once
 
 #include <Eigen/LU>
@@ -20,7 +20,7 @@ namespace drape::internal {
 
 class Smoother {
  public:
-  template <class Rows>  // rows(), bandwidth(), each(row, f(column, block)), both halves
+  template <class Rows>  // Rows has rows(), bandwidth() and each(row, f(column, block)) with both halves
   void build(const Rows& A);
 
   int rows() const { return rows_; }
@@ -30,7 +30,7 @@ class Smoother {
     f(row, diagonal(row));
     each_other(row, f);
   }
-  template <class F>  // without the diagonal
+  template <class F>  // f(column, block) for all but the diagonal
   void each_other(int row, const F& f) const {
     for (const BlockRows* part : {&lower_, &upper_}) {
       const BlockRows::Row blocks = (*part)[row];
@@ -43,7 +43,7 @@ class Smoother {
 
  private:
   template <class F>
-  void for_rows_of(bool odd, const F& f) const;  // f(begin, end) for every chunk of that kind
+  void for_rows_of(bool odd, const F& f) const;  // calls f(begin, end) for every odd or every even chunk
   void solve_diagonal(int row, Four right, double* x) const;
 
   int rows_ = 0, chunk_rows_ = 1;

@@ -1,7 +1,7 @@
-// Sparse matrices that a preconditioner makes row by row and multiplies with row by row: 3x3 blocks (column
-// by column), or single numbers, kept in float and calculated with in double. Rows stand together in fixed
-// chunks. A chunk is made by one thread and stays where it was made: nothing is copied to put the matrix
-// together, and no thread count changes it.
+// Sparse matrices that a preconditioner makes and multiplies with row by row. An entry is a 3x3 block (column
+// by column) or a single number; it is kept in float and calculated with in double. Rows stand together in
+// fixed chunks. A chunk is made by one thread and stays where it was made: nothing is copied to put the
+// matrix together, and the number of threads does not change it.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ class SparseRows {
  public:
   class Chunk {
    public:
-    // An entry of the row that end_row() closes; the caller writes its numbers.
+    // Adds an entry to the row that end_row() closes; the caller writes its numbers.
     float* add(int column) {
       column_.push_back(column);
       value_.resize(value_.size() + width);
@@ -37,7 +37,7 @@ class SparseRows {
     const float* operator[](int k) const { return value + width * static_cast<std::ptrdiff_t>(k); }
   };
 
-  // Begins anew with so many rows. Each chunk of them is then opened, filled in order and closed.
+  // Begins anew with this many rows. Each chunk of them is then opened, filled in order and closed.
   void resize(int rows) {
     rows_ = rows;
     chunks_.resize(static_cast<std::size_t>(chunk_count(rows)));
@@ -80,8 +80,8 @@ class SparseRows {
 
 using BlockRows = SparseRows<9>;
 
-// A row of blocks times x: three of the four lanes count. Rows are taken upwards or downwards; what comes so
-// many blocks later is fetched ahead, for the processor's own prefetch stops at every page.
+// A row of blocks times x; three of the four lanes count. Rows are taken upwards or downwards. What comes
+// `ahead` blocks later is fetched early, because the processor's own prefetch stops at every page.
 template <bool upwards = false>
 Four times(const BlockRows::Row& row, const double* x) {
   constexpr std::ptrdiff_t ahead = (upwards ? -1 : 1) * 64;

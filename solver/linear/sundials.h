@@ -41,18 +41,18 @@ class View {
 
 inline Eigen::Map<VecX> numbers(N_Vector v) { return {N_VGetArrayPointer(v), N_VGetLength(v)}; }
 
-// What is reported stands in the flag, too.
+// The handler of errors: it prints nothing, because the flag that a call returns has the error, too.
 inline void say_nothing(int, const char*, const char*, char*, void*) {}
 
-// The name of a flag, which SUNDIALS leaves to the caller to free.
+// Copies the name of a flag and frees the original, which SUNDIALS leaves to the caller.
 inline std::string taken(char* text) {
   std::string copy = text;
   std::free(text);
   return copy;
 }
 
-// The linear solver that calls owner.solve_linear(x, b): 0, or 1 when a smaller step may help, or -1.
-// type: matrix-embedded, or direct for KINSOL, which asks for a matrix (there it is an empty one).
+// The linear solver that calls owner.solve_linear(x, b), which returns 0, or 1 when a smaller step may help,
+// or -1. type: matrix-embedded; or direct for KINSOL, which asks for a matrix (it gets an empty one).
 template <class Owner, SUNLinearSolver_Type type>
 SUNLinearSolver our_solver(Owner& owner, SUNContext context) {
   SUNLinearSolver solver = SUNLinSolNewEmpty(context);
@@ -60,7 +60,7 @@ SUNLinearSolver our_solver(Owner& owner, SUNContext context) {
   solver->ops->gettype = [](SUNLinearSolver) { return type; };
   solver->ops->solve = [](SUNLinearSolver s, SUNMatrix, N_Vector x, N_Vector b, realtype) {
     const int failed = static_cast<Owner*>(s->content)->solve_linear(x, b);
-    // A number that SUNDIALS does not know it takes for success.
+    // SUNDIALS takes a number that it does not know for success.
     return failed > 0 ? SUNLS_CONV_FAIL : failed < 0 ? SUNLS_PACKAGE_FAIL_UNREC : SUNLS_SUCCESS;
   };
   return solver;

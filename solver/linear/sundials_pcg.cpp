@@ -1,4 +1,4 @@
-// "sundials-pcg": the prefiltered system by SUNLinSol_PCG of SUNDIALS, over our matrix and preconditioner.
+// "sundials-pcg": the prefiltered system by SUNLinSol_PCG of SUNDIALS, with our matrix and preconditioner.
 //   (S A S + I - S) y = S (b - A z),   dv = y + z                              [Hestenes & Stiefel 1952]
 #include <sunlinsol/sunlinsol_pcg.h>
 
@@ -31,8 +31,7 @@ class SundialsPcg final : public LinearSolver {
     {
       const Stopwatch watch(report.setup_ms);
       resize(b.size());
-      // SUNDIALS' iteration cannot be interrupted when a preconditioner that was kept no longer works: none
-      // is.
+      // SUNDIALS' iteration cannot be interrupted when a kept preconditioner stops working, so none is kept.
       preconditioner_->forget();
       if (!preconditioner_->prepare(A, filter, report)) report.reason = StopReason::indefinite;
     }
@@ -71,7 +70,7 @@ class SundialsPcg final : public LinearSolver {
 
   void iterate(int rows, const LinearOptions& options, double reference, LinearReport& report) {
     broke_down_ = false;
-    if (!right_.allFinite() || !y_.allFinite()) return;  // the residual will say so
+    if (!right_.allFinite() || !y_.allFinite()) return;  // the residual will show it
     if (reference == 0) return y_.setZero(), void();
     SUNLinSol_PCGSetMaxl(pcg_, iteration_limit(options, rows));
     const sundials::View y(y_, context_), right(right_, context_);

@@ -46,7 +46,7 @@ void BlockMatrix::set_to_mass(const std::vector<double>& mass) {
 void BlockMatrix::set_diagonal_additions(std::span<const DiagonalBlock> additions) {
   for (const auto& [slot, block] : assembled_) at(slot) = block;
   assembled_.clear();
-  assembled_.reserve(static_cast<std::size_t>(rows()));  // at the first call, so that no later one allocates
+  assembled_.reserve(static_cast<std::size_t>(rows()));  // at the first call, so that no later call allocates
   for (const DiagonalBlock& addition : additions) {
     const int slot = pattern_->diagonal(addition.row);
     assembled_.emplace_back(slot, at(slot));
@@ -75,7 +75,7 @@ void BlockMatrix::add_overlay(const VecX& x, VecX& y) const {
 
 // Row r of the upper triangle gives y_r += A_rj x_j and, as the block (j, r), y_j += A_rj^T x_r.
 void BlockMatrix::multiply_base(const VecX& x, VecX& y) const {
-  constexpr std::ptrdiff_t ahead = 9 * 128;  // doubles: the processor's own prefetch stops at every page
+  constexpr std::ptrdiff_t ahead = 9 * 128;  // in doubles; the processor's own prefetch stops at every page
   const int* start = pattern_->row_start().data();
   const int* column = pattern_->column().data();
   const int chunk_rows = pattern_->chunk_rows(), chunks = pattern_->chunks();

@@ -1,6 +1,6 @@
-// The global sparse symmetric matrix in 3x3 blocks: a base whose pattern stands (solver/matrix/block_pattern.h),
-// an overlay of blocks that come and go (solver/matrix/block_overlay.h), and values that are refilled every
-// step. A block is stored column by column, 9 doubles.
+// The global sparse symmetric matrix in 3x3 blocks: a base whose pattern does not change
+// (solver/matrix/block_pattern.h), an overlay of blocks that come and go (solver/matrix/block_overlay.h), and
+// values that are refilled in every step. A block is stored column by column in 9 doubles.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace drape {
 
-// What is added to the diagonal block of a row.
+// A block that is added to the diagonal block of a row.
 struct DiagonalBlock {
   int row;
   Mat3 block;
@@ -21,14 +21,15 @@ struct DiagonalBlock {
 
 class BlockMatrix {
  public:
-  // The overlay may change its blocks; the matrix follows when it is set to the mass. Null: there is none.
+  // The overlay may change its blocks; the matrix follows at the next set_to_mass(). Null: there is no
+  // overlay.
   explicit BlockMatrix(std::shared_ptr<const BlockPattern> pattern,
                        std::shared_ptr<const BlockOverlay> overlay = nullptr);
 
   const BlockPattern& pattern() const { return *pattern_; }
   const BlockOverlay& overlay() const { return *overlay_; }
   int rows() const { return pattern_->rows(); }
-  // Of the base and the overlay together: what a solver that analyses the whole matrix has to look at.
+  // The serial of base and overlay together: a solver that analyses the whole matrix has to compare this one.
   std::uint64_t serial() const { return overlay_->empty() ? pattern_->serial() : overlay_->serial(); }
 
   double* block(int slot) { return values_.data() + 9 * static_cast<std::size_t>(slot); }
@@ -36,15 +37,15 @@ class BlockMatrix {
   Eigen::Map<Mat3> at(int slot) { return Eigen::Map<Mat3>(block(slot)); }
   Eigen::Map<const Mat3> at(int slot) const { return Eigen::Map<const Mat3>(block(slot)); }
 
-  // The blocks of a row from the diagonal on, columns ascending, those of the overlay among them:
-  // f(column, slot).
+  // Calls f(column, slot) for the blocks of a row from the diagonal on, columns ascending, those of the
+  // overlay among them.
   template <class F>
   void each(int row, const F& f) const;
 
-  // All zero but the diagonal blocks, which become mass of the row's particle times the identity.
+  // Sets all to zero but the diagonal blocks, which become the mass of the row's particle times the identity.
   void set_to_mass(const std::vector<double>& mass);
-  // What stands on the diagonal besides what was assembled, in place of what was given the last time: a
-  // contact that rubs another way needs no new assembly. Rows at most once each.
+  // Sets what is added to the assembled diagonal, in place of the additions of the last call: a contact that
+  // rubs in another way needs no new assembly. A row may occur once at most.
   void set_diagonal_additions(std::span<const DiagonalBlock> additions);
 
   void multiply(const VecX& x, VecX& y) const;  // y = A x, in row order
@@ -56,7 +57,8 @@ class BlockMatrix {
   std::shared_ptr<const BlockPattern> pattern_;
   std::shared_ptr<const BlockOverlay> overlay_;
   std::vector<double> values_;  // 9 a block, and 3 more, so that the last column can be read four wide
-  std::vector<std::pair<int, Mat3>> assembled_;  // slots of diagonal blocks with additions: without them
+  // The slots of the diagonal blocks that have additions, and these blocks without them.
+  std::vector<std::pair<int, Mat3>> assembled_;
 };
 
 template <class F>

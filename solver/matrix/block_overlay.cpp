@@ -39,7 +39,7 @@ void BlockOverlay::clear() {
 }
 
 void BlockOverlay::list_rows(int rows) {
-  place_.assign(static_cast<std::size_t>(rows), 0);  // counts the entries of each row, then says where it is
+  place_.assign(static_cast<std::size_t>(rows), 0);  // at first counts the entries of each row
   for (const ParticlePair& p : pairs_) {
     ++place_[p.i];
     ++place_[p.j];
@@ -57,8 +57,9 @@ void BlockOverlay::list_rows(int rows) {
     rows_.push_back(r);
   }
   entries_.resize(2 * pairs_.size());
-  // Filled from the front; the starts are moved on meanwhile and moved back at the end. Pairs ascend, so the
-  // columns left of the diagonal of a row come before those right of it, each ascending.
+  // Each row is filled from its front: its start moves on meanwhile, and all starts are moved back at the
+  // end. Pairs ascend, so that in every row the columns left of the diagonal come before those right of it,
+  // and both ascend.
   const auto add = [&](int row, const Entry& entry) {
     const auto k = static_cast<std::size_t>(place_[row]);
     entries_[start_[k]++] = entry;

@@ -1,10 +1,10 @@
-// The blocks that come and go, beside a pattern that stands: which rows touch in this step and are not
-// neighbours in the pattern.
-//   A block (i, j), i < j, is stored once and stands for its transpose (j, i), as in the pattern. Both are
-//   listed, row by row with ascending columns, so that a product gathers each row by itself: the sums have one
-//   order, whatever the number of threads and however far apart i and j are.
-// The diagonal blocks are always those of the pattern. What is made from the pattern alone (a preconditioner)
-// therefore knows the diagonal parts of the overlay, and stays positive definite without the rest.
+// The blocks that come and go, beside a pattern that does not change: one for every two rows that touch in
+// this step and are not neighbours in the pattern.
+//   A block (i, j), i < j, is stored once and also stands for its transpose (j, i), as in the pattern. Both
+//   are listed, row by row with ascending columns, so that a product gathers each row by itself: the sums
+//   have one order, whatever the number of threads and however far apart i and j are.
+// The diagonal blocks are always those of the pattern. A preconditioner that is made from the pattern alone
+// therefore has the diagonal parts of the overlay, and stays positive definite without the rest.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@ class BlockOverlay {
   struct Entry {
     int column;
     int slot;         // of the block (min, max) in the matrix, after the slots of the pattern
-    bool transposed;  // the row is the larger of the two
+    bool transposed;  // the row is the larger of the two indices
   };
 
-  // The blocks that these pairs of particles need and the pattern lacks, in any order, repeats allowed. True
-  // when they are others than before; the serial is another one then. Memory is kept for the next time, and
-  // `pairs` is scratch: it ends as the pairs of rows.
+  // Takes the blocks that these pairs of particles need and the pattern lacks; pairs may come in any order
+  // and repeat. True when the blocks have changed, which gives the overlay a new serial. Memory is kept for
+  // the next call. `pairs` is scratch: it ends as the pairs of rows.
   bool assign(const BlockPattern& pattern, std::vector<ParticlePair>& pairs);
   void clear();
 
@@ -33,14 +33,14 @@ class BlockOverlay {
   std::uint64_t serial() const { return serial_; }  // differs between any two patterns and overlays
   int slot(int row, int column) const;              // row < column; -1: there is no such block
 
-  // The rows with blocks, ascending, and their entries, columns ascending.
+  // The rows that have blocks, ascending, and their entries with columns ascending.
   int row_count() const { return static_cast<int>(rows_.size()); }
   int row(int k) const { return rows_[k]; }
   template <class F>  // f(entry)
   void in_row(int k, const F& f) const {
     for (int e = start_[k]; e < start_[k + 1]; ++e) f(entries_[e]);
   }
-  // Of any row of the matrix: the entries right of the diagonal.
+  // Calls f(entry) for the entries right of the diagonal in any row of the matrix.
   template <class F>
   void right_of_diagonal(int row, const F& f) const {
     if (empty()) return;
@@ -58,10 +58,10 @@ class BlockOverlay {
   std::vector<ParticlePair> pairs_;  // rows i < j, ascending
   std::vector<int> rows_, start_;
   std::vector<Entry> entries_;
-  std::vector<int> place_;  // row of the matrix -> k, -1: it has no blocks here
+  std::vector<int> place_;  // row of the matrix -> k; -1: it has no blocks here
 };
 
-// A pattern and what comes and goes beside it: where every block stands.
+// A pattern and the overlay beside it: they say where every block stands.
 struct BlockLayout {
   BlockLayout(const BlockPattern& pattern, const BlockOverlay& beside) : base(pattern), overlay(beside) {}
   BlockLayout(const BlockPattern& pattern) : BlockLayout(pattern, no_overlay()) {}

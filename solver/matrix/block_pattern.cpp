@@ -7,7 +7,7 @@
 namespace drape {
 namespace {
 
-// Neighbours of every particle: sorted, each once, without itself.
+// The neighbours of every particle: sorted, each once, without the particle itself.
 struct Graph {
   std::vector<int> start, neighbour;
   int degree(int i) const { return start[i + 1] - start[i]; }
@@ -42,7 +42,8 @@ Graph make_graph(int particles, const std::vector<ParticlePair>& pairs) {
   return g;
 }
 
-// Breadth first from `root`; appends what it reaches to `order`, neighbours by rising degree, then number.
+// Searches breadth first from `root` and appends what it reaches to `order`, neighbours by rising degree,
+// then by number.
 void breadth_first(const Graph& g, int root, std::vector<char>& seen, std::vector<int>& order) {
   std::size_t head = order.size();
   order.push_back(root);
@@ -61,7 +62,8 @@ void breadth_first(const Graph& g, int root, std::vector<char>& seen, std::vecto
   }
 }
 
-// Reverse Cuthill-McKee: each piece from an end of it (the last vertex of two searches).
+// Reverse Cuthill-McKee order. Each connected piece starts from one of its ends: the last vertex of two
+// searches.
 std::vector<int> locality_order(const Graph& g) {
   const auto n = g.start.size() - 1;
   std::vector<int> order, trial;

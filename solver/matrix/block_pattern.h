@@ -1,10 +1,10 @@
-// Which blocks a matrix has: built once, from which particles act on each other.
+// Which blocks a matrix has. The pattern is built once, from which particles act on each other.
 //   Rows are renumbered by reverse Cuthill-McKee for locality [Cuthill & McKee 1969]; row_of() maps particle
-//   -> row. Of the symmetric matrix the upper triangle is stored, the diagonal block first in its row: a block
-//   (i, j) also stands for its transpose (j, i). Rows are cut into chunks at least as long as the bandwidth: an
-//   element, and a row of the product, touches the chunk of its lowest row and the next one only. All even
-//   chunks can be done at the same time, then all odd ones, without locks and in an order that no thread count
-//   changes.
+//   -> row. Of the symmetric matrix the upper triangle is stored, with the diagonal block first in its row: a
+//   block (i, j) also stands for its transpose (j, i). Rows are cut into chunks at least as long as the
+//   bandwidth: an element, and a row of the product, then touches only the chunk of its lowest row and the
+//   next one. All even chunks can be processed at the same time, then all odd ones, without locks and in an
+//   order that does not depend on the number of threads.
 #pragma once
 
 #include <cstdint>
@@ -24,13 +24,14 @@ class BlockPattern {
   BlockPattern(int particles, std::vector<ParticlePair> pairs);
 
   int rows() const { return static_cast<int>(row_start_.size()) - 1; }
-  int blocks() const { return static_cast<int>(column_.size()); }  // stored ones: of the upper triangle
+  int blocks() const { return static_cast<int>(column_.size()); }  // those of the upper triangle
   std::uint64_t serial() const { return serial_; }  // differs between any two patterns of a process
 
   const std::vector<int>& row_of() const { return row_of_; }            // particle -> row
   const std::vector<int>& particle_of() const { return particle_of_; }  // row -> particle
   const std::vector<int>& row_start() const { return row_start_; }      // rows + 1
-  const std::vector<int>& column() const { return column_; }  // ascending within a row, from the row itself
+  // The columns of the stored blocks, ascending within a row from the row itself on.
+  const std::vector<int>& column() const { return column_; }
   int diagonal(int row) const { return row_start_[row]; }
   bool has(int row, int column) const;  // row <= column
   int slot(int row, int column) const;  // row <= column; throws std::logic_error when there is no such block
@@ -47,10 +48,10 @@ class BlockPattern {
   std::uint64_t serial_ = 0;
 };
 
-// Numbers patterns and overlays: no two of a process have the same.
+// A number for a new pattern or overlay: no two in a process have the same.
 std::uint64_t next_pattern_serial();
 
-// Particle order <-> row order, three numbers a particle.
+// Convert between particle order and row order, with three numbers for each particle.
 void to_rows(const BlockPattern& pattern, const VecX& by_particle, VecX& by_row);
 void to_particles(const BlockPattern& pattern, const VecX& by_row, VecX& by_particle);
 

@@ -31,12 +31,12 @@ Pair stepped(const Tableau& t, const Mode& mode, double h, const Pair& start) {
   return end;
 }
 
-constexpr double round_off = 1e-13;  // of an amplification of 1
+constexpr double round_off = 1e-13;  // relative to an amplification of 1
 
 }  // namespace
 
 double amplification(const Tableau& tableau, const Mode& mode, double h) {
-  // In x and v / w, so that the numbers of both are alike.
+  // The matrix is written for x and v / w, so that its entries are of one size.
   const double w = std::max({std::sqrt(mode.omega2), mode.d, 1e-300});
   const Pair a = stepped(tableau, mode, h, {1, 0}), b = stepped(tableau, mode, h, {0, w});
   const double half_trace = 0.5 * (a.x + b.v / w), determinant = (a.x * b.v - b.x * a.v) / w;
@@ -58,7 +58,7 @@ double step_limit(const Tableau& tableau, const Mode& mode) {
     if (middle == stable || middle == grown) break;
     (grows(middle) ? grown : stable) = middle;
   }
-  constexpr double none = 1e-3;  // where the growth of shorter steps is round-off
+  constexpr double none = 1e-3;  // below this, the growth of a step is round-off
   return stable * fastest < none && mode.d < none * w ? 0 : stable;
 }
 

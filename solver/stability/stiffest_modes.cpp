@@ -1,5 +1,6 @@
 // The stiffest modes of a system: the largest eigenvalues of S M^-1/2 K M^-1/2 S by Lanczos' method with
-// implicit restarts, S without what is pinned or has no mass. The only file that includes Spectra.
+// implicit restarts; S leaves out the particles that are pinned or have no mass. Only this file includes
+// Spectra.
 #include <Spectra/SymEigsSolver.h>
 
 #include <cmath>
@@ -12,7 +13,7 @@
 namespace drape {
 namespace {
 
-// A block matrix between diagonal ones: y = W A W x, in row order.
+// A block matrix A between two diagonal matrices W: y = W A W x, in row order.
 class Scaled {
  public:
   using Scalar = double;
@@ -32,7 +33,7 @@ class Scaled {
   mutable VecX scratch_, product_;
 };
 
-// m^-1/2 of each row, 0 where it is held.
+// m^-1/2 [kg^-1/2] of each row, and 0 where its particle is held.
 VecX inverse_root_masses(const System& system, const Constraints& constraints, const BlockPattern& pattern) {
   VecX by_particle(3 * system.particles());
   for (int i = 0; i < system.particles(); ++i) {
@@ -51,7 +52,7 @@ double form(const BlockMatrix& A, const VecX& x) {
   return dot(x, product);
 }
 
-// The trace of W K W: 0 where nothing that is free resists.
+// The trace of W K W; it is 0 where no force resists the free particles.
 double stiffness_of_free(const BlockMatrix& K, const VecX& weights) {
   double trace = 0;
   for (int row = 0; row < K.pattern().rows(); ++row)
@@ -59,7 +60,7 @@ double stiffness_of_free(const BlockMatrix& K, const VecX& weights) {
   return trace;
 }
 
-// K from c = 1, and D = (what c = 2 gives) - 4 K, since A = c D + c^2 K.
+// K and D are found from the sums A = c D + c^2 K that the forces give with c = 1 and with c = 2.
 struct Matrices {
   BlockMatrix K, D;
   Matrices(System& system, const State& state) : K(system.bind()), D(system.bind()) {
@@ -115,7 +116,7 @@ Spectrum stiffest_modes(System& system, const Constraints& constraints, const St
     if (!(values[k] > 0)) continue;
     const VecX u = weights.cwiseProduct(vectors.col(k));
     const double d = form(at.D, u);
-    spectrum.modes.push_back({values[k], d > 1e-12 * values[k] ? d : 0});  // else round-off of K
+    spectrum.modes.push_back({values[k], d > 1e-12 * values[k] ? d : 0});  // a smaller d is round-off of K
   }
   return spectrum;
 }

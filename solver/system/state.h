@@ -1,5 +1,5 @@
-// The only thing a step changes: time [s], positions x [m] and velocities v [m/s], three numbers a particle,
-// in the mesh's order.
+// What a step changes: time [s], positions x [m] and velocities v [m/s], with three numbers for each
+// particle, in the order of the mesh.
 #pragma once
 
 #include <vector>

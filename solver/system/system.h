@@ -1,4 +1,4 @@
-// Masses and forces: all that pushes. Const during a step.
+// The masses, and the forces that push them. A System is constant during a step.
 //   f(x, v) = sum of the forces + m g;   E(x) = their energy;   particles of mass 0 stay where they are.
 #pragma once
 
@@ -17,7 +17,7 @@ inline Gravity gravity(const Vec3& g) { return {g}; }
 
 class System {
  public:
-  // kg, one per particle. Throws InputError when one is negative or not finite.
+  // masses: one per particle [kg]. Throws InputError when one is negative or not finite.
   explicit System(std::vector<double> masses);
 
   void add(std::unique_ptr<Force> force);
@@ -29,26 +29,26 @@ class System {
   const Vec3& gravity_acceleration() const { return gravity_; }
   const std::vector<std::unique_ptr<Force>>& forces() const { return forces_; }
 
-  // The pattern of all forces together; built, and the forces bound to it, on the first call after a change.
+  // Returns the pattern of all forces together. On the first call after a change it builds the pattern and
+  // binds the forces to it.
   const std::shared_ptr<const BlockPattern>& bind();
-  // Before a step: forces find the stencils that come and go, whose blocks make up the overlay.
+  // To be called before a step: forces find the stencils that come and go, whose blocks make up the overlay.
   void begin_step(const StepStart& start);
-  BlockMatrix matrix();  // of the pattern, and of the overlay as it will be in each step
+  BlockMatrix matrix();  // has the pattern, and the overlay as it is in each step
 
-  double elastic_energy(const VecX& x) const;     // J, a function of x alone
-  double contact_energy(const VecX& x) const;     // J, of the contacts of the step, where the cloth gives way
-  double stored_energy(const VecX& x) const;      // J, both
-  double kinetic_energy(const VecX& v) const;     // J
-  double gravity_energy(const VecX& x) const;     // J, zero at the origin
-  double total_energy(const State& state) const;  // J: kinetic, stored and of gravity
-  VecX force(const VecX& x, const VecX& v) const;  // N, gravity included
+  double elastic_energy(const VecX& x) const;      // a function of x alone [J]
+  double contact_energy(const VecX& x) const;      // of the step's contacts in which the cloth gives way [J]
+  double stored_energy(const VecX& x) const;       // elastic and contact energy [J]
+  double kinetic_energy(const VecX& v) const;      // J
+  double gravity_energy(const VecX& x) const;      // zero at the origin [J]
+  double total_energy(const State& state) const;   // kinetic and stored energy and that of gravity [J]
+  VecX force(const VecX& x, const VecX& v) const;  // gravity included [N]
 
-  // Which force first gives something that is not a finite number at (x, v); "gravity" and the like. Empty:
-  // none does.
+  // The name of the first force, or "gravity", that is not finite at (x, v); empty when all are finite.
   std::string_view not_finite_force(const VecX& x, const VecX& v) const;
 
  private:
-  void cover_changing();  // the overlay gets the blocks of the stencils that come and go
+  void cover_changing();  // gives the overlay the blocks of the stencils that come and go
 
   std::vector<double> masses_;
   std::vector<std::unique_ptr<Force>> forces_;
