@@ -21,7 +21,8 @@ const Vec3 up(0, 1, 0), still(0, 0, 0);
 
 }  // namespace
 
-TEST_CASE("LS as it is written, against numbers by hand", "[response]") {
+TEST_CASE("the response of Bridson, Marino & Fedkiw 2003 as it is written, against numbers by hand",
+          "[response]") {
   // phi = 1 cm, h = 10 ms, v = (3, -4, 0): phi_new = 0.01 - 0.04 = -0.03, v_N' = -4 + 3 = -1.
   const Vec3 v(3, -4, 0);
   CHECK((projected(v, still, up, 0.01, 0.0, 0.01) - Vec3(3, -1, 0)).norm() < 1e-14);
@@ -48,7 +49,7 @@ TEST_CASE("LS as it is written, against numbers by hand", "[response]") {
   CHECK((projected(v, still, {-0.6, 0.8, 0}, 0.01, 0.9, 0.01) - Vec3(0.6, -0.8, 0)).norm() < 1e-14);
 }
 
-TEST_CASE("SB's impact, against numbers by hand", "[response]") {
+TEST_CASE("the impact of the soft-cube report, against numbers by hand", "[response]") {
   CHECK((reflected({3, -4, 1}, still, up, 0.5) - Vec3(3, 2, 1)).norm() < 1e-14);
   CHECK((reflected({3, -4, 1}, still, up, 0) - Vec3(3, 0, 1)).norm() < 1e-14);
   CHECK((reflected({3, -4, 1}, still, up, 1) - Vec3(3, 4, 1)).norm() < 1e-14);
@@ -57,7 +58,7 @@ TEST_CASE("SB's impact, against numbers by hand", "[response]") {
   CHECK((reflected({3, -4, 1}, {1, 2, 0}, up, 0.5) - Vec3(3, 5, 1)).norm() < 1e-14);
 }
 
-TEST_CASE("SB's step, against numbers by hand", "[response]") {
+TEST_CASE("the step of the soft-cube report, against numbers by hand", "[response]") {
   const auto plane = [](double gap) { return ContactPlane{0, up, gap, still}; };
   // Meets the surface half way, from 2 cm with 4 m/s in 10 ms, without forces: v' = 2, x' = 0.5 h v'.
   StepVelocities s{{3, -4, 0}, {3, -4, 0}, {3, -4, 0}};

@@ -45,7 +45,8 @@ constexpr std::array<const char*, 4> explicit_methods = {"explicit-euler", "symp
 
 }  // namespace
 
-TEST_CASE("a particle in symplectic Euler takes exactly the velocities of LS", "[response]") {
+TEST_CASE("a particle in symplectic Euler takes exactly the velocities of Bridson, Marino & Fedkiw 2003",
+          "[response]") {
   // g = 10, h = 10 ms: v = (3, -3.9) becomes (3, -4) before the response.
   const double h = 0.01;
   for (const double mu : {0.0, 0.9}) {
@@ -214,7 +215,7 @@ TEST_CASE("what a body that reacts gets is what the particle lost", "[response]"
     }
 }
 
-TEST_CASE("what starts inside comes out at the recovery speed, and keeps none of it in SB's form",
+TEST_CASE("what starts inside comes out at the recovery speed, and keeps none of it in the soft-cube form",
           "[response]") {
   for (const ContactMode mode : {ContactMode::velocity, ContactMode::restitution}) {
     Particle p(floor_with(0.3), {0, -0.01, 0}, still, mode);

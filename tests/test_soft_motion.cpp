@@ -63,7 +63,8 @@ std::vector<Terrain> terrains() {
 
 }  // namespace
 
-TEST_CASE("a soft cube falls on SB's terrains by every integrator and makes no energy", "[soft]") {
+TEST_CASE("a soft cube falls on the terrains of the soft-cube report by every integrator and makes no energy",
+          "[soft]") {
   for (const Terrain& terrain : terrains())
     for (const Method& method : methods()) {
       for (const bool rebounds : {false, true}) {

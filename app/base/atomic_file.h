@@ -1,5 +1,5 @@
-// A file that appears only when it is complete: it is written under another name in the same
-// folder and then renamed.
+// A file that appears only when it is complete: it is written under another name in the same folder and then
+// renamed.
 #pragma once
 
 #include <cstdio>

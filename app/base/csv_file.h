@@ -1,5 +1,5 @@
-// Reads a CSV file as rows of cells, each row with its place. The only file that includes the CSV
-// library is csv_file.cpp.
+// Reads a CSV file as rows of cells, each row with its place. The only file that includes the CSV library is
+// csv_file.cpp.
 //   Cells are separated by commas and may stand in double quotes (RFC 4180), but a row ends with its line.
 //   Blanks around a cell, a byte order mark, empty lines and lines that begin with # are ignored.
 #pragma once

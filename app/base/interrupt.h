@@ -1,5 +1,5 @@
-// Ctrl-C and SIGTERM ask a run to end after the step that it is computing; the third such signal
-// ends the program at once.
+// Ctrl-C and SIGTERM ask a run to end after the step that it is computing; the third such signal ends the
+// program at once.
 #pragma once
 
 #include <exception>

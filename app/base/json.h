@@ -39,11 +39,11 @@ struct Json {
   double number(double otherwise) const;
 };
 
-// Indented by two blanks, with a line end. Bytes that are not UTF-8 are replaced.
+// The text of the JSON, indented by two blanks, with a line end. Bytes that are not UTF-8 are replaced.
 std::string json_text(const Json& json);
 std::string compact_json_text(const Json& json);  // in one line
 
-// Throws InputError "run.json:3: is not JSON: ...".
+// Reads JSON from a text. Throws InputError "run.json:3: is not JSON: ...".
 Json parse_json(std::string_view text, const std::string& name);
 
 }  // namespace drape::app

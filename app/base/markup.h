@@ -9,7 +9,7 @@
 namespace drape::app {
 
 std::string escaped(std::string_view text);  // replaces & < > "
-// In one line. No '<' is left: nothing in it can end the element it stands in.
+// The JSON in one line. It contains no '<', so nothing in it can end the element in which it stands.
 std::string json_for_html(const Json& json);
 
 }  // namespace drape::app

@@ -20,7 +20,7 @@ enum class Range { any, not_negative, positive };
 
 class Table {
  public:
-  // notes: receives what is said of the keys; null when nobody wants to know.
+  // `notes` receives what is said of the keys; it is null when nobody needs that.
   Table(const Node& node, std::string title, KeyNotes* notes = nullptr, std::string name = {})
       : node_(&node), title_(std::move(title)), notes_(notes), name_(std::move(name)) {}
 

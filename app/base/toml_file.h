@@ -1,5 +1,5 @@
-// A TOML file as plain data, every value with its place. The only file that includes the TOML
-// library is toml_file.cpp.
+// A TOML file as plain data, every value with its place. The only file that includes the TOML library is
+// toml_file.cpp.
 #pragma once
 
 #include <cstdint>
@@ -35,8 +35,8 @@ std::string written(const Node& node);  // as it stands in TOML, shortened when 
 Node read_toml(const std::filesystem::path& path);
 Node parse_toml(std::string_view text, const std::string& name);
 
-// The value that would stand on the right of an equals sign. What is not TOML is taken as a text: 5 ->
-// integer, 5 uN.m -> text.
+// Reads the value that would stand on the right of an equals sign. A text that is not TOML becomes a string:
+// 5 -> integer, 5 uN.m -> text.
 Node parse_toml_value(std::string_view text, const std::string& where);
 
 }  // namespace drape::app

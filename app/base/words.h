@@ -1,4 +1,4 @@
-// The words for messages, which the library has, too.
+// The words for messages; the library has them, too.
 #pragma once
 
 #include "mesh/base/words.h"

@@ -1,6 +1,6 @@
 // `drape keys`: every key that a scene, a fabric or a pattern file may have, with its meaning, as the readers
-// explain it. Each of the three functions reads a small file that has every kind of table, and collects
-// what the readers ask for.
+// explain it. For each of the three kinds of file, a small file with every kind of table is read, and what
+// the readers ask for is collected.
 #pragma once
 
 #include <string>
@@ -17,8 +17,8 @@ KeyNotes pattern_keys();
 std::string scene_of_every_kind();  // TOML; the files that it names need not exist
 
 struct KeysWords {
-  // A table such as "cloth"; or "scene", "fabric" or "pattern" for all tables of such a file;
-  // empty for everything.
+  // A table such as "cloth"; or "scene", "fabric" or "pattern" for all tables of such a file; empty for
+  // everything.
   std::string table;
   bool markdown = false;  // as tables for docs/
 };

@@ -1,5 +1,5 @@
-// `drape compare`: compares solvers on the systems of one run, integrators on one scene,
-// and sizes of one sheet.
+// `drape compare`: compares solvers on the systems of one run, integrators on one scene, and sizes of one
+// sheet.
 #pragma once
 
 #include "app/compare/options.h"

@@ -59,8 +59,8 @@ struct SolverRow {
   std::vector<double> history;  // relative residual after every iteration, from 0
 };
 
-// How a run differs from the others. reference: the others are compared with it. nothing: it is equal to the
-// last bit. not_known: it failed.
+// How a run differs from the others. reference: the others are compared with this run. nothing: it is equal
+// to the last bit. not_known: it failed.
 enum class DiffersBy { reference, nothing, linear_algebra, time_integration, not_known };
 std::string_view name(DiffersBy cause);
 
@@ -102,8 +102,8 @@ struct Comparison {
   Names systems;        // the folders of the systems that were saved, within the output folder
   std::string failure;  // of the run that gives the systems; empty when it reached its last step
 
-  // True when every solver agrees and nothing failed, neither the run that gives the
-  // systems nor an integrator's.
+  // True when every solver agrees and nothing failed, neither the run that gives the systems nor an
+  // integrator's.
   bool agree() const;
 };
 

@@ -1,4 +1,4 @@
-// compare.html: the tables and plots of a comparison in one file that needs nothing else, no network either.
+// compare.html: the tables and plots of a comparison in one file that needs no other file and no network.
 // Where the viewer is not in this build, a line says so in place of the plots.
 #pragma once
 

@@ -1,5 +1,5 @@
-// Makes options from the words of `drape compare`. Every mistake is an InputError that names the
-// option and what is allowed.
+// Makes options from the words of `drape compare`. Every mistake is an InputError that names the option and
+// what is allowed.
 #pragma once
 
 #include "app/compare/comparison.h"

@@ -1,8 +1,8 @@
 // A recorded linear system in particle order, number by number, as other programs take it.
 //   with the constraints beside it    S (A dv - b) = 0,  (I - S) dv = z
 //   with the constraints inside       (S A S + I - S) y = S (b - A z),  dv = S y + z
-// A [kg], b [N s], dv, y, z [m/s], S without a unit. Row 3 i + k is coordinate k of particle i. Every matrix is
-// symmetric and has both its triangles, so that its compressed columns are its compressed rows, too.
+// A [kg], b [N s], dv, y, z [m/s]; S has no unit. Row 3 i + k is coordinate k of particle i. Every matrix is
+// symmetric and stored with both its triangles, so that its compressed columns are also its compressed rows.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -26,7 +26,7 @@ struct PlainFilter {
 };
 PlainFilter plain_filter(const LinearSystem& system);
 
-// dv = S y + z of a solution y of the projected system, both in particle order.
+// The solution dv = S y + z that belongs to a solution y of the projected system, both in particle order.
 VecX solution_within_constraints(const LinearSystem& system, const VecX& y);
 
 }  // namespace drape::app

@@ -13,7 +13,7 @@ struct Series {
   // Points that cannot be shown (not finite, or <= 0 on a logarithmic axis) are left out.
   std::vector<double> x, y;
   bool line = true;
-  int every = 1;        // how many points there are to a marker; 0: none
+  int every = 1;        // one marker for so many points; 0: no markers
   bool dashed = false;  // in the colour of the text: a limit, not a measurement
   int look = -1;        // which colour and marker; -1: by its place among the series
 };
@@ -24,7 +24,7 @@ struct Plot {
   std::vector<Series> series;
 };
 
-// As the page holds it, with the points that can be shown; null when no point can.
+// The plot as the page holds it, with the points that can be shown; null when no point can be shown.
 Json json_of(const Plot& plot);
 
 }  // namespace drape::app

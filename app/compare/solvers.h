@@ -15,21 +15,21 @@
 
 namespace drape::app {
 
-// Solvers stop by recurrences, which drift from the true residual.
+// Solvers stop by residuals that they update by recurrences, which drift from the true residual.
 inline constexpr double residual_slack = 1.05;
 inline constexpr double finest_tolerance = 1e-12;  // round-off allows no smaller residual
 
 double true_residual(const LinearSystem& system, const VecX& dv);         // N s
 double constraint_violation(const LinearSystem& system, const VecX& dv);  // m/s
-// N s, of both equations: a missed constraint of a particle i counts as the impulse
+// The residual of both equations [N s]: a missed constraint of a particle i counts as the impulse
 // (I - S) A_ii ((I - S) dv - z) that would bring the particle there.
 double whole_residual(const LinearSystem& system, const VecX& dv);
-double reference_impulse(const LinearSystem& system);  // N s, a residual is relative to it
+double reference_impulse(const LinearSystem& system);  // N s; a residual is relative to this impulse
 
 class SolverBench {
  public:
   // Makes the solvers and keeps them, so that the gain from what they reuse between steps is measured.
-  // `where` stands in a verdict before the step.
+  // `where` stands before the step in a verdict.
   SolverBench(const std::vector<SolverChoice>& choices, double tolerance, int repeats,
               std::string where = "");
 

@@ -14,10 +14,11 @@ struct ReportTable {
 
 Names headline(const Comparison& comparison);  // says what was compared
 std::vector<ReportTable> tables_of(const Comparison& comparison);
-// "mpcg: agree", or everything by which the solver differs; after the solvers the runs.
+// One text for each solver, "mpcg: agree" or everything by which the solver differs; the runs follow after
+// them.
 Names verdicts(const Comparison& comparison);
 std::string verdict_of(const IntegratorRow& run, const Comparison& comparison);
-// Names the run and says its verdict.
+// A line that names the run and gives its verdict.
 std::string line_of(const IntegratorRow& run, const Comparison& comparison);
 
 std::string text_of(const Comparison& comparison);

@@ -1,5 +1,5 @@
-// Appends numbers to the bytes of a file, in the byte order of the file, whatever the byte
-// order of the machine.
+// Appends numbers to the bytes of a file, in the byte order of the file, whatever the byte order of the
+// machine.
 #pragma once
 
 #include <bit>

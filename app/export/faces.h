@@ -27,7 +27,8 @@ std::vector<Uv> uv_by_vertex(const Faces& faces, std::size_t vertices);
 // Vertices for formats with one uv and one normal for each vertex. A vertex whose faces have several is
 // doubled; the copies come after all the others.
 struct Corners {
-  // The vertex of the mesh that each of them is; the vertices of the mesh itself come first, in their order.
+  // For each of these vertices, the vertex of the mesh of which it is a copy. The mesh's own vertices come
+  // first, in their order.
   std::vector<int> origin;
   std::vector<Uv> uv;  // of each; empty when there are none
   std::vector<Triangle> triangles;

@@ -20,7 +20,7 @@ class ExportFiles {
   // Throws InputError "out/sheet.mdd: is there already; --force replaces it", or when two names are equal.
   // `run` is the folder that is read: what the run itself wrote there is never replaced.
   ExportFiles(std::filesystem::path folder, const Names& names, bool force, const std::filesystem::path& run);
-  // Without keep() it leaves the folder as it was.
+  // Leaves the folder as it was when keep() was not called.
   ~ExportFiles();
   ExportFiles(const ExportFiles&) = delete;
   ExportFiles& operator=(const ExportFiles&) = delete;
@@ -46,7 +46,7 @@ class ExportFiles {
   std::vector<AtomicFile> files_;
   std::vector<std::filesystem::path> stale_;
   std::vector<std::pair<std::filesystem::path, std::filesystem::path>>
-      aside_;  // replaced ones: where they are
+      aside_;  // replaced files: their paths, and where they are kept meanwhile
   bool kept_ = false;
 };
 

@@ -1,4 +1,4 @@
-// Exports all cloths and bodies as glTF 2.0 in one binary file; y up, metres, seconds.
+// Exports all cloths and bodies as glTF 2.0 in one binary file; y is up, in metres and seconds.
 //   [Khronos, glTF 2.0]
 //   A shape that deforms has the positions of the first frame, a morph target (shape key) for each further
 //   frame, and an animation of their weights. The animation is linear: between two frames every vertex goes

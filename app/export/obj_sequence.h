@@ -1,5 +1,5 @@
-// Exports Wavefront OBJ, one file for each frame, with the polygons, uv, groups and materials of the
-// input, as in OUT/NAME.obj.
+// Exports Wavefront OBJ, one file for each frame, with the polygons, uv, groups and materials of the input,
+// as in OUT/NAME.obj.
 #pragma once
 
 #include "app/export/files.h"

@@ -10,7 +10,7 @@
 
 namespace drape::app {
 
-// uv: one for each vertex, or empty. time in s.
+// The bytes of a file. `uv` has one entry for each vertex, or is empty; `time` is in s.
 std::string ply_bytes(const std::vector<Vec3>& positions, const std::vector<Uv>& uv, const Faces& faces,
                       double time);
 

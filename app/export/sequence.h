@@ -1,5 +1,5 @@
-// Writes one file for each frame of a shape that moves, NAME_0001 and so on, and one file NAME for
-// a shape that does not.
+// Writes one file for each frame of a shape that moves, NAME_0001 and so on, and one file NAME for a shape
+// that does not.
 #pragma once
 
 #include "app/export/files.h"

@@ -18,22 +18,22 @@ struct ExportSource {
   std::size_t shape_count() const { return recording.shapes().size(); }
   const RecordedShape& shape(std::size_t s) const { return recording.shapes()[s]; }
   double time(std::size_t k) const { return recording.time(frames[k]); }  // s
-  // Positions of shape s in frame k of this list, m. Throws Interrupted: every format
-  // calls this for each frame.
+  // Positions [m] of shape s in frame k of this list. Throws Interrupted, because every format calls this for
+  // each frame.
   std::vector<Vec3> positions(std::size_t s, std::size_t k) const;
-  // Cloths and soft bodies always count as moving, because a sequence for some of them
-  // only would be of no use.
+  // Cloths and soft bodies always count as moving, because a sequence for some of them only would be of no
+  // use.
   bool moves(std::size_t s) const { return !shape(s).body || shape(s).moves; }
 };
 
-// Takes every so many frames, beginning with the first. When a run has more frames than steps, several
-// frames show the end of one step and have the same time; only the first of them is taken, since most
-// formats demand times that rise. Times that are equal in float32 count as the same. Throws InputError
-// when there is no frame.
+// Takes every so many frames, beginning with the first. When a run has more frames than steps, several frames
+// show the end of one step and have the same time; only the first of them is taken, since most formats demand
+// times that rise. Times that are equal in float32 count as the same. Throws InputError when there is no
+// frame.
 ExportSource export_source(const Recording& recording, int every);
 
-// Frames per second, from the median of the spacings, since the last frame may come early;
-// 24 for a single frame.
+// Frames per second, from the median of the spacings, since the last frame may come early; 24 for a single
+// frame.
 double usual_frame_rate(const ExportSource& source);
 
 }  // namespace drape::app

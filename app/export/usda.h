@@ -1,8 +1,8 @@
 // Exports Universal Scene Description as text: a Mesh for each shape, with polygons, uv of the corners, and
 // samples in time of points, extent, normals and velocities.
 //   Metres, y up. One time code is one frame of the usual spacing: time = code / timeCodesPerSecond.
-//   The name of a prim is the shape's as far as a prim can have it (letters, digits, _); displayName is the
-//   shape's own.
+//   The name of a prim is the shape's name as far as a prim can have it (letters, digits, _); displayName is
+//   the shape's name itself.
 #pragma once
 
 #include "app/export/files.h"

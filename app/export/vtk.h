@@ -1,5 +1,5 @@
-// Exports VTK's XML polygons for ParaView: a .vtp file for each frame, and a .pvd file
-// that gives each its time.
+// Exports VTK's XML polygons for ParaView: a .vtp file for each frame, and a .pvd file that gives each its
+// time.
 //   Numbers are float32 and int32, little endian, raw after the XML ("appended"). No XML library can write
 //   that, since it is not XML; names are escaped here.
 //   Point data of cloths: velocity [m/s], strain (0.01 = 1 %), contact (0 free, 1 slides, 2 sticks).
@@ -20,7 +20,7 @@ struct VtpData {
 };
 std::string vtp_bytes(const VtpData& data, const Faces& faces, double time);
 
-// NAME_0001.vtp and so on, NAME.vtp for a shape that does not move, and one .pvd.
+// The names NAME_0001.vtp and so on, NAME.vtp for a shape that does not move, and one .pvd.
 Names vtk_files(const ExportSource& source);
 void write_vtk(const ExportSource& source, ExportFiles& files, Names& notes);
 

@@ -1,4 +1,4 @@
-// The small languages inside an SVG drawing: path data and transforms. The only file that includes
+// Reads the small languages inside an SVG drawing: path data and transforms. The only file that includes
 // svgpp is svg_values.cpp.
 #pragma once
 

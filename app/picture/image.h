@@ -24,8 +24,8 @@ struct Image {
   bool has(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
 };
 
-// The bytes of a PNG file with 8 bits for each channel, marked as sRGB; with a palette where
-// 256 colours are enough.
+// The bytes of a PNG file with 8 bits for each channel, marked as sRGB; with a palette where 256 colours are
+// enough.
 std::string png(const Image& image);
 
 }  // namespace drape::app::drawing

@@ -1,5 +1,5 @@
-// Smooth normals that keep edges. The normal at a corner is the mean, weighted by their angles there,
-// of those faces round the vertex whose normals differ from the corner's own face by less than an angle.
+// Smooth normals that keep edges. The normal at a corner is the mean, weighted by their angles there, of
+// those faces round the vertex whose normals differ from that of the corner's own face by less than an angle.
 // Vertices at the same place count as one, so that a seam of the texture does not show.
 #pragma once
 

@@ -1,6 +1,6 @@
 // Draws a still by casting rays. There is one light with soft shadows, and light from all other directions
-// where nothing is in its way (ambient occlusion). There is no noise, and the bits are the same on
-// any number of threads.
+// where nothing is in its way (ambient occlusion). There is no noise, and the bits are the same on any number
+// of threads.
 //   light = colour (key max(0, n . l) (1 - shadow) + sky (1 - occlusion) + fill max(0, n . e))
 // Each pixel has four samples. Each sample casts one ray for shadow and one for occlusion, and 8 x 8
 // neighbours together cast 64 different ones; the results are averaged over those neighbours that lie on the

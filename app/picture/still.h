@@ -17,7 +17,7 @@ struct StillPart {
   int cloth = 0;                                     // its number, from 0, which decides its colour
   std::vector<Vec3> positions;                       // m
   const std::vector<Triangle>* triangles = nullptr;  // owned by the Subject
-  // Of a ball: its vertices relative to its middle in the first frame, m.
+  // For a ball, the positions [m] of its vertices relative to its middle in the first frame; else null.
   const std::vector<Vec3>* sectors = nullptr;
   std::vector<double> values;  // colours come from these values at the vertices; empty: the part's own colour
 };
@@ -36,12 +36,12 @@ class Subject {
   const std::string& path() const { return path_; }
   std::string title() const;  // the last component of the path
   bool is_run() const { return recording_ != nullptr; }
-  Names missing() const;  // what a folder lacks, a line each
+  Names missing() const;  // what a folder lacks, one line each
   int frames() const { return recording_ ? recording_->frames() : 1; }
   double time(int frame) const { return recording_ ? recording_->time(frame) : 0; }  // s
 
-  // Throws InputError when the run has no such field, and Interrupted: every picture
-  // calls this for each frame.
+  // Throws InputError when the run has no such field, and Interrupted, because every picture calls this for
+  // each frame.
   Still still(int frame, std::optional<Field> field) const;
 
  private:

@@ -23,7 +23,7 @@ class Surface {
  public:
   Surface(const Still& still, const Look& look);
 
-  // slope: Camera::slope.
+  // Finds what the ray hits first. `slope` is Camera::slope.
   Seen seen(const Vec3& eye, const Vec3& direction, double slope) const;
   bool blocked(const Vec3& from, const Vec3& direction, double distance) const {
     return tree_ && tree_->blocked(from, direction, distance);

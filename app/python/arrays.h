@@ -18,8 +18,8 @@ namespace drape::app::python {
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using IntArray = py::array_t<int, py::array::c_style | py::array::forcecast>;
 
-// shape: -1 stands for any length. name stands in messages: "x: expected an array of shape
-// (n, 3), but got (4, 2)".
+// Takes an array of numbers. In `shape`, -1 stands for any length. `name` stands in messages: "x: expected an
+// array of shape (n, 3), but got (4, 2)".
 Array numbers(const py::handle& from, const char* name, std::initializer_list<py::ssize_t> shape);
 IntArray integers(const py::handle& from, const char* name, std::initializer_list<py::ssize_t> shape);
 

@@ -1,7 +1,7 @@
-// During a step the interpreter goes on, and so may other Python threads. InUse marks what the step reads or
-// changes; another thread that wants to change it meanwhile gets a RuntimeError instead of a crash. (Reading
-// arrays is allowed; what they show during a step is undefined. What would be copied, or may move in memory,
-// cannot be read meanwhile.)
+// During a step the interpreter goes on, and so may other Python threads. InUse marks the objects that the
+// step reads or changes; another thread that wants to change one of them meanwhile gets a RuntimeError
+// instead of a crash. (Reading arrays is allowed; what they show during a step is undefined. Data that would
+// be copied, or that may move in memory, cannot be read during a step.)
 //   All functions must be called with the interpreter's lock held, which guards the marks.
 #pragma once
 

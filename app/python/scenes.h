@@ -6,8 +6,8 @@
 
 namespace drape::app::python {
 
-// where: "scene", then "scene['cloth'][0]['bend']" and so on, for messages. Raises ValueError for
-// what TOML cannot express.
+// `where` stands in messages: "scene", then "scene['cloth'][0]['bend']" and so on. Raises ValueError for what
+// TOML cannot express.
 Node node_of(const py::handle& value, const std::string& where);
 
 }  // namespace drape::app::python

@@ -1,5 +1,5 @@
-// Writes the bodies of a run into its output folder, so that a result can be shown together
-// with what it lies on.
+// Writes the bodies of a run into its output folder, so that a result can be shown together with what it lies
+// on.
 //   bodies/NAME.obj        the last shape and place of each body, except planes and level sets
 //   bodies/NAME.pc2        every frame of an animated body, when frames are PC2
 //   bodies.csv             frame, time [s], body, x y z [m] and the unit quaternion qw qx qy qz; one row for

@@ -2,8 +2,8 @@
 //   fields/NAME.velocity.npy   float32 (frames, n, 3)   m/s
 //   fields/NAME.strain.npy     float32 (frames, n)      l / L - 1 of the most stretched edge at the vertex
 //   fields/NAME.contact.npy    uint8   (frames, n)      0 free, 1 slides, 2 sticks
-// A vertex that lies between several particles has the strain and the contact of the particle
-// with the largest weight.
+// A vertex that lies between several particles has the strain and the contact of the particle with the
+// largest weight.
 #pragma once
 
 #include "app/base/npy.h"

@@ -20,17 +20,17 @@ struct ClothCounts {
 
 struct SoftCounts {
   std::string name;
-  int particles = 0, vertices = 0, triangles = 0;  // the latter two of the mesh that it carries
+  int particles = 0, vertices = 0, triangles = 0;  // the latter two of the mesh that the particles carry
   LatticeCounts springs = {};
   Json material = {}, pins = {};  // app/recording/scene_record.h
 };
 
 struct BodyRecord {
   std::string name, file, shape;  // file: below the output folder, empty for a plane
-  bool moves = false;             // is moved, as a motion says
-  bool deforms = false;           // goes from frame to frame
-  Pose place;                     // at the end
-  std::optional<Plane> plane;     // as it was drawn
+  bool moves = false;             // whether a motion moves it
+  bool deforms = false;           // whether it goes from frame to frame
+  Pose place;                     // at the end of the run
+  std::optional<Plane> plane;     // as it was drawn in the scene
   Json::Members contact = {};     // friction, margin, restitution
 
   struct Reacting {
@@ -69,7 +69,7 @@ struct RunRecord {
   bool settled = false, interrupted = false;
   std::string state_hash;
   std::string frames;               // how they were written: pc2, obj, none
-  std::vector<double> frame_times;  // s, of the states that the frames are of
+  std::vector<double> frame_times;  // s, the times of the states in the frames
   std::optional<Failure> failure;
 
   std::string state() const { return failure ? "failed" : settled ? "settled" : "moving"; }

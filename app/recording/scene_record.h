@@ -1,5 +1,5 @@
-// What was run: fabrics, pins, seams, friction and margins as they stand after all defaults and settings, in SI
-// units; for run.json and compare.json, and in words for the pages made from them.
+// What was run: fabrics, pins, seams, friction and margins after all defaults and settings, in SI units. It
+// goes into run.json and compare.json, and in words onto the pages made from them.
 #pragma once
 
 #include <string>
@@ -18,14 +18,15 @@ Json settings_json(const std::vector<Setting>& settings);
 Json::Members contact_json(const Obstacle& obstacle);           // friction, margin, restitution
 Json::Members numerics_json(const SimulationOptions& options);  // what the steps are made with
 
-// The cloths, soft bodies and bodies of a scene with all of these, as run.json has them; with pins and seams
-// where the simulation is that of the scene (null: it is not).
+// The cloths, soft bodies and bodies of a scene with all of these, as run.json has them. Pins and seams are
+// included where `simulation` is that of the scene; it is null when there is none.
 Json::Members scene_json(const Scene& scene, const Simulation* simulation);
 
 struct SceneFact {
   std::string name, value;  // "Fabric of sheet", "cotton-poplin, noh-jung, 0.11 kg/m^2, ..."
 };
-// Of run.json or compare.json. Nothing where it does not say, as that of an earlier version.
+// Reads these facts from run.json or compare.json. The list is empty when the file has none, such as a file
+// of an earlier version.
 std::vector<SceneFact> scene_facts(const Json& run);
 
 }  // namespace drape::app

@@ -1,5 +1,5 @@
-// Writes steps.csv, one row for each step. docs/output.md explains the columns. SI units;
-// measured durations in ms.
+// Writes steps.csv, one row for each step. docs/output.md explains the columns. SI units; measured durations
+// in ms.
 #pragma once
 
 #include <filesystem>

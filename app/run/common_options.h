@@ -1,4 +1,4 @@
-// What every command that runs a scene takes.
+// Options of every command that runs a scene.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// How far a run is, on stderr: a bar with the time left when it is a terminal, a line every tenth when it is
-// not.
+// Shows on stderr how far a run is: as a bar with the time left when stderr is a terminal, and else as a line
+// after every tenth of the run.
 #pragma once
 
 #include <chrono>
@@ -11,11 +11,11 @@ namespace drape::app {
 
 class Progress {
  public:
-  Progress(double duration, bool quiet);  // s
+  Progress(double duration, bool quiet);  // duration of the run [s]
   ~Progress();
 
   void show(const StepRow& row);
-  void say(const std::string& line);  // a message between
+  void say(const std::string& line);  // prints a message between
   void clear();                       // takes the bar off the screen
 
  private:

@@ -1,5 +1,5 @@
-// A run of a simulation from its start to its end: steps, frames, messages, output files. The command line and
-// Python both run through it.
+// A run of a simulation from its start to its end: steps, frames, messages, output files. The command line
+// and Python both run through it.
 #pragma once
 
 #include <chrono>
@@ -16,13 +16,13 @@ struct RunOptions {
   std::filesystem::path out;  // empty: no files
   Frames frames = Frames::pc2;
   bool quiet = false;
-  std::optional<double> duration = {};  // s, from where the simulation is; unset: to the end of the scene
-  // s; unset: the scene's, shortened where a frame comes sooner. Given: steps of just this length, which pass
-  // over the times of frames; the last state is the only frame.
+  std::optional<double> duration = {};  // s, from the present time; unset: to the end of the scene
+  // Time step [s]. Unset: the step of the scene, shortened where a frame comes sooner. Given: all steps have
+  // exactly this length and pass over the times of frames; the last state is then the only frame.
   std::optional<double> time_step = {};
 };
 
-// Starts where the simulation is. Keeps a reference to it.
+// A run begins at the present state of the simulation. It keeps a reference to the simulation.
 class Run {
  public:
   Run(Simulation& simulation, const RunOptions& options);  // throws InputError
@@ -30,14 +30,15 @@ class Run {
   Run& operator=(const Run&) = delete;
 
   bool over() const { return loop_.over() || settled_; }
-  // The next step, and the frames that are due with it; not when it is over. When it fails, the state and its
-  // numbers are those from before.
+  // Takes the next step and writes the frames that are due with it; must not be called when over(). When the
+  // step fails, the state and its numbers are those from before the step.
   const StepRow& step();
-  // Why it is over before its end: "step 7 (from 0.06 s) failed: ..."; empty: it did not fail.
+  // Why the run ended early: "step 7 (from 0.06 s) failed: ..."; empty when it did not fail.
   const std::string& failure() const { return failure_; }
-  // The last frame and the files, which appear now. Interrupted, when it is not over. Once.
+  // Writes the last frame and gives all files their names. A run that is not over() is recorded as
+  // interrupted. Call it only once.
   const RunRecord& finish();
-  std::string summary() const;  // after that
+  std::string summary() const;  // only after finish()
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -63,16 +64,16 @@ class Run {
   RunRecord record_;
   StepRow row_;
   Clock::time_point start_ = Clock::now();
-  bool framed_ = false;  // there is a frame of the state as it is now
+  bool framed_ = false;  // there is a frame of the present state
   bool settled_ = false;
   double last_motion_;         // s
-  double settled_since_ = -1;  // s, -1: it moves
+  double settled_since_ = -1;  // s; -1: something moves
   bool told_cut_ = false, told_not_converged_ = false;
   std::string failure_;
 };
 
-// To its end, with its messages. Exit code: 0 done, 1 the computation failed, 130 interrupted. Throws
-// InputError.
+// Runs the scene to its end and prints its messages. Exit code: 0 done, 1 the computation failed, 130
+// interrupted. Throws InputError.
 int run(const Scene& scene, const RunOptions& options);
 
 }  // namespace drape::app

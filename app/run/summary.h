@@ -1,4 +1,4 @@
-// What a run tells at its end: how it went, what was written, and what to look at.
+// The text that a run prints at its end: how it went, what was written, and what to look at.
 #pragma once
 
 #include <string>

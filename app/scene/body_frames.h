@@ -9,8 +9,8 @@
 
 namespace drape::app {
 
-// Reads the keys frames, frame_rate and frames_start of an obstacle. Without the key
-// `frames` there are no files.
+// Reads the keys frames, frame_rate and frames_start of an obstacle. Without the key `frames` there are no
+// files.
 FramesEntry read_frames(Table& table, const std::filesystem::path& folder);
 
 // The frame files. For a pattern they are the matching files in its folder, in the order of their numbers.
@@ -18,8 +18,8 @@ FramesEntry read_frames(Table& table, const std::filesystem::path& folder);
 // message names that file).
 std::vector<std::filesystem::path> frame_files(const FramesEntry& entry);
 
-// Loads all frames. Throws InputError when one cannot be read or has another number of
-// vertices than the rest mesh.
+// Loads all frames. Throws InputError when one cannot be read or has another number of vertices than the rest
+// mesh.
 std::shared_ptr<const MeshFrames> load_frames(const ObstacleEntry& entry, const TriangleMesh& rest);
 
 }  // namespace drape::app

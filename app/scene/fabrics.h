@@ -22,7 +22,7 @@ void set_data_folder(const std::filesystem::path& folder);
 Names fabric_names();                                                         // sorted
 NamedFabric load_fabric(const std::string& name, KeyNotes* notes = nullptr);  // throws InputError
 
-// Reads those fabric keys that the table has into `fabric`; the other values stay.
+// Reads into `fabric` those fabric keys that the table has; the other values stay.
 void read_fabric(Table& table, Fabric& fabric);
 
 }  // namespace drape::app

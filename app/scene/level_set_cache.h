@@ -1,4 +1,4 @@
-// Keeps the level sets of OBJ files beside these files, as BODY.<hash>.vdb. The hash is of the bytes of
+// Keeps the level sets of OBJ files beside these files, as BODY.<hash>.vdb. The hash is taken of the bytes of
 // the OBJ file, the scale, the voxel, the band and the version of the format; when one of these changes,
 // another level set is made.
 #pragma once

@@ -11,16 +11,16 @@ namespace drape::app {
 
 ObstacleEntry read_obstacle(Table& table, const std::filesystem::path& folder);
 
-Vec3 middle(const ObstacleEntry& entry);  // m, what it turns about where the scene does not say
+Vec3 middle(const ObstacleEntry& entry);  // m, the centre of rotation where the scene gives none
 
-using Turns = std::vector<Eigen::AngleAxisd>;  // the first is made first
+using Turns = std::vector<Eigen::AngleAxisd>;  // the first of them is applied first
 
 Vec3 read_axis(Table& table);    // `axis`, required; of length 1
 Turns read_turns(Table& table);  // `rotate`
 Mat3 product(const Turns& turns);
 Mat3 read_rotation(Table& table);        // `rotate`
 Placement read_place(Table& table);      // `rotate` and `translate`
-Placement read_placement(Table& table);  // and `scale`
+Placement read_placement(Table& table);  // `rotate`, `translate` and `scale`
 // `mesh`, required: a file named relative to the folder of the scene.
 std::filesystem::path read_path(Table& table, const std::filesystem::path& folder, const About& about);
 

@@ -40,8 +40,8 @@ struct PinEntry {
   MotionSource source;
 };
 
-// Where a panel of a pattern starts. The middle of its box is moved to the origin; the panel, flat in the
-// plane z = 0, is wrapped round the y axis if asked; then it is placed.
+// Where a panel of a pattern starts. The middle of its box is moved to the origin. The panel, flat in the
+// plane z = 0, is wrapped round the y axis if that is asked for. At last it is placed.
 struct PanelEntry {
   std::string group;           // name of the panel's group in the OBJ file
   std::optional<double> wrap;  // m, radius of the cylinder; none: flat
@@ -49,12 +49,12 @@ struct PanelEntry {
   std::string where;
 };
 
-// Two curves that are sewn together: the vertices of each pair are pulled to each other
-// from where they start.
+// Two curves that are sewn together: the vertices of each pair are pulled to each other from where they
+// start.
 struct SeamEntry {
   Names curves;  // two lines of the OBJ file; empty: every seam that the file declares
-  // True when the first vertices of both curves belong together; else the first of one and
-  // the last of the other.
+  // True when the first vertices of both curves belong together; else the first of one belongs to the last of
+  // the other.
   bool same_direction = false;
   double close = 1;                 // s, how long closing takes
   std::optional<double> stiffness;  // N/m, of each stitch; none: the k_s of the cloth
@@ -93,7 +93,8 @@ struct SoftEntry {
 // A rigid body that moves under the forces on it.
 struct RigidBodyEntry {
   double mass = 0;  // kg
-  // kg m^2, about the axes through the centre of mass. Unset: those of a solid of the shape.
+  // Moments of inertia [kg m^2] about the axes through the centre of mass. Unset: those of a solid of the
+  // shape.
   std::optional<Vec3> inertia;
   Vec3 centre = Vec3::Zero();    // m, the middle of the shape at the start; of mass where it is no solid
   Mat3 axes = Mat3::Identity();  // axes of the shape at the start, as columns

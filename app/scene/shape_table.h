@@ -1,7 +1,7 @@
 // What users call each built-in shape and its members, in one table: the keys of a scene, `drape keys`,
 // `drape list shapes`, `drape drop --onto` and the Python classes are made of it. A built-in shape of
-// constraints/shape.h that has no entry here does not compile. Meshes and level sets are read from files and have no
-// entry.
+// constraints/shape.h that has no entry here does not compile. Meshes and level sets are read from files and
+// have no entry.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace drape::app {
 // direction  a vector of any length but zero
 // size       a length or three [m], greater than zero
 // rounding   a length [m], not negative
-// turn       a rotation; `rotate` in a scene
+// turn       a rotation, which is `rotate` in a scene
 enum class Measure { place, direction, size, rounding, turn };
 
 template <class Kind, class Value>
@@ -27,7 +27,7 @@ struct Field {
   Value Kind::*member;
   Measure measure;
   const char* about;
-  bool required = false;  // in a scene; where it is not, the member's default holds
+  bool required = false;  // in a scene; an optional member keeps its default
 
   const char* key() const { return measure == Measure::turn ? "rotate" : name; }  // in a scene
 };
@@ -48,7 +48,8 @@ struct Onto {
   std::size_t least, most;
 };
 
-// python: the class.  what: the shape, in words.  of_sizes: the shape of --onto, about the origin.
+// The description of a shape. `python` names its class, `what` describes it in words, and of_sizes() makes
+// the shape of --onto, about the origin.
 template <class Kind>
 struct Described;
 
@@ -116,7 +117,8 @@ struct Described<Capsule> {
   }
 };
 
-// --onto without the other sizes: as high as the plate of a drape test, its rim rounded by 5 mm as far as it has room.
+// With only its first size, the plate of --onto is as high as that of a drape test, and its rim is rounded by
+// 5 mm as far as there is room.
 template <>
 struct Described<Plate> {
   static constexpr const char* python = "Plate";
@@ -140,7 +142,7 @@ template <class Kind>
 inline constexpr bool from_file = std::is_same_v<Kind, MeshBody> || std::is_same_v<Kind, DeformingBody> ||
                                   std::is_same_v<Kind, LevelSetBody>;
 
-// f(Sphere()), f(Bowl()), ...: once for each built-in shape, with its defaults.
+// Calls f(Sphere()), f(Bowl()) and so on, once for each built-in shape with its defaults.
 template <class F, class... Kinds>
 void for_each_built_in(const F& f, std::type_identity<std::variant<Kinds...>>) {
   const auto unless_from_file = [&]<class Kind>() {
@@ -153,7 +155,7 @@ void for_each_built_in(const F& f) {
   for_each_built_in(f, std::type_identity<Shape>());
 }
 
-// f(field) for each member of the shape.
+// Calls f(field) for each member of the shape.
 template <class Kind, class F>
 void for_each_field(const F& f) {
   std::apply([&](const auto&... field) { (f(field), ...); }, Described<Kind>::fields);

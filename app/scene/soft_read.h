@@ -6,7 +6,7 @@
 
 namespace drape::app {
 
-// Reads all keys but the name and the pins, which are read as a cloth's.
+// Reads all keys but the name and the pins, which are read as those of a cloth.
 SoftEntry read_soft(Table& table, const std::filesystem::path& folder);
 
 }  // namespace drape::app

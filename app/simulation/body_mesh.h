@@ -5,8 +5,8 @@
 
 namespace drape::app {
 
-// The mesh of the shape of the body (constraints/shape.h) at the end of the last completed step, whose time is
-// `time` [s].
+// The mesh of the shape of the body (constraints/shape.h) at the end of the last completed step, whose time
+// is `time` [s].
 TriangleMesh present_mesh(const MovingBody& body, double time);
 
 }  // namespace drape::app

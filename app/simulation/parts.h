@@ -1,12 +1,12 @@
-// The cloths and soft bodies of a scene, read from their files and handed to the simulation.
+// Reads the cloths and soft bodies of a scene from their files and adds them to the simulation.
 #pragma once
 
 #include "app/simulation/simulation.h"
 
 namespace drape::app {
 
-// Cloths first, then soft bodies. Throws InputError: a mesh that cannot be read or simulated, a lattice beyond the
-// memory that is free.
+// Adds the cloths first, then the soft bodies. Throws InputError when a mesh cannot be read or simulated, or
+// when a lattice needs more memory than is free.
 void load_parts(const Scene& scene, Simulation& simulation);
 
 SoftPart load_soft(const SoftEntry& entry, Names& messages);

@@ -1,9 +1,9 @@
-// When a run steps: a whole number of equal steps from one frame to the next, so that frame k is the state at
-// k / r. Without frames (r = 0) the steps are those that were asked for.
+// The times of the steps of a run: a whole number of equal steps from one frame to the next, so that frame k
+// is the state at the time k / r. Without frames (r = 0) the steps are those that were asked for.
 //   n      = ceil(1 / (r h))     steps to a frame; h [s]: the step asked for, r [1/s]: the frame rate
 //   h_used = 1 / (r n) <= h      it is h itself, bit by bit, where n h is 1 / r to round-off
-//   t_i    = (i div n) / r + (i mod n) h_used,    i h where h_used is h: no sum that drifts by round-off
-// A step is taken to be a whole part of a stretch of time when it is one to 1e-6 of itself.
+//   t_i    = (i div n) / r + (i mod n) h_used,  or i h where h_used is h: no sum that drifts by round-off
+// A stretch of time counts as a whole number of steps when it is one to 1e-6 of a step.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ class StepGrid {
   double frame_rate() const { return rate_; }    // 1/s
   bool as_asked() const;                         // whether the step used is the one asked for
   double time(long i) const;                     // s, t_i
-  std::optional<long> index(double time) const;  // i of a time that is t_i to 1e-6 of a step
+  std::optional<long> index(double time) const;  // the i whose t_i is this time to 1e-6 of a step
   double rounded(double time) const;             // s, t_i where the time is one, else the time itself
 
  private:
@@ -30,19 +30,19 @@ class StepGrid {
   bool multiples_ = true;  // t_i is i h
 };
 
-// The steps from a start to an end. The stretch before a frame that the start is not a frame of, and the one
-// after the last frame, are shorter: they too have equal steps, none longer than the one asked for. Without
-// frames only the last step is shorter.
+// The steps from a start to an end. The stretch from a start that is no frame to the first frame, and the
+// stretch after the last frame, are shorter than the others. They too have equal steps, none longer than the
+// one asked for. Without frames only the last step is shorter.
 class Schedule {
  public:
   Schedule(const StepGrid& grid, double start, double end);  // s
 
   bool over() const { return done_ == steps_; }
-  double time() const { return time_; }    // s, now; the start is moved to t_i where it is one
+  double time() const { return time_; }    // s, the present; a start that is a t_i to rounding is moved to it
   long number() const { return number_; }  // of steps until now, from t_0 where the start is on the grid
   double next_step() const;                // s, the length of the next step
-  void advance();                          // that step is done
-  std::optional<long> frame() const;       // the number of the frame that belongs to now
+  void advance();                          // to be called when that step is done
+  std::optional<long> frame() const;       // the number of the frame that belongs to the present time
   const StepGrid& grid() const { return grid_; }
 
  private:
@@ -55,7 +55,7 @@ class Schedule {
   std::optional<long> index_;  // of the grid, where the stretch began on it
   long number_ = 0;
 
-  // The stretch under way: up to the next frame, or to the end.
+  // The present stretch: up to the next frame, or to the end.
   double from_ = 0, target_ = 0, step_ = 0, last_step_ = 0;  // s
   bool along_grid_ = false;
   std::optional<long> target_index_;

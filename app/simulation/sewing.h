@@ -1,4 +1,5 @@
-// The panels and seams that a scene gives a cloth, found in its mesh; what is said of them.
+// Finds the panels and seams that a scene gives a cloth in the mesh of the cloth, and makes messages about
+// them.
 #pragma once
 
 #include "app/scene/scene.h"
@@ -6,13 +7,15 @@
 
 namespace drape::app {
 
-// Throws InputError when a panel is no group of the mesh or shares a vertex with another one.
+// Places the panels. Throws InputError when a panel is no group of the mesh or shares a vertex with another
+// one.
 void place_panels(const ClothEntry& entry, TriangleMesh& mesh, Names& messages);
 
-// Throws InputError when a curve is missing or two have different numbers of vertices.
+// Plans the seams. Throws InputError when a curve is missing or the two curves have different numbers of
+// vertices.
 std::vector<SeamPlan> seam_plans(const ClothEntry& entry, const TriangleMesh& mesh);
 
-// Says what is gathered.
+// Adds a message about a seam that gathers one of its curves.
 void tell_of_gathers(const OpenSeam& seam, Names& messages);
 
 }  // namespace drape::app

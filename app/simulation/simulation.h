@@ -1,5 +1,5 @@
-// A scene made ready to run: the meshes loaded and examined, one system for all cloths, their
-// pins, and the obstacles.
+// A scene made ready to run: the meshes loaded and examined, one system for all cloths, their pins, and the
+// obstacles.
 #pragma once
 
 #include <memory>
@@ -19,11 +19,11 @@ struct Body {
   std::string level_set;  // of a level set: its voxels and its error, in words
 };
 
-// A scene that is ready to run. Its cloths are those of the scene, then its soft bodies.
+// A scene that is ready to run. Its parts are the cloths of the scene, followed by the soft bodies.
 struct Simulation : Assembly {
   using Assembly::Assembly;
 
-  std::vector<Body> bodies;            // as the scene's obstacles
+  std::vector<Body> bodies;            // in the order of the scene's obstacles
   Names messages;                      // one line each, "warning: ..." or "note: ..."
   std::shared_ptr<const Scene> scene;  // the scene that it was made from
 };

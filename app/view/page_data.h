@@ -25,11 +25,12 @@ std::string title_of(const Recording& recording);
 // Facts about the run as a table: names and values as text.
 Json page_facts(const Recording& recording);
 
-// Numbers from 0 up, each as the difference to its neighbour, written as 2 d or -2 d - 1, in four planes of
-// bytes, the lowest byte first.
+// Numbers from 0 up, each stored as the difference d to the number before it, written as 2 d or -2 d - 1, in
+// four planes of bytes, the lowest byte first.
 std::string index_bytes(const std::vector<int>& list);
 
-// The sides of the mesh's polygons (of its triangles when it has no document), each once, two vertices each.
+// The sides of the mesh's polygons (of its triangles when it has no document): each side once, as two
+// vertices.
 std::vector<int> polygon_sides(const TriangleMesh& mesh);
 
 }  // namespace drape::app

@@ -1,4 +1,4 @@
-// What was bundled from web/ when this program was built.
+// The parts of the pages that were bundled from web/ when this program was built.
 #pragma once
 
 #include <string>
@@ -6,12 +6,12 @@
 
 namespace drape::app {
 
-// The page of `drape view` without its data. Places in it: @@TITLE@@ (twice) and @@DATA@@.
+// The page of `drape view` without its data. The text @@TITLE@@ (twice) and @@DATA@@ mark where these go.
 std::string_view page_template();  // empty: the viewer is not in this build
 
-// What draws the plots of compare.html; the script goes to the end of the page.
+// The style and script that draw the plots of compare.html; the script goes to the end of the page.
 std::string_view plot_style(), plot_script();  // empty: the viewer is not in this build
 
-std::string missing_viewer();  // why, and what to do
+std::string missing_viewer();  // why there is no viewer, and what to do
 
 }  // namespace drape::app

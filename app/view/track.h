@@ -24,8 +24,8 @@ struct ValueRange {
   double step() const { return (high - low) / 65535; }
 };
 
-// Extends the range by those of the `count` values that are finite. `any` says whether the
-// range holds a value yet.
+// Extends the range by those of the `count` values that are finite. `any` says whether the range holds a
+// value yet.
 void widen(ValueRange& range, bool& any, const double* values, std::size_t count);
 
 struct ChunkCode {
@@ -33,8 +33,8 @@ struct ChunkCode {
   bool neighbours = false;
 };
 
-// The bytes of frames of integers. The first `before` (0, 1 or 2) of the frames only serve
-// to predict the others.
+// The bytes of frames of integers. The first `before` (0, 1 or 2) of the frames only serve to predict the
+// others.
 std::string chunk_bytes(const std::vector<std::vector<std::uint16_t>>& frames, std::size_t before,
                         std::size_t vertices, ChunkCode code);
 ChunkCode best_code(const std::vector<std::vector<std::uint16_t>>& frames, std::size_t before,

@@ -1,5 +1,5 @@
-// The exception that the library throws when what it is given is wrong. Inside a computation nothing is
-// thrown: trouble there is reported as data.
+// The exception that the library throws when its input is wrong. Nothing is thrown inside a computation:
+// there, trouble is reported as data.
 #pragma once
 
 #include <stdexcept>

@@ -1,7 +1,8 @@
-// FNV-1a with 64 bits: a short number that differs, but for rare chance, where any byte does.
+// FNV-1a with 64 bits: a short number that differs, except in rare cases, as soon as one byte differs.
 //   h <- (h xor byte) * 1099511628211, for one byte after the other, from h = 14695981039346656037
 //                                                  [Fowler, Noll & Vo 1991; offset and prime as in RFC 9923]
-// Numbers count by the bytes that hold them: 0 and -0 differ. Internal to the library (not installed).
+// Numbers are hashed by the bytes that hold them, so 0 and -0 differ.
+// Internal to the library (not installed).
 #pragma once
 
 #include <cstddef>
@@ -18,7 +19,7 @@ class Fnv1a {
     for (std::size_t i = 0; i < bytes; ++i) value_ = (value_ ^ byte[i]) * 1099511628211u;
     return *this;
   }
-  // The bytes of a list of numbers: a vector of the standard library or of Eigen.
+  // Adds the bytes of a list of numbers: a vector of the standard library or of Eigen.
   template <class List>
   Fnv1a& add_all(const List& numbers) {
     return add(numbers.data(), static_cast<std::size_t>(numbers.size()) * sizeof(*numbers.data()));

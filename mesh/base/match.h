@@ -1,4 +1,5 @@
-// One visitor made of several lambdas: std::visit(Match{[](const Plane& p) {...}, [](const Sphere& s) {...}}, shape).
+// Makes one visitor of several lambdas:
+//   std::visit(Match{[](const Plane& p) {...}, [](const Sphere& s) {...}}, shape)
 #pragma once
 
 namespace drape {

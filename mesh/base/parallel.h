@@ -1,5 +1,5 @@
 // Loops over fixed chunks. The chunks depend on the size of the problem only, never on the number of threads,
-// and every sum is taken chunk by chunk in order: so 1, 2 or 7 threads give the same bits.
+// and every sum is taken chunk by chunk in order. So 1, 2 or 7 threads give the same bits.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace drape {
 // Below this many particles a second thread costs more than it brings.
 inline constexpr int serial_below = 3000;
 
-// f(k) for k = 0 .. count-1, in any order; f(k) must not write what another f(l) touches.
+// Calls f(k) for k = 0 .. count-1, in any order. f(k) must not write what another call f(l) touches.
 template <class F>
 void parallel_for(int count, bool serial, const F& f) {
   if (serial || count < 2 || threads() == 1) {
@@ -24,8 +24,8 @@ void parallel_for(int count, bool serial, const F& f) {
       count, [](const void* context, int k) { (*static_cast<const F*>(context))(k); }, &f);
 }
 
-// f(k) for k = 0 .. count-1, the even ones in any order, then the odd ones: f(k) may write what belongs to k
-// and to k + 1, and adds up in the same order on any number of threads.
+// Calls f(k) for k = 0 .. count-1: first for the even k in any order, then for the odd ones. So f(k) may
+// write what belongs to k and to k + 1, and sums are taken in the same order on any number of threads.
 template <class F>
 void even_then_odd(int count, bool serial, const F& f) {
   for (int parity = 0; parity < 2; ++parity)
@@ -35,15 +35,15 @@ void even_then_odd(int count, bool serial, const F& f) {
 inline constexpr int chunk_size = 512;
 inline int chunk_count(int n) { return (n + chunk_size - 1) / chunk_size; }
 
-// f(begin, end) over [0, n) in chunks.
+// Calls f(begin, end) for consecutive chunks of [0, n).
 template <class F>
 void for_chunks(int n, const F& f) {
   parallel_for(chunk_count(n), n < serial_below,
                [&](int k) { f(k * chunk_size, std::min(n, (k + 1) * chunk_size)); });
 }
 
-// Sum of f(begin, end), a number or several that know +=, over the chunks of [0, n): groups of up to
-// `max_partials` chunks are summed in parallel, then in order.
+// The sum of f(begin, end) over the chunks of [0, n). f returns one number or any type that has +=. Groups of
+// up to `max_partials` chunks are computed in parallel and then added in order.
 template <class F>
 auto sum_chunks(int n, const F& f) {
   using Sum = decltype(f(0, 0));
@@ -62,8 +62,8 @@ auto sum_chunks(int n, const F& f) {
   return total;
 }
 
-// a . b of n numbers in a fixed order: eight running sums, then those in order. (Eigen's own reductions
-// depend on where in memory a vector happens to begin.)
+// The scalar product a . b of n numbers in a fixed order: eight running sums, which are then added in order.
+// (Eigen's own reductions depend on where in memory a vector happens to begin.)
 inline double dot_in_order(const double* a, const double* b, std::ptrdiff_t n) {
   std::array<double, 8> sum = {};
   std::ptrdiff_t i = 0;
@@ -73,7 +73,7 @@ inline double dot_in_order(const double* a, const double* b, std::ptrdiff_t n) {
   return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
 }
 
-// a . b of vectors with three numbers a particle.
+// The scalar product a . b of two vectors that have three numbers for each particle.
 template <class Vector>
 double dot(const Vector& a, const Vector& b) {
   return sum_chunks(static_cast<int>(a.size() / 3), [&](int begin, int end) {

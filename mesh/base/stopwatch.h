@@ -1,6 +1,6 @@
-// Adds the time it lives to a number of milliseconds when it dies. The number must outlive it: when it belongs
-// to a report that is returned by value, the stopwatch dies in a block of its own before the return. Internal
-// to the library (not installed).
+// A stopwatch adds the time for which it lives to a number of milliseconds when it is destroyed. That number
+// must outlive the stopwatch: when the number belongs to a report that is returned by value, the stopwatch
+// stands in a block of its own that ends before the return. Internal to the library (not installed).
 #pragma once
 
 #include <chrono>

@@ -23,9 +23,9 @@ void breathe() {
 #endif
 }
 
-// Helpers that take chunks of a loop from the caller. The caller never waits for a helper that has not begun
-// a chunk: on a busy machine it does the work itself (with OpenMP's barriers the same loops were
-// a hundred times slower there).
+// Helpers are threads that take chunks of a loop from the caller. The caller never waits for a helper that
+// has not begun a chunk: on a busy machine the caller does the work itself. (There, the barriers of OpenMP
+// made the same loops a hundred times slower.)
 class Helpers {
  public:
   explicit Helpers(int count) {
@@ -51,10 +51,10 @@ class Helpers {
   int count() const { return static_cast<int>(threads_.size()); }
 
  private:
-  // A loop is known by its generation; the ticket is the generation and how many chunks are still to be
-  // taken. A helper that comes late sees none left in the old loop, or another generation; and as a loop is
-  // published only when the one before is done, what is read between a ticket with chunks left and its
-  // exchange belongs to that ticket's loop.
+  // A loop is known by its generation. The ticket holds the generation and the number of chunks that are
+  // still to be taken. A helper that comes late sees that no chunk of its loop is left, or sees another
+  // generation. A loop is published only when the loop before it is done, so whatever is read between a
+  // ticket with chunks left and the exchange of that ticket belongs to the ticket's loop.
   std::uint32_t publish(int count) {
     count_.store(count, std::memory_order_relaxed);
     const auto generation = static_cast<std::uint32_t>(ticket_.load() >> 32) + 1;
@@ -75,7 +75,7 @@ class Helpers {
       if (!ticket_.compare_exchange_weak(ticket, ticket - 1, std::memory_order_acq_rel)) continue;
       try {
         f(context, chunk);
-      } catch (...) {  // the first one goes to the caller, when all are done
+      } catch (...) {  // the first exception goes to the caller when all calls are done
         if (!failed_.exchange(true)) failure_ = std::current_exception();
       }
       done_.fetch_add(1, std::memory_order_release);
@@ -116,7 +116,8 @@ thread_local bool inside_a_loop = false;
 
 std::unique_ptr<Helpers>& helpers_of_process() {
   static std::unique_ptr<Helpers> helpers;
-  // A forked child has none of its parent's threads: it makes its own. Not destroyed: they cannot be joined.
+  // A forked child has none of its parent's threads, so it makes its own. The parent's helpers are released
+  // and not destroyed, because their threads cannot be joined in the child.
   static const int registered = pthread_atfork(nullptr, nullptr, [] { (void)helpers.release(); });
   (void)registered;
   return helpers;
@@ -140,7 +141,7 @@ void set_threads(int count) {
 
 void run_in_parallel(int count, void (*f)(const void*, int), const void* context) {
   std::unique_lock lock(one_loop_at_a_time, std::defer_lock);
-  // A loop within a loop, or of a second caller at the same time, is done by its caller alone.
+  // A loop inside another loop, or a loop of a second caller at the same time, is done by its caller alone.
   if (inside_a_loop || !lock.try_lock()) {
     for (int k = 0; k < count; ++k) f(context, k);
     return;

@@ -8,7 +8,7 @@
 namespace drape {
 namespace {
 
-// Levenshtein's distance: letters inserted, left out or changed.
+// Levenshtein's distance: how many letters must be inserted, left out or changed to make b of a.
 int distance(std::string_view a, std::string_view b) {
   std::vector<int> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);

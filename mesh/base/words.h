@@ -1,4 +1,4 @@
-// Small things for messages: lists of names, the nearest known name, counts.
+// Helpers for messages: lists of names, the nearest known name, counts, numbers as text.
 #pragma once
 
 #include <string>
@@ -11,10 +11,11 @@ using Names = std::vector<std::string>;
 
 std::string listed(const Names& names);  // "a, b, c"; "(none)"
 
-// The known name with the fewest changed letters, when it is near enough to be a slip of the pen; else empty.
+// The known name with the fewest changed letters if it is near enough to be a slip of the pen, else an empty
+// text.
 std::string nearest(std::string_view word, const Names& known);
 
-// "did you mean 'bend'? known are: ..." in one line.
+// A hint in one line: "did you mean 'bend'? known are: ...".
 std::string suggestion(std::string_view word, const Names& known);
 
 std::string counted(long count, std::string_view noun);  // "1 vertex", "3 vertices", "2 cloths"

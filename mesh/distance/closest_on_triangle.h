@@ -1,6 +1,6 @@
 // The point of a triangle nearest to x, and the feature (vertex, edge or face) that holds it.
 //   [Ericson 2005, Real-time collision detection, 5.1.5]
-// A triangle without an area answers with a vertex or an edge. Internal to the library (not installed).
+// For a triangle without an area the feature is a vertex or an edge. Internal to the library (not installed).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -25,8 +25,8 @@ inline std::pair<Vec3, int> closest_on_triangle(const Vec3& x, const Vec3& a, co
   const Vec3 cx = x - c;
   const double ab_c = ab.dot(cx), ac_c = ac.dot(cx);
   if (ac_c >= 0 && ab_c <= ac_c) return {c, at_vertex + 2};
-  // Areas beside the edges, as cross products: differences of products of the dots
-  // would lose a sliver's digits.
+  // The areas beside the edges are taken as cross products: differences of products of the dot products would
+  // lose the digits of a sliver.
   const Vec3 n = ab.cross(ac);
   const double beside_ab = n.dot(ab.cross(ax));
   if (beside_ab <= 0 && ab_a >= 0 && ab_b <= 0) return {a + ab_a / (ab_a - ab_b) * ab, on_edge};
@@ -40,7 +40,7 @@ inline std::pair<Vec3, int> closest_on_triangle(const Vec3& x, const Vec3& a, co
   return {a + beside_ca * scale * ab + beside_ab * scale * ac, on_face};
 }
 
-// How much of its closest point, at a feature, is each corner's.
+// The barycentric weights of the closest point of a triangle, given the feature that holds this point.
 inline Vec3 weights_on_triangle(const Vec3& point, int feature, const Vec3& a, const Vec3& b, const Vec3& c) {
   if (feature < on_edge) return Vec3::Unit(feature);
   if (feature == on_face) {

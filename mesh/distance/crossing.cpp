@@ -12,7 +12,8 @@ namespace {
 
 double value(const std::array<double, 4>& c, double s) { return c[0] + s * (c[1] + s * (c[2] + s * c[3])); }
 
-// Between lo and hi, where the cubic is monotone and changes its sign, by bisection to the last digit.
+// The root between lo and hi, where the cubic is monotone and changes its sign, found by bisection to the
+// last digit.
 double bisect(const std::array<double, 4>& c, double lo, double hi) {
   const bool rises = value(c, lo) < 0;
   while (true) {
@@ -69,7 +70,7 @@ int crossings(const StraightWay& x, const std::array<StraightWay, 3>& corners, d
   const Vec3 n0 = b0.cross(c0), n1 = b0.cross(c1) + b1.cross(c0), n2 = b1.cross(c1);
   const std::array<double, 4> cubic = {n0.dot(x0), n0.dot(x1) + n1.dot(x0), n1.dot(x1) + n2.dot(x0),
                                        n2.dot(x1)};
-  // In the plane all the way, to rounding.
+  // The point stays in the plane all the way, up to rounding.
   const double longest = std::max({b0.norm(), c0.norm(), (b0 + b1).norm(), (c0 + c1).norm()});
   const double farthest = std::max(x0.norm(), (x0 + x1).norm());
   if (std::abs(cubic[0]) + std::abs(cubic[1]) + std::abs(cubic[2]) + std::abs(cubic[3]) <=

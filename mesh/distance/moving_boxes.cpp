@@ -14,8 +14,8 @@ MovingBoxes::MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>
   for (const auto& [middle, face] : middles) order_.push_back(face);
 }
 
-// A node over middles[begin, end), cut in halves across the longest side and each half again. Halves of equal
-// size keep the tree less than log_4 of the number of faces + 1 deep.
+// Makes a node of middles[begin, end): they are halved across their longest side, and each half is halved
+// again. Halves of equal size keep the depth of the tree below log_4 of the number of faces, plus 1.
 int MovingBoxes::grow(std::vector<std::pair<Vec3, int>>& middles, int begin, int end) {
   const auto halve = [&](int from, int to) {
     if (to - from < 2) return to;

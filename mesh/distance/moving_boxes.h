@@ -1,10 +1,11 @@
-// A tree of boxes about triangles whose corners go straight from one place to another
-// while s goes from 0 to 1.
-//   lower(s) = (1 - s) lower(0) + s lower(1),  and so the upper one: no corner leaves its box on the way
-// Four boxes a node; halved at the median where it is made, refitted to the places of every step afterwards.
-// Boxes are floats about the middle of the surface, the four of a node side by side, so that a search measures
-// four at once: no Eigen::AlignedBox, which holds one. What rounding can do is less than `slack`, by which a
-// search looks farther: no triangle that counts is left out, and which others are shown decides nothing.
+// A tree of boxes about triangles whose corners go straight from one place to another while s goes from 0 to
+// 1.
+//   lower(s) = (1 - s) lower(0) + s lower(1),  upper(s) likewise: no corner leaves its box on the way
+// Every node has four boxes. The tree halves the faces at the median when it is made, and is refitted to the
+// places of every later step. The boxes are floats relative to the middle of the surface, and the four of a
+// node stand side by side, so that a search measures four at once (Eigen::AlignedBox holds only one). The
+// effect of rounding is less than `slack`, by which a search looks farther. So no triangle that counts is
+// left out, and further triangles that a search proposes do not change any answer.
 // Internal to the library (not installed).
 #pragma once
 
@@ -21,19 +22,21 @@ namespace drape::internal {
 
 class MovingBoxes {
  public:
-  // Groups the faces by where they are at these places.
+  // Groups the faces by where they are when the vertices are at these places.
   MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places);
 
   // Fits the boxes to a step. Allocates nothing.
   void refit(const std::vector<Face>& faces, const std::vector<Vec3>& start, const std::vector<Vec3>& end);
 
-  // ask(face) -> the squared distance [m^2] that is still of interest, for every face whose box at s comes as
-  // near to x as the last answer; the nearer boxes first. Asks nothing when x is not finite.
+  // Calls ask(face) for every face whose box at s is within the distance of interest from x, nearer boxes
+  // first. ask returns the squared distance [m^2] that is of interest from then on. Nothing is asked when x
+  // is not finite.
   template <class Ask>
   void near(const Vec3& x, double s, const Ask& ask) const;
 
-  // ask(face) -> the s that is still of interest, for every face whose box the straight way from x0 (at s =
-  // 0) to x1 (at s = 1) is in, or beside by `beside` [m], at some s in [from, the last answer].
+  // Calls ask(face) for every face whose box is met by the straight way from x0 (at s = 0) to x1 (at s = 1)
+  // at some s in [from, the last answer], or passed within `beside` [m]. ask returns the s up to which
+  // crossings are of interest from then on.
   template <class Ask>
   void along(const Vec3& x0, const Vec3& x1, double from, const Ask& ask, double beside = 0) const;
 
@@ -41,22 +44,22 @@ class MovingBoxes {
   using Four = Eigen::Array<float, 4, 1>;
   struct Node {
     std::array<std::array<Four, 3>, 2> lower{}, upper{};  // at s = 0 and at s = 1; x, y and z
-    std::array<int, 4> first{}, count{};                  // of the faces in order_; count -1: a node
+    std::array<int, 4> first{}, count{};                  // range of faces in order_; count -1: a node
   };
   struct Waiting {
     int first, count;
     float squared;
   };
-  static constexpr int most_faces = 4;  // of a leaf
-  static constexpr int deepest = 64;    // entries of a search's stack: three a level
+  static constexpr int most_faces = 4;  // most faces of a leaf
+  static constexpr int deepest = 64;    // most entries of a search's stack: three per level
 
   int grow(std::vector<std::pair<Vec3, int>>& middles, int begin, int end);
   void fit_leaf(Node& node, int child, const std::vector<Face>& faces, const std::vector<Vec3>& start,
                 const std::vector<Vec3>& end) const;
   void fit_node(Node& node, int child) const;
 
-  std::vector<Node> nodes_;  // those above before those below
-  std::vector<int> order_;   // of the faces
+  std::vector<Node> nodes_;  // parents before their children
+  std::vector<int> order_;   // face numbers, leaf by leaf
   Vec3 origin_ = Vec3::Zero();
   float slack_ = 0;  // m
 };
@@ -65,7 +68,7 @@ template <class Ask>
 void MovingBoxes::near(const Vec3& x, double s, const Ask& ask) const {
   const Eigen::Array3f place = (x - origin_).cast<float>().array();
   const auto time = static_cast<float>(s);
-  float limit = std::numeric_limits<float>::infinity();  // farther than this is of no interest
+  float limit = std::numeric_limits<float>::infinity();  // squared; boxes farther away are of no interest
   std::array<Waiting, deepest> stack;
   int waiting = 0;
   stack[waiting++] = {0, -1, 0};
@@ -111,7 +114,8 @@ void MovingBoxes::along(const Vec3& x0, const Vec3& x1, double from, const Ask& 
     const Node& node = nodes_[at.first];
     for (int child = 0; child < 4; ++child) {
       double enter = from, leave = node.count[child] == 0 ? -1 : until;
-      // Keeps the s where what goes from the one to the other >= 0.
+      // Shortens [enter, leave] to the s where a quantity that goes linearly from at_0 to at_1 is not
+      // negative.
       const auto keep = [&](double at_0, double at_1) {
         if (at_0 < 0 && at_1 < 0) leave = -1;
         if (at_0 < 0 && at_1 >= 0) enter = std::max(enter, at_0 / (at_0 - at_1));

@@ -1,9 +1,11 @@
-// Signed distance to a triangle surface. A tree finds the triangles worth asking; the closest point of
-// each is ours, in double precision; the feature (vertex, edge or face) that holds it tells the side.
+// Signed distance to a triangle surface. A tree proposes the triangles that may be nearest. The closest point
+// of each is computed here in double precision, and the feature (vertex, edge or face) that holds it tells
+// the side.
 //   phi(x) = s |x - c|,  s = sign((x - c) . n_c),  n_c the angle-weighted pseudo-normal of the feature at c
-//                        [Baerentzen & Aanaes 2005]
-// What stands is found by embree's tree and has its normals ready. What moves is found by our boxes, and its
-// normals are made at the s that is asked for: those of the ends, interpolated, could tell the wrong side.
+//                         [Baerentzen & Aanaes 2005]
+// A surface at rest is searched with Embree's tree and keeps its normals. A moving surface is searched with
+// our own boxes, and its normals are made for the s that is asked for: normals interpolated between those at
+// the start and at the end of the step could tell the wrong side.
 #include "mesh/distance/surface_distance.h"
 
 #include <Eigen/Geometry>
@@ -26,9 +28,9 @@ using namespace internal;
 
 namespace {
 
-constexpr double touching = 1e-12;  // m: nearer than this the point is on the surface
-constexpr double blurred = 1e-9;    // of the surface's size: nearer than this x - c is mostly rounding
-constexpr double grazing = 1e-9;    // the sine of an angle at which a way goes along the surface
+constexpr double touching = 1e-12;  // m: a point nearer than this is on the surface
+constexpr double blurred = 1e-9;    // of the surface's size: nearer than this, x - c is mostly rounding
+constexpr double grazing = 1e-9;    // the sine of an angle below which a way goes along the surface
 
 struct Candidate {
   double squared = std::numeric_limits<double>::infinity();
@@ -36,7 +38,8 @@ struct Candidate {
   int feature = on_face;
   Vec3 point = Vec3::Zero();
 
-  // Of several equally near the first face is taken.
+  // Takes the face if it is nearer than those before it. Of equally near faces the one with the lowest number
+  // counts.
   bool offer(int f, const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
     const auto [nearest, where] = closest_on_triangle(x, a, b, c);
     const double there = (x - nearest).squaredNorm();
@@ -51,7 +54,8 @@ struct Candidate {
   }
 };
 
-// Along a triangle's first side, across it within the triangle, and along its normal.
+// A frame of three axes: along a triangle's first side, across that side within the triangle, and along the
+// normal.
 Mat3 frame(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 side = b - a, normal = twice_area_normal(a, b, c);
   const Vec3 along = side.norm() > 0 ? Vec3(side.normalized()) : Vec3(Vec3::UnitX());
@@ -68,12 +72,12 @@ struct SurfaceDistance::Tree {
 
   TriangleMesh mesh;
   SurfaceFaces surface;
-  std::vector<Vec3> vertex_normals;  // where it stands
+  std::vector<Vec3> vertex_normals;  // of the surface at rest
   Vec3 centre = Vec3::Zero();
   double size = 0;  // m, diagonal of the box
   std::optional<TriangleTree> standing;
 
-  // The step. Made by the first move.
+  // The current step; the first call of move() makes it.
   bool moving = false;
   std::vector<Vec3> start, end;
   SurfaceMotion motion;
@@ -95,7 +99,7 @@ struct SurfaceDistance::Tree {
   SurfacePoint answer(const Vec3& x, const Candidate& c, const SurfacePose<Places>& pose) const;
   Vec3 displacement(int face, const Vec3& weights) const;
 
-  // f(pose) in the configuration at s.
+  // Calls f(pose) with the configuration of the surface at s.
   template <class F>
   auto in_pose(double s, const F& f) const {
     return moving ? f(SurfacePose<Moving>(surface, {start, end, s}))
@@ -125,7 +129,7 @@ void SurfaceDistance::Tree::grow() {
   standing.emplace(mesh.positions, triangles, centre);
 }
 
-// What moving takes: the boxes, and the corners at each vertex.
+// Makes what a moving surface needs: the boxes, and the list of corners at each vertex.
 void SurfaceDistance::Tree::make_ready() {
   boxes.emplace(surface.faces, mesh.positions);
   corner_start.assign(mesh.positions.size() + 1, 0);
@@ -155,8 +159,8 @@ void SurfaceDistance::Tree::begin_step() {
   }
 }
 
-// The radius stays a little longer than the best distance: by more than embree's rounding to float, so that
-// no nearer triangle and no tie is passed over.
+// The search radius stays a little longer than the best distance, by more than Embree's rounding to float, so
+// that no nearer triangle and no tie is passed over.
 Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Standing>&) const {
   Candidate best;
   const std::vector<Vec3>& p = mesh.positions;
@@ -169,7 +173,7 @@ Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Standing>
   return best;
 }
 
-// Faces that have no area at s are left to their neighbours, unless nothing else is there.
+// Faces that have no area at s are left to their neighbours, unless no other face is there.
 Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Moving>& pose) const {
   Candidate best;
   for (bool flat_ones : {false, true}) {
@@ -185,7 +189,7 @@ Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Moving>& 
   return best;
 }
 
-// Of the faces around a vertex, each with its angle there.
+// The sum of the normals of the faces around a vertex, each weighted by its angle there.
 Vec3 SurfaceDistance::Tree::vertex_normal(int v, const SurfacePose<Moving>& pose) const {
   Vec3 sum = Vec3::Zero();
   for (int i = corner_start[v]; i < corner_start[v + 1]; ++i)
@@ -212,7 +216,7 @@ SurfacePoint SurfaceDistance::Tree::answer(const Vec3& x, const Candidate& c,
   const Vec3 n = pseudo_normal(c, pose);
   const double side = offset.dot(n) < 0 ? -1 : 1;
   const bool clear = d >= touching && d >= blurred * size;
-  // On a face, the face's own normal has more digits than offset / d.
+  // On a face, the normal of the face has more digits than offset / d.
   const bool by_offset = clear && c.feature != on_face;
   const Vec3 away = by_offset ? Vec3(offset / d) : Vec3(side * n);
   if (surface.closed) return {side * d, side * away};
@@ -287,7 +291,7 @@ std::optional<double> SurfaceDistance::first_crossing(const Vec3& x0, const Vec3
   };
   if (tree.boxes)
     tree.boxes->along(x0, x1, from, ask);
-  else  // it has never moved
+  else  // the surface has never moved
     for (int f = 0; f < static_cast<int>(tree.surface.faces.size()); ++f) ask(f);
   return first <= 1 ? std::optional(first) : std::nullopt;
 }

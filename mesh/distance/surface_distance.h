@@ -30,8 +30,8 @@ struct SurfacePoint {
   Vec3 normal;      // unit vector, the gradient of the distance: it points outwards
 };
 
-// How far the vertices that belong to a triangle move during a step, all in m. All values are 0
-// for a surface at rest.
+// How far the vertices that belong to a triangle move during a step [m]. All values are 0 for a surface at
+// rest.
 struct SurfaceMotion {
   Vec3 mean = Vec3::Zero();  // mean displacement
   double about_mean = 0;     // largest difference between the displacement of a vertex and the mean
@@ -50,7 +50,7 @@ class SurfaceDistance {
   // the tree; allocates nothing after the first call. Throws InputError when the number of positions is not
   // that of the vertices.
   void move(const std::vector<Vec3>& start, const std::vector<Vec3>& end);
-  // The same, for a step from t0 to t1 [s] of an animated body.
+  // The same, for a step from the time t0 to the time t1 [s] of an animated body.
   void move(const MeshFrames& frames, double t0, double t1);
   const SurfaceMotion& motion() const;
   double largest_displacement() const { return motion().largest; }
@@ -62,10 +62,10 @@ class SurfaceDistance {
   // The same; `displacement` receives how far the surface point closest to x moves during the whole step [m].
   SurfacePoint closest(const Vec3& x, double s, Vec3& displacement) const;
 
-  // The first s in [from, 1] at which the straight way from x0 (at s = 0) to x1 (at s = 1) goes through
-  // a triangle; where the surface is closed, only a way from outside to inside counts. The crossings
-  // are roots of cubics (mesh/distance/crossing.h), so none is missed. A way that slides along the
-  // surface does not cross it.
+  // The first s in [from, 1] at which the straight way from x0 (at s = 0) to x1 (at s = 1) goes through a
+  // triangle. Where the surface is closed, only a way from outside to inside counts. The crossings are roots
+  // of cubics (mesh/distance/crossing.h), so none is missed. A way that slides along the surface does not
+  // cross it.
   std::optional<double> first_crossing(const Vec3& x0, const Vec3& x1, double from = 0) const;
 
   // True when no triangle comes as near as `margin` [m] to a point that goes straight from x0 (at s = 0) to
@@ -77,8 +77,8 @@ class SurfaceDistance {
   struct Anchor {
     Triangle triangle;  // its three vertices
     Vec3 weights;       // barycentric weights of the closest point of the triangle
-    // From that point to the attached one [m]: along the first side of the triangle, across that side within
-    // the triangle, and along the normal.
+    // From the closest point to the attached point [m]: along the first side of the triangle, across that
+    // side within the triangle, and along the normal.
     Vec3 offset;
   };
   Anchor anchor(const Vec3& x, double s = 0) const;

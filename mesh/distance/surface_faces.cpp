@@ -13,9 +13,9 @@
 namespace drape::internal {
 namespace {
 
-constexpr double flat = 1e-13;  // height / longest edge of a triangle that has no area
+constexpr double flat = 1e-13;  // largest height / longest edge of a triangle that has no area
 
-// Triangles of three different vertices, each once, in the mesh's order.
+// The triangles that have three different vertices, each one once, in the order of the mesh.
 std::vector<Face> distinct_faces(const TriangleMesh& mesh, const std::vector<int>& weld) {
   std::vector<std::pair<Triangle, int>> keys;
   for (int t = 0; t < mesh.triangle_count(); ++t) {
@@ -34,7 +34,7 @@ std::vector<Face> distinct_faces(const TriangleMesh& mesh, const std::vector<int
   return faces;
 }
 
-// Fills `across`; true when every edge has exactly two faces.
+// Fills `across` of every face. Returns true when every edge has exactly two faces.
 bool join(std::vector<Face>& faces) {
   std::vector<std::tuple<int, int, int, int>> edges;  // lower vertex, higher vertex, face, side
   edges.reserve(3 * faces.size());
@@ -63,9 +63,9 @@ void turn(Face& f) {
   std::swap(f.across[0], f.across[2]);
 }
 
-// Winds a joined surface one way, piece by piece, with the normals out of the positive volume. False, with
-// some faces turned, when it has one side only. `inside_out`: a piece was wound with its normals inwards,
-// most of its faces so.
+// Winds a joined surface one way, piece by piece, with the normals out of the positive volume. Returns false,
+// with some faces turned, when the surface has one side only. `inside_out` is set when a piece had most of
+// its faces wound with the normals inwards.
 bool orient(std::vector<Face>& faces, const std::vector<Vec3>& positions, const Vec3& centre,
             bool& inside_out) {
   std::vector<char> seen(faces.size(), 0);

@@ -1,9 +1,8 @@
-// The triangles of a surface made ready for signed distances: each once, joined to their neighbours and wound
-// one way.
-// Input that is not clean: triangles with a repeated vertex and second copies of a triangle are dropped;
-// triangles of zero area stay in the topology (they close cracks), after the others. A surface that is open
-// as numbered is tried again with vertices of exactly equal position made one, as uv seams need.
-// Internal to the library (not installed).
+// The triangles of a surface, made ready for signed distances: each triangle occurs once, is joined to its
+// neighbours, and is wound like them. Unclean input is mended. Triangles with a repeated vertex and second
+// copies of a triangle are dropped. Triangles of zero area stay in the topology, because they close cracks,
+// and stand after the others. A surface that is open as numbered is tried again with vertices of exactly
+// equal position made one, as uv seams need. Internal to the library (not installed).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -15,20 +14,20 @@ namespace drape::internal {
 
 struct Face {
   Triangle v;
-  Triangle across;  // the face beyond edge v[k] v[k+1]; -1: none, or several
+  Triangle across;  // the face beyond edge v[k] v[k+1]; -1 when there is none or several
 };
 
 struct SurfaceFaces {
-  std::vector<Face> faces;  // in the mesh's order; from with_area on: those without an area
+  std::vector<Face> faces;  // in the mesh's order; faces without an area come last, from with_area on
   int with_area = 0;
-  bool closed = false;      // every edge has two faces, and the surface two sides
+  bool closed = false;      // every edge has two faces, and the surface has two sides
   bool inside_out = false;  // closed, but a piece was wound with most of its normals inwards
 };
 
 // Throws InputError when no triangle has an area.
 SurfaceFaces surface_faces(const TriangleMesh& mesh);
 
-// Of the triangles that have an area. [m]
+// The box of the triangles that have an area [m].
 Eigen::AlignedBox3d box_of(const SurfaceFaces& surface, const std::vector<Vec3>& positions);
 
 // Whether a triangle of these corners has an area beyond rounding.

@@ -1,6 +1,6 @@
 // A surface in one configuration: where its vertices are, and the normals of its faces there.
-//   Standing  as it was constructed; which faces have no area is known
-//   Moving    at s of a step, on the straight way of every vertex from its start to its end
+//   Standing  the surface as it was constructed; which faces have no area is known
+//   Moving    the surface at s of a step, when every vertex goes straight from its start to its end
 // Internal to the library (not installed).
 #pragma once
 
@@ -24,7 +24,7 @@ class SurfacePose {
   bool flat(int f) const { return places_.flat(surface_, f); }
   const Places& places() const { return places_; }
   Vec3 plain_normal(int f) const;
-  Vec3 angle_weighted(int f, int k) const;  // of the corner k alone
+  Vec3 angle_weighted(int f, int k) const;  // the normal of face f, weighted by its angle at corner k only
   Vec3 normal_beyond(int f, int side) const;
 
  private:
@@ -41,7 +41,7 @@ int SurfacePose<Places>::longest_side(int f) const {
   return static_cast<int>(std::max_element(length, length + 3) - length);
 }
 
-// Unit normal of a face. One without an area is a part of the face beyond its longest side.
+// Unit normal of a face. A face without an area counts as a part of the face beyond its longest side.
 template <class Places>
 Vec3 SurfacePose<Places>::plain_normal(int f) const {
   if (flat(f)) {
@@ -57,7 +57,7 @@ Vec3 SurfacePose<Places>::angle_weighted(int f, int k) const {
   return angle_between(p, q) * plain_normal(f);
 }
 
-// Normal of the surface beyond a side of a face. Past the long side of a face without an area lie two.
+// Normal of the surface beyond a side of a face. Two faces lie past the long side of a face without an area.
 template <class Places>
 Vec3 SurfacePose<Places>::normal_beyond(int f, int side) const {
   const int g = surface_.faces[f].across[side];
@@ -70,14 +70,14 @@ Vec3 SurfacePose<Places>::normal_beyond(int f, int side) const {
   return sum.normalized();
 }
 
-// The mesh as it was constructed.
+// Positions of the vertices in the mesh as it was constructed.
 struct Standing {
   const std::vector<Vec3>& positions;
   const Vec3& operator()(int v) const { return positions[v]; }
   static bool flat(const SurfaceFaces& surface, int f) { return f >= surface.with_area; }
 };
 
-// On the way from start to end.
+// Positions of the vertices on the way from start to end, at s.
 struct Moving {
   const std::vector<Vec3>&start, &end;
   double s;

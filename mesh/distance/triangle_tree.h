@@ -1,5 +1,6 @@
-// Triangles that stand, in embree's tree: which are near a point, which a ray meets first. The one door to
-// embree, which works in float, here about a centre; exact answers are made from what it proposes.
+// Triangles at rest in Embree's tree, which answers which of them are near a point and which one a ray meets
+// first. Only this file and its .cpp know Embree. Embree works in float, here relative to a centre, so it
+// only proposes triangles, and exact answers are computed from its proposals.
 #pragma once
 
 #include <memory>
@@ -11,15 +12,15 @@ namespace drape {
 
 class TriangleTree {
  public:
-  enum class Quality { high, quick };  // of the tree: how long a question takes, or how long the tree
+  enum class Quality { high, quick };  // how fast questions are, or how fast the tree
 
   TriangleTree(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles, const Vec3& centre,
                Quality quality = Quality::high);
 
-  // All of these are safe to call from several threads.
+  // All functions below may be called from several threads at once.
 
-  // f(triangle, radius) of every triangle that may be nearer to x than the radius, at first infinite [m]; it
-  // returns the radius from then on, never a longer one.
+  // Calls f(triangle, radius) for every triangle that may be nearer to x than the radius [m], which is
+  // infinite at first. f returns the radius from then on, never a longer one.
   template <class F>
   void near(const Vec3& x, F& f) const {
     visit(
@@ -31,13 +32,13 @@ class TriangleTree {
   }
 
   struct Hit {
-    int triangle = -1;            // none
-    double distance = 0;          // m where the direction is a unit vector
-    Vec3 weights = Vec3::Zero();  // of the triangle's corners
+    int triangle = -1;            // -1: the ray meets none
+    double distance = 0;          // in m if the direction is a unit vector
+    Vec3 weights = Vec3::Zero();  // barycentric weights of the corners
     bool hit() const { return triangle >= 0; }
   };
   Hit first_hit(const Vec3& from, const Vec3& direction) const;
-  bool blocked(const Vec3& from, const Vec3& direction, double distance) const;  // anything nearer
+  bool blocked(const Vec3& from, const Vec3& direction, double distance) const;  // by a nearer triangle
 
  private:
   void visit(const Vec3& x, float (*f)(void* context, int triangle, float radius), void* context) const;

@@ -42,7 +42,7 @@ std::vector<Vec3> Embedding::positions(const VecX& x) const {
   std::vector<Vec3> all(start_.size() - 1, Vec3::Zero());
   for (std::size_t v = 0; v < all.size(); ++v) {
     const std::size_t begin = start_[v], end = start_[v + 1];
-    if (end == begin + 1) {  // as it is, to the last bit
+    if (end == begin + 1) {  // one particle: its position to the last bit
       all[v] = x.segment<3>(3 * shares_[begin].particle);
       continue;
     }

@@ -17,7 +17,7 @@ namespace {
 
 using Cell = std::array<int, 3>;
 
-// Points of a box of `count` along x, y, z, numbered with x fastest.
+// The number of the point p in a box of `count` points along x, y, z, numbered with x fastest.
 std::size_t number(const Cell& p, const Cell& count) {
   return static_cast<std::size_t>(p[0]) +
          static_cast<std::size_t>(count[0]) *
@@ -44,7 +44,7 @@ Vec3 place(const Lattice& lattice, const Cell& c) {
   return lattice.origin + lattice.spacing.cwiseProduct(Vec3(c[0], c[1], c[2]));
 }
 
-// Which part of the cells that could hold both the corner p and p + d is filled.
+// The filled fraction of those cells that have both p and p + d among their corners.
 double cells_round(const Lattice& lattice, const Cell& p, const Cell& d) {
   int possible = 0, there = 0;
   Cell first, last;
@@ -72,7 +72,7 @@ void number_particles(Lattice& lattice) {
   });
 }
 
-// Each pair from its end with the lower number.
+// Adds each pair from its end with the lower number.
 void join_particles(Lattice& lattice) {
   const Cell count = corners(lattice.cells);
   for_each_in({0, 0, 0}, count, [&](const Cell& p) {
@@ -95,7 +95,8 @@ void join_particles(Lattice& lattice) {
   });
 }
 
-// A triangle and a box round the origin share more than their rims: no axis separates them.
+// True when a triangle and a box round the origin share more than their rims, that is, when no axis separates
+// them.
 //                                     [Akenine-Moller 2001, Fast 3D triangle-box overlap testing]
 bool overlap(const std::array<Vec3, 3>& t, const Vec3& half) {
   const auto separates = [&](const Vec3& axis) {
@@ -104,7 +105,7 @@ bool overlap(const std::array<Vec3, 3>& t, const Vec3& half) {
     return std::min({a, b, c}) >= reach || std::max({a, b, c}) <= -reach;
   };
   const Vec3 normal = twice_area_normal(t[0], t[1], t[2]);
-  // A triangle that lies in a face of the box touches its rim only.
+  // A triangle that lies in a face of the box touches only the rim of the box.
   if (const double from = std::abs(normal.dot(t[0])), reach = half.dot(normal.cwiseAbs()); from > reach)
     return false;
   for (int k = 0; k < 3; ++k) {
@@ -117,7 +118,7 @@ bool overlap(const std::array<Vec3, 3>& t, const Vec3& half) {
   return true;
 }
 
-constexpr double slack = 1e-9;  // of a cell: nearer than this a surface lies in the face between two
+constexpr double slack = 1e-9;  // of a cell: a surface nearer than this to a face of a cell lies in it
 
 int cell_along(double u, int cells) { return std::clamp(static_cast<int>(std::floor(u)), 0, cells - 1); }
 
@@ -154,7 +155,7 @@ void fill_inside(Lattice& lattice, const SurfaceDistance& surface) {
   });
 }
 
-// The box of cells round a surface, which lies in its middle.
+// Puts a box of cells round a surface, which lies in the middle of the box.
 void surround(Lattice& lattice, const TriangleMesh& surface, double spacing) {
   Eigen::AlignedBox3d box;
   for (int counted : counted_triangles(surface))
@@ -170,9 +171,10 @@ void surround(Lattice& lattice, const TriangleMesh& surface, double spacing) {
   }
 }
 
-// The cell that holds a place u, in cells from the origin; the nearest where none does.
+// The cell that holds the place u, given in cells from the origin; when no filled cell holds it, the nearest
+// one.
 Cell cell_of(const Lattice& lattice, const Vec3& u) {
-  for (int nudged = 0; nudged < 9; ++nudged) {  // as it is, then towards the cells that share a face with it
+  for (int nudged = 0; nudged < 9; ++nudged) {  // u itself, then u towards the cells that share a face
     Vec3 to = u;
     for (int a = 0; a < 3 && nudged > 0; ++a) to[a] += ((nudged - 1) >> a & 1) ? slack : -slack;
     Cell c;

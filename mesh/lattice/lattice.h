@@ -52,9 +52,9 @@ struct LatticeSize {
 };
 LatticeSize lattice_size(const TriangleMesh& surface, double spacing);
 
-// The faces of filled cells that have no filled cell beyond them, as triangles with normals
-// outwards. The vertices of the mesh are the particles on those faces in ascending order; `particles`
-// receives their numbers.
+// The faces of filled cells that have no filled cell beyond them, as triangles with normals outwards. The
+// vertices of the mesh are the particles on those faces in ascending order; `particles` receives their
+// numbers.
 TriangleMesh surface_of(const Lattice& lattice, std::vector<int>& particles);
 
 // Attaches points [m] to the lattice in its rest positions. A point that lies in no filled cell is attached

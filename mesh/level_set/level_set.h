@@ -7,11 +7,11 @@
 //   outside  the answer is a lower bound of the distance, and at least `band`
 //   inside   the answer is a coarser spline with nodes every 8 voxels: accurate to some voxels, and its
 //            gradient leads out
-// Errors, with h the voxel: third order in h where the surface is smooth, about h / 8 at edges. A part
-// thinner than h to 2 h has no inside any more.
+// Errors, with h the voxel: of third order in h where the surface is smooth, about h / 8 at edges. A part of
+// the body that is thinner than h to 2 h has no inside in the grid.
 //
-// Level sets are kept in OpenVDB files (.vdb). A build without OpenVDB refuses such files, but still
-// makes grids from meshes.
+// Level sets are kept in OpenVDB files (.vdb). A build without OpenVDB refuses such files, but still makes
+// grids from meshes.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -50,9 +50,9 @@ class LevelSet {
   static LevelSet from_mesh(const TriangleMesh& mesh, const LevelSetOptions& options = {},
                             const std::string& name = "the mesh");
 
-  // Reads a file that vdb() made, or the first level set of floats with cubic voxels in any other .vdb
-  // file. What such a file does not hold is computed from its zero surface. All lengths are multiplied by
-  // `scale`. Throws InputError.
+  // Reads a file that vdb() made, or the first level set of floats with cubic voxels in any other .vdb file.
+  // What such a file does not hold is computed from its zero surface. All lengths are multiplied by `scale`.
+  // Throws InputError.
   static LevelSet read(const std::filesystem::path& path, double scale = 1);
   // The bytes of a .vdb file of this level set, which must not have been moved. Throws InputError when the
   // build has no OpenVDB.
@@ -89,8 +89,8 @@ inline constexpr double least_size = 1e-6, largest_size = 1e6;
 // Throws InputError unless the longest side of this box lies between those two; `name` stands in the message.
 void check_size(const Eigen::AlignedBox3d& box, const std::string& name);
 
-// Three quarters of the median edge, but at least 1/500 and at most 1/100 of the diagonal
-// of the body's box [m].
+// Three quarters of the median edge, but at least 1/500 and at most 1/100 of the diagonal of the body's box
+// [m].
 double default_voxel(const TriangleMesh& mesh);
 
 }  // namespace drape

@@ -1,5 +1,5 @@
-// OpenVDB's part of the level sets: their files, and the zero surface of somebody else's grid. One thread:
-// its work here is a small part of making a grid, and the rest of the program does
+// OpenVDB's part of the level sets: their files, and the zero surface of a grid that another program made.
+// This code runs on one thread: its work is a small part of making a grid, and the rest of the program does
 // not share threads with TBB.
 #include "mesh/level_set/vdb_file.h"
 
@@ -28,7 +28,7 @@ namespace {
 namespace vdb = openvdb;
 using Grid = vdb::FloatGrid;
 
-constexpr int format = 1;  // of the files
+constexpr int format = 1;  // version of our files
 
 template <class F>
 void with_openvdb(const std::filesystem::path& path, const char* cannot, const F& f) {
@@ -39,7 +39,7 @@ void with_openvdb(const std::filesystem::path& path, const char* cannot, const F
     alone.execute(f);
   } catch (const InputError& error) {
     throw InputError(path.string() + ": " + error.what());
-  } catch (const std::exception& error) {  // a damaged file may ask for any amount of memory, too
+  } catch (const std::exception& error) {  // a damaged file may also ask for any amount of memory
     throw InputError(path.string() + ": " + cannot + ": " + error.what());
   }
 }
@@ -48,7 +48,7 @@ vdb::Coord coord(const Index& i) { return {i[0], i[1], i[2]}; }
 vdb::Vec3d vec(const Vec3& x) { return {x[0], x[1], x[2]}; }
 Vec3 vec(const vdb::Vec3d& x) { return {x[0], x[1], x[2]}; }
 
-// f(c, slot) for every triple of numbers below `sides`.
+// Calls f(c, slot) for every triple c of numbers from 0, each below its entry of `sides`.
 template <class F>
 void for_box(const Index& sides, const F& f) {
   std::size_t slot = 0;
@@ -125,7 +125,7 @@ vdb::BoolGrid::Ptr near_of(const VoxelGrid& grid) {
 
 // --- reading ----------------------------------------------------------------------------------------------
 
-// The first grid of this type that is wanted.
+// The first grid of type G in the file that `wanted` accepts.
 template <class G, class Wanted>
 typename G::Ptr find(const vdb::GridPtrVec& grids, const Wanted& wanted) {
   for (const vdb::GridBase::Ptr& grid : grids)
@@ -148,7 +148,8 @@ LevelSetError error_of(const Grid& surface) {
   return error;
 }
 
-// A file of ours: nothing is computed, so that it answers with the same bits as the grid that was written.
+// Reads a file of our own. Nothing is computed, so that the grid answers with the same bits as the written
+// one.
 VoxelGrid as_written(const Grid& surface, const Grid& far, const vdb::BoolGrid& near) {
   VoxelGrid grid = empty_grid(
       meta<double>(surface, "drape_voxel"), meta<double>(surface, "drape_band"),
@@ -184,8 +185,8 @@ TriangleMesh zero_surface(const Grid& surface) {
   return mesh;
 }
 
-// Somebody else's: the nodes of its narrow band are kept, the others are measured from its zero surface. The
-// sign is the file's everywhere.
+// Completes a grid that another program made: the nodes of its narrow band are kept, and all other nodes are
+// measured from its zero surface. The sign is the one in the file everywhere.
 VoxelGrid completed(Grid& surface, double voxel) {
   surface.setTransform(vdb::math::Transform::createLinearTransform(voxel));
   vdb::tools::signedFloodFill(surface.tree(), false);
@@ -206,7 +207,7 @@ VoxelGrid completed(Grid& surface, double voxel) {
   return grid;
 }
 
-// The spacing of the nodes; throws when they are not a regular grid along the axes.
+// The spacing of the nodes [m]. Throws when the nodes are not a regular grid along the axes.
 double voxel_of(const vdb::math::Transform& transform, const vdb::Vec3d& origin) {
   const double voxel = transform.indexToWorld(vdb::Vec3d(1, 0, 0))[0] - origin[0];
   for (int k = 0; k < 3; ++k) {
@@ -262,7 +263,7 @@ VdbFile read_vdb(const std::filesystem::path& path, double scale) {
   VdbFile result;
   with_openvdb(path, "cannot be read", [&] {
     vdb::io::File file(path.string());
-    file.open(false);  // all of it at once
+    file.open(false);  // reads all of the file at once
     result = decoded(*file.getGrids());
   });
   multiply(result.grid, scale);

@@ -1,8 +1,9 @@
-// The quadratic B-spline of a level set, and what is answered beyond its bricks.
+// The quadratic B-spline of a level set, and the answers in places that have no near brick.
 //   phi(x) = sum_ijk w_i(s) w_j(t) w_k(u) c_ijk,  i, j, k in {-1, 0, 1} about the nearest node, s, t, u in
 //   [-1/2, 1/2]: w = ((1/2 - s)^2 / 2, 3/4 - s^2, (1/2 + s)^2 / 2)
 //   c = d - (sum of the six neighbours' d - 6 d) / 8,  d the distances at the nodes
-// Exact for quadratic functions; with c = d it would smooth, and be twice as far off (README.md).
+// The spline is exact for quadratic functions. With c = d it would smooth, and be twice as far off
+// (README.md).
 #include "mesh/level_set/voxel_grid.h"
 
 #include <Eigen/Geometry>
@@ -13,7 +14,7 @@
 namespace drape::internal {
 namespace {
 
-// Four floats of a row as doubles (the last one belongs to nobody).
+// Four floats of a row as doubles; the last of them is not used.
 typedef double Four __attribute__((vector_size(32), aligned(8)));
 
 inline Four load(const float* p) {
@@ -22,7 +23,7 @@ inline Four load(const float* p) {
 }
 
 struct Weights {
-  double w[3], d[3];  // of the value and of its slope
+  double w[3], d[3];  // weights of the value and of its slope
   explicit Weights(double t)
       : w{0.5 * (0.5 - t) * (0.5 - t), 0.75 - t * t, 0.5 * (0.5 + t) * (0.5 + t)},
         d{t - 0.5, -2 * t, t + 0.5} {}
@@ -30,10 +31,10 @@ struct Weights {
 
 struct Jet {
   double value;
-  Vec3 gradient;  // per node
+  Vec3 gradient;  // per voxel
 };
 
-// The spline over 27 nodes, `corner` the lowest of them.
+// The spline over 27 nodes; `corner` is the lowest of them.
 Jet spline(const float* corner, const Weights& x, const Weights& y, const Weights& z) {
   Four value{}, along_x{}, along_y{};
   for (int i = 0; i < 3; ++i) {
@@ -55,7 +56,7 @@ Vec3 unit(const Vec3& gradient) {
   return squared > 1e-20 ? Vec3(gradient / std::sqrt(squared)) : Vec3(Vec3::UnitY());
 }
 
-// The spline over the cells' centres; beyond the last ones they are repeated.
+// The spline over the centres of the cells; beyond the outermost cells their values are repeated.
 Jet coarse(const VoxelGrid& grid, const Vec3& in_cells) {
   Index at;
   for (int k = 0; k < 3; ++k) at[k] = static_cast<int>(std::floor(in_cells[k]));
@@ -94,8 +95,9 @@ Index VoxelGrid::node(const Index& b, const Index& i) const {
   return at;
 }
 
-// A coefficient and its distances reach two nodes beyond a near brick: only the bricks on a node's own side
-// of the middle come into question.
+// The coefficients of a near brick and the distances that make them reach two nodes beyond it. So a node is
+// needed only by its own brick and by those neighbours that lie on the node's side of the middle of its
+// brick.
 bool VoxelGrid::needed(const Index& b, const Index& i) const {
   for (int sides = 0; sides < 8; ++sides) {
     Index other = b;
@@ -128,7 +130,7 @@ SurfacePoint VoxelGrid::closest(const Vec3& x) const {
   const int at = ((i % brick) * held + j % brick) * held + k % brick;  // of the lowest of the 27
   const float* const corner = &coefficients[static_cast<std::size_t>(number) * held_in_brick + at];
   const Jet jet = spline(corner, Weights(p - i - 0.5), Weights(q - j - 0.5), Weights(r - k - 0.5));
-  // Beyond the band half a voxel is taken off, what the spline may be too high by.
+  // Beyond the band half a voxel is taken off, because the spline may be too high by that much.
   const double distance = jet.value > band ? std::max(band, jet.value - 0.5 * voxel) : jet.value;
   return {distance, unit(jet.gradient)};
 }
@@ -140,12 +142,13 @@ Index VoxelGrid::cell_of(const Vec3& x) const {
   return c;
 }
 
-// Outside: the distance changes no faster than 1 from the cell's centre. (A little less, for the rounding.)
+// A lower bound outside the surface: the distance changes no faster than 1 per metre from the centre of the
+// cell. The value at the centre is reduced a little to allow for rounding.
 double VoxelGrid::bound(const Index& c, const Vec3& x) const {
   return std::max(far[cell_slot(c)] * (1 - 1e-6) - (x - cell_centre(c)).norm(), band);
 }
 
-// Within the grid, where there is no near brick.
+// The answer within the grid, where there is no near brick.
 SurfacePoint VoxelGrid::beyond(const Vec3& x) const {
   const Index c = cell_of(x);
   if (far[cell_slot(c)] < 0) {
@@ -162,8 +165,9 @@ SurfacePoint VoxelGrid::beyond(const Vec3& x) const {
   return {bound(c, x), unit(rise)};
 }
 
-// Outside the grid's box, y the nearest point of it: the surface lies within, so that the angle at y is
-// obtuse and phi(x)^2 >= |x - y|^2 + phi(y)^2. The normal points away from the surface's box.
+// The answer for a point x outside the box of the grid. Let y be the point of the box nearest to x: the
+// surface lies within the box, so the angle at y is obtuse and phi(x)^2 >= |x - y|^2 + phi(y)^2. The normal
+// points away from the surface's box.
 SurfacePoint VoxelGrid::far_away(const Vec3& x) const {
   if (!x.allFinite()) return {std::numeric_limits<double>::quiet_NaN(), Vec3::UnitY()};
   Vec3 y;

@@ -1,11 +1,13 @@
-// The grid of a level set: sparse bricks of distances near the surface,
-// a coarse lattice everywhere. Internal.
-//   node i     at voxel * i; a brick is 4 x 4 x 4 of them
-//   cell       2 x 2 x 2 bricks; `far` is the signed distance at its centre
-//   near brick one of which a point may be within `band` of the surface, or less than depth() inside: has its
-//              spline's coefficients, and one more on every side, so that the 27 of a point lie in one place
-//   other bricks are held for their distances, where these make a coefficient of a near one
-// z runs fastest everywhere.
+// The grid of a level set: sparse bricks of distances near the surface, and a coarse lattice everywhere.
+// Internal.
+//   node i       stands at voxel * i
+//   brick        4 x 4 x 4 nodes
+//   cell         2 x 2 x 2 bricks; `far` is the signed distance at its centre
+//   near brick   a brick in which a point may be within `band` of the surface, or less than depth() inside.
+//                It has the coefficients of its spline, and one layer more on every side, so that the 27
+//                coefficients that a point needs lie in one place
+//   other brick  is held only where its distances make a coefficient of a near brick
+// In all arrays z runs fastest.
 #pragma once
 
 #include <algorithm>
@@ -29,13 +31,14 @@ struct VoxelGrid {
 
   double voxel = 0, band = 0;  // m
   Eigen::AlignedBox3d box;     // m, of the surface
-  Index first{};               // node at the lower corner
+  Index first{};               // the node at the lower corner
   Index cells{};
-  std::vector<float> far;            // m, of every cell
-  std::vector<std::int32_t> bricks;  // number of a brick, or none; the near ones come first
+  std::vector<float> far;            // m, for every cell
+  std::vector<std::int32_t> bricks;  // the number of each brick, or none; near bricks come first
   int near_count = 0, brick_count = 0;
-  std::vector<float> nodes;  // m, distances, in_brick for each brick; 0 where they are not needed
-  // m, held_in_brick for each near one, and some more so that four can be read.
+  std::vector<float> nodes;  // m, distances, in_brick for each brick; 0 if not needed
+  // Spline coefficients [m], held_in_brick for each near brick, and a few more at the end, so that four
+  // numbers can be read at once anywhere.
   std::vector<float> coefficients;
   std::optional<LevelSetError> error;
 
@@ -47,11 +50,11 @@ struct VoxelGrid {
   std::size_t cell_slot(const Index& c) const {
     return (static_cast<std::size_t>(c[0]) * cells[1] + c[1]) * cells[2] + c[2];
   }
-  std::int32_t brick_at(const Index& b) const;  // none beyond the grid, too
+  std::int32_t brick_at(const Index& b) const;  // none also for bricks beyond the grid
   Vec3 cell_centre(const Index& c) const;
-  Index node(const Index& b, const Index& i) const;   // i: within the brick, from 0
-  bool needed(const Index& b, const Index& i) const;  // its distance makes a coefficient
-  // Those that are held, in the order of their numbers.
+  Index node(const Index& b, const Index& i) const;   // i counts from 0 within the brick
+  bool needed(const Index& b, const Index& i) const;  // whether the node's distance makes a coefficient
+  // The places of the bricks that are held, in the order of their numbers.
   std::vector<Index> places() const;
 
   Index cell_of(const Vec3& x) const;

@@ -1,4 +1,4 @@
-// Making the grid of a level set, and measuring it.
+// Makes the grid of a level set, and measures how far it is from the mesh.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -27,7 +27,8 @@ std::string metres(double value) {
                    metres(voxel * factor));
 }
 
-// Runs f(c) for every triple of numbers below `sides`, slices of the first in parallel.
+// Calls f(c) for every triple c of numbers from 0, each below its entry of `sides`, slices of the first
+// number in parallel.
 template <class F>
 void for_triples(const Index& sides, const F& f) {
   parallel_for(sides[0], false, [&](int i) {
@@ -36,7 +37,7 @@ void for_triples(const Index& sides, const F& f) {
   });
 }
 
-// A part of [0, count) for each thread to take at a time.
+// Calls f(b) for every b in [0, count), in parts that the threads take one at a time.
 template <class F>
 void for_bricks(int count, const F& f) {
   constexpr int together = 16;
@@ -55,7 +56,7 @@ VoxelGrid empty_grid(double voxel, double band, const Eigen::AlignedBox3d& box) 
   double count = 1;
   for (int k = 0; k < 3; ++k) {
     const double reach =
-        band + (2 * VoxelGrid::brick + VoxelGrid::brick) * voxel;  // near bricks, a cell beyond
+        band + (2 * VoxelGrid::brick + VoxelGrid::brick) * voxel;  // near bricks, and one cell beyond them
     const double low = std::floor((box.min()[k] - reach) / (voxel * VoxelGrid::cell)),
                  high = std::ceil((box.max()[k] + reach) / (voxel * VoxelGrid::cell));
     count *= high - low;
@@ -80,7 +81,7 @@ void find_near_bricks(VoxelGrid& grid, const Distance& distance) {
   grid.bricks.assign(grid.far.size() * 8, VoxelGrid::none);
   for_triples({grid.side(0), grid.side(1), grid.side(2)}, [&](const Index& b) {
     const double at_cell = grid.far[grid.cell_slot({b[0] / 2, b[1] / 2, b[2] / 2})];
-    if (!within(at_cell, 2 * half_brick)) return;  // its bricks' centres are half a brick away
+    if (!within(at_cell, 2 * half_brick)) return;  // the centres of its bricks are half a brick away
     Vec3 centre;
     for (int k = 0; k < 3; ++k) centre[k] = grid.voxel * (grid.first[k] + b[k] * n + 0.5 * (n - 1));
     if (within(distance(centre), half_brick)) grid.bricks[grid.brick_slot(b)] = 0;
@@ -89,7 +90,7 @@ void find_near_bricks(VoxelGrid& grid, const Distance& distance) {
 
 namespace {
 
-// The near bricks first, then their neighbours.
+// Numbers the near bricks first and their neighbours after them.
 void number_bricks(VoxelGrid& grid) {
   grid.near_count = 0;
   for (std::int32_t& number : grid.bricks)
@@ -107,7 +108,7 @@ void number_bricks(VoxelGrid& grid) {
     }
 }
 
-// f(i, slot) for every triple of numbers in [0, n).
+// Calls f(i, slot) for every triple i of numbers in [0, n).
 template <class F>
 void for_cube(int n, const F& f) {
   std::size_t slot = 0;
@@ -116,7 +117,7 @@ void for_cube(int n, const F& f) {
       for (i[2] = 0; i[2] < n; ++i[2]) f(i, slot++);
 }
 
-// The distances of a near brick and of two nodes more on every side.
+// The distances of a near brick are needed with two further nodes on every side.
 constexpr int around = VoxelGrid::brick + 4;
 using Around = std::array<float, around * around * around>;
 
@@ -172,7 +173,7 @@ void fill_bricks(VoxelGrid& grid, const NodeDistance& distance) {
 
 namespace {
 
-// Points of a surface, evenly by area, the same every time.
+// Points on a surface, spread evenly by area and the same in every run.
 class SurfaceSampler {
  public:
   explicit SurfaceSampler(const TriangleMesh& mesh) : mesh_(mesh) {
@@ -205,8 +206,8 @@ class SurfaceSampler {
 
 }  // namespace
 
-// Half of the samples lie in the band, at any distance; the other half at the surface, where also the inside
-// is looked for: going in by up to a voxel and a half must meet it.
+// Half of the samples lie in the band, at any distance. The other half lie on the surface; for these the
+// inside is looked for, too: a way inwards of up to a voxel and a half must meet it.
 LevelSetError measure_error(const VoxelGrid& grid, const SurfaceDistance& surface) {
   constexpr int samples = 20000;
   SurfaceSampler sampler(surface.mesh());

@@ -1,6 +1,7 @@
-// What examine.h promises. Tolerances are relative: coincident = 1e-9 of the mesh's size apart, zero area = a
-// triangle whose doubled area is below 1e-9 of its longest edge squared (an angle of 1e-9 rad), sliver = an
-// angle below one degree.
+// The examination that examine.h describes. The tolerances are relative. Two vertices are coincident when
+// they are at most 1e-9 of the size of the mesh apart. A triangle has zero area when twice its area is
+// below 1e-9 of its longest edge squared (an angle of 1e-9 rad). A sliver is a triangle with an angle below
+// one degree.
 #include "mesh/obj/examine.h"
 
 #include <Eigen/Geometry>
@@ -20,7 +21,7 @@ namespace {
 constexpr double kCoincident = 1e-9;  // of the size of the mesh
 constexpr double kZeroArea = 1e-9;
 constexpr double kSliver = 3.14159265358979323846 / 180;  // rad
-constexpr double kLarge = 5, kSmall = 0.02;               // m: sizes between these pass without a question
+constexpr double kLarge = 5, kSmall = 0.02;               // m: a size between these is not questioned
 
 std::string number(double value) {
   char text[32];
@@ -28,7 +29,7 @@ std::string number(double value) {
   return std::string(text, end);
 }
 
-// "1 edge", "12 edges"
+// The number and its noun: "1 edge", "12 edges".
 std::string count(std::size_t n, const std::string& one, const std::string& many) {
   return std::to_string(n) + " " + (n == 1 ? one : many);
 }
@@ -88,7 +89,7 @@ class Examiner {
   double size_ = 0;            // m, largest extent
 };
 
-// False, with the reason in the report, when positions or vertex numbers make no sense at all.
+// Returns false, and gives the reason in the report, when positions or vertex numbers make no sense at all.
 bool Examiner::can_be_measured() {
   std::vector<int> not_finite;
   for (int v = 0; v < mesh_.vertex_count(); ++v) {
@@ -233,7 +234,8 @@ void Examiner::edge_defects() {
   }
 }
 
-// Sorted along a direction in no way special, coincident vertices stand next to each other.
+// Vertices are sorted along a direction that is in no way special, so that coincident ones stand near each
+// other.
 void Examiner::coincident_vertices() {
   const double tolerance = kCoincident * size_;
   const Vec3 direction = Vec3(0.6180339887, 0.4142135624, 0.7320508076).normalized();
@@ -255,8 +257,8 @@ void Examiner::coincident_vertices() {
   std::vector<char> has_earlier(mesh_.positions.size(), 0);
   for (std::size_t i = 0; i < line.size(); ++i) {
     const int v = line[i].second;
-    // Many vertices at one place: meeting the first that is already known to coincide
-    // would find them all again.
+    // Where many vertices are at one place, the loop ends at the first one that is known to coincide with an
+    // earlier one; without this end every vertex would find all the others again.
     for (std::size_t j = i + 1;
          j < line.size() && !has_earlier[v] && line[j].first - line[i].first <= tolerance; ++j) {
       const int w = line[j].second;

@@ -2,8 +2,8 @@
 //   The order of the vertices is kept exactly. Polygons are cut into triangles for the simulation and written
 //   back whole. Texture coordinates, normals, groups, objects, materials, smoothing, lines, points and
 //   comments survive a round trip.
-// Errors are InputError, one line: "FILE:LINE: what was found, what to do". Lines count from 1,
-// vertices too, as in the file.
+// Errors are InputError in one line: "FILE:LINE: what was found, what to do". Lines and vertices count from
+// 1, as in the file.
 #pragma once
 
 #include <cstddef>
@@ -73,8 +73,8 @@ TriangleMesh read_obj(const std::filesystem::path& path);
 // The same from memory; `name` stands in error messages.
 TriangleMesh parse_obj(std::string_view text, const std::string& name);
 
-// A chain of vertices from 'l' lines. Its name is that of the 'g' line before it (the first word), or
-// else of the 'o' line.
+// A chain of vertices from 'l' lines. Its name is that of the 'g' line before it (the first word), or else
+// that of the 'o' line.
 struct Polyline {
   std::string name;           // empty when there was neither
   std::vector<int> vertices;  // in order; a closed line ends with its first vertex again
@@ -92,8 +92,8 @@ void write_obj(const std::filesystem::path& path, const TriangleMesh& mesh,
 
 // The text of such a file. All corners at one vertex that share a vn entry share their new normal too, the
 // normalised sum of the area-weighted normals of their faces: so smooth edges stay smooth and hard edges stay
-// hard. An entry that served several vertices (some exporters write one vn for a whole flat sheet) is split
-// where those vertices no longer agree; the new entries come after the others.
+// An entry that served several vertices (some exporters write one vn for a whole flat sheet) is split where
+// the normals of those vertices differ; the new entries come after the others.
 std::string format_obj(const TriangleMesh& mesh, const std::vector<Vec3>& positions);
 
 }  // namespace drape

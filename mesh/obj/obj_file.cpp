@@ -1,4 +1,4 @@
-// An OBJ file from the disk into memory, whole: the parser needs one piece of text.
+// Reads a whole OBJ file from the disk into memory: the parser needs one piece of text.
 #include <cerrno>
 #include <cstdio>
 #include <system_error>

@@ -23,7 +23,7 @@ std::vector<Polyline> polylines(const TriangleMesh& mesh) {
     if (keyword != "l") continue;
     Polyline line{group.empty() ? object : group, {}};
     for (std::string_view word = obj::next_word(rest); !word.empty(); word = obj::next_word(rest)) {
-      int v = 0;  // the reader has checked and written it; "v/vt" stops at the slash
+      int v = 0;  // the reader has checked and written this number; "v/vt" stops at the slash
       std::from_chars(word.data(), word.data() + word.size(), v);
       line.vertices.push_back(v - 1);
     }

@@ -1,6 +1,6 @@
-// What the OBJ reader notes on its way: warnings, one of each kind, and which faces are in which group.
-//   Groups: a face belongs to the names of the last 'g' (several allowed) and of the last 'o'. An 'o' ends
-//   the groups of the object before it, unless no face has come since the 'g'. Internal (not installed).
+// What the OBJ reader notes while it reads: warnings, one of each kind, and which faces are in which group.
+//   Groups: a face belongs to the names of the last 'g' (several are allowed) and of the last 'o'. An 'o'
+//   ends the groups of the object before it, unless no face has come since the 'g'. Internal (not installed).
 #pragma once
 
 #include <map>
@@ -14,11 +14,11 @@ namespace drape::internal::obj {
 
 class Warnings {
  public:
-  // The first of a kind is kept, further ones are counted.
+  // Adds a warning. The first one of a kind is kept, and further ones are counted.
   void add(int line, const std::string& kind, const std::string& what);
-  // "file.obj:12: text" of that kind; empty when there is none.
+  // The first warning of this kind as "file.obj:12: text"; empty when there is none.
   std::string first(const std::string& kind, const std::string& file) const;
-  // All of them by line, as first() writes them, with the count of the others.
+  // All warnings in the order of their lines, as first() writes them, each with the number of further ones.
   std::vector<std::string> lines(const std::string& file) const;
 
  private:
@@ -33,14 +33,15 @@ class Warnings {
 
 class Groups {
  public:
-  // A line 'g' or 'o' after so many faces.
+  // Takes a line 'g' or 'o' that stands after this many faces.
   void read(std::string_view keyword, std::string_view names, std::size_t faces);
-  // The vertices of each group that has any, ascending; those of lines are of the group that names the line.
+  // The vertices, ascending, of each group that has any. The vertices of a line belong to the group that
+  // names it.
   std::vector<VertexGroup> collect(const ObjDocument& document, const std::vector<Polyline>& lines,
                                    int vertices) const;
 
  private:
-  struct Span {  // from this face on, these groups
+  struct Span {  // from this face on, these groups hold
     std::size_t first_face;
     std::vector<int> groups;
   };

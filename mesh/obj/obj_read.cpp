@@ -1,7 +1,6 @@
-// Wavefront OBJ reader. Why not tinyobjloader, with numbers: mesh/README.md.
-//   One pass over the text; faces may refer to vertices that come later, so references ahead are remembered
-//   with their line and looked at again at the end. Faces are cut into triangles last, when every position
-//   is known.
+// Wavefront OBJ reader. mesh/README.md says, with numbers, why it is not tinyobjloader. The text is read
+// once. Faces may refer to vertices that come later, so such references are remembered with their line and
+// checked at the end. Faces are cut into triangles last, when every position is known.
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -34,7 +33,7 @@ class ObjReader {
   TriangleMesh read();
 
  private:
-  // A reference that was not yet covered by what had been read, to be looked at again at the end.
+  // A reference beyond what had been read when it was found; it is checked at the end.
   struct Ahead {
     std::size_t corner;
     int line;
@@ -70,7 +69,7 @@ class ObjReader {
   ObjDocument document_;
   std::vector<Ahead> ahead_;
   std::vector<Element> elements_;
-  std::vector<int> face_lines_;  // only of faces with more than three corners: {face, line} pairs
+  std::vector<int> face_lines_;  // {face, line} pairs, only of faces with more than three corners
   obj::Groups groups_;
   obj::Warnings warnings_;
 };
@@ -162,7 +161,7 @@ void ObjReader::read_normal(std::string_view rest) {
   document_.normals.push_back(n);
 }
 
-// The number as it stands: 0 and what int cannot hold are the caller's to judge.
+// The number as it is written. The caller judges 0 and numbers that int cannot hold.
 long long ObjReader::read_index(std::string_view digits, std::string_view word, Kind kind) const {
   const char* const end = digits.data() + digits.size();
   const char* const begin = digits.data() + (!digits.empty() && digits.front() == '+' ? 1 : 0);
@@ -176,7 +175,7 @@ long long ObjReader::read_index(std::string_view digits, std::string_view word, 
   return value;
 }
 
-// Numbers from 0, -1 where there is none; `ahead` is set when something refers beyond
+// The numbers of a corner, from 0, and -1 where there is none. `ahead` is set when one of them refers beyond
 // what has been read so far.
 ObjCorner ObjReader::read_corner(std::string_view word, bool& ahead) {
   ObjCorner corner{-1};
@@ -245,8 +244,8 @@ void ObjReader::read_face(std::string_view rest) {
   document_.face_start.push_back(corners.size());
 }
 
-// 'curv' and 'surf' name vertices; counted from the end they would mean others after writing,
-// where all vertices come first.
+// True for 'curv' and 'surf' lines that name vertices by counting from the end: after writing these numbers
+// would mean other vertices, because all vertices come first in the written file.
 bool ObjReader::is_relative_curve(std::string_view keyword, std::string_view rest) const {
   int parameters = keyword == "curv" ? 2 : keyword == "surf" ? 4 : -1;
   if (parameters < 0) return false;
@@ -254,7 +253,7 @@ bool ObjReader::is_relative_curve(std::string_view keyword, std::string_view res
   return rest.find('-') != rest.npos;
 }
 
-// Lines and points are not simulated, but kept: numbers are made absolute.
+// Reads lines and points. They are not simulated but kept, with relative numbers replaced by absolute ones.
 void ObjReader::read_element(std::string_view keyword, std::string_view rest) {
   std::string text(keyword);
   Element element{document_.statements.size(), 0, 0, scanner_.line()};
@@ -279,7 +278,7 @@ void ObjReader::read_element(std::string_view keyword, std::string_view rest) {
   keep(text);
 }
 
-// References to what came later in the file, now that all of it is known.
+// Checks the references to things later in the file, when all of the file is known.
 void ObjReader::check_references() {
   const int v_count = mesh_.vertex_count();
   for (const Ahead& ahead : ahead_) {

@@ -2,7 +2,7 @@
 //   line      ends with LF, CRLF or (in a file without any LF) CR; a backslash at its end joins the next one,
 //             unless it stands in a comment
 //   comment   from '#' to the end of the line, where '#' begins the line or follows a blank
-//   number    [+-] digits [. digits] [e [+-] digits], at least one digit; std::from_chars, no locale
+//   number    [+-] digits [. digits] [e [+-] digits], at least one digit; read by std::from_chars, no locale
 #pragma once
 
 #include <charconv>
@@ -22,14 +22,14 @@ inline std::string_view trim(std::string_view s) {
   return s;
 }
 
-// Where the comment starts; s.size() without one.
+// Where the comment starts, or s.size() when there is no comment.
 inline std::size_t comment_start(std::string_view s) {
   std::size_t at = s.find('#');
   while (at != std::string_view::npos && at > 0 && !is_blank(s[at - 1])) at = s.find('#', at + 1);
   return at == std::string_view::npos ? s.size() : at;
 }
 
-// Takes the next word off the front of `s`; empty at the end.
+// Takes the next word off the front of `s`. The word is empty at the end of `s`.
 inline std::string_view next_word(std::string_view& s) {
   const char* p = s.data();
   const char* const end = p + s.size();
@@ -42,7 +42,8 @@ inline std::string_view next_word(std::string_view& s) {
 
 enum class Number { good, missing, malformed, not_finite };
 
-// The whole word must be one number. Too small for a double is 0; too large is not finite.
+// Reads a word that must be one number. A number too small for a double becomes 0; one too large is not
+// finite.
 inline Number parse_number(std::string_view word, double& value) {
   if (word.empty()) return Number::missing;
   const char* begin = word.data();
@@ -68,7 +69,7 @@ class LineScanner {
     if (rest_.find('\n') == rest_.npos) end_of_line_ = '\r';
   }
 
-  // The next line, trimmed and with continuations joined; false at the end of the text.
+  // Gives the next line, trimmed and with its continuations joined; returns false at the end of the text.
   bool next(std::string_view& line) {
     if (rest_.empty()) return false;
     line_ = next_line_;

@@ -1,6 +1,6 @@
-// Wavefront OBJ writer: the document the mesh came from, at new positions. See obj.h.
+// Wavefront OBJ writer: writes the document that the mesh came from, at new positions. See obj.h.
 //   Order: statements from before the first vertex, v, vt, vn, faces with the other statements between them.
-//   Numbers: the shortest text that reads back as the same double; normals as the same float.
+//   Numbers: the shortest text that reads back as the same double; for normals, as the same float.
 #include <unistd.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ void append_vector(std::string& text, const char* keyword, const Vec3& x) {
 }
 
 struct Normals {
-  std::vector<Vec3> entries;         // as many as the document has, then those that had to be added
+  std::vector<Vec3> entries;         // as many as the document has, then the added ones
   std::vector<int> entry_of_corner;  // -1: none
 };
 
@@ -52,7 +52,7 @@ class NormalBuilder {
   }
 
  private:
-  // corners_ by vn, then by vertex; face_ of every corner.
+  // Sorts corners_ by vn, then by vertex, and fills face_ for every corner.
   void sort_corners() {
     const std::vector<ObjCorner>& corners = document_.corners;
     face_.resize(corners.size());
@@ -86,7 +86,7 @@ class NormalBuilder {
     return newell_normal(positions, polygon_.data(), static_cast<int>(polygon_.size()));
   }
 
-  // One run of corners at a time: those of this entry at one vertex.
+  // Fills one entry, run by run: a run has the corners of this entry at one vertex.
   void fill_entry(int vn) {
     constexpr double kAgree = 1 - 1e-6;  // cosine: normals this close may go on sharing an entry
     const Vec3& as_read = document_.normals[vn];
@@ -98,7 +98,7 @@ class NormalBuilder {
         now += face_normal(corners_[j], positions_);
         then += face_normal(corners_[j], rest_);
       }
-      // A file may hold normals that point against the winding of its faces; they keep doing so.
+      // A file may hold normals that point against the winding of its faces; the new normals do so, too.
       Vec3 n = now.stableNormalized() * (then.dot(as_read) < 0 ? -1 : 1);
       if (now.isZero()) n = as_read;
       int entry = vn;
@@ -175,7 +175,7 @@ std::string format_document(const ObjDocument& document, const TriangleMesh& mes
                    (error ? ": " + std::generic_category().message(error) : ""));
 }
 
-// Returns errno of the first thing that went wrong, 0 if all of the text is in the file.
+// Writes the text and returns the errno of the first failure, or 0 when all of the text is in the file.
 int write_text(const std::filesystem::path& path, const std::string& text) {
   errno = 0;
   std::FILE* const file = std::fopen(path.c_str(), "wb");

@@ -62,7 +62,7 @@ class GridSearch {
  private:
   int corner(int q, int k) const { return grid_.quads[q][k & 3]; }
   int across(int q, int side) const { return across_[q][side & 3]; }
-  int place(int q, int vertex) const {  // of a vertex in a quad
+  int place(int q, int vertex) const {  // position of a vertex in a quad
     int k = 0;
     while (corner(q, k) != vertex) ++k;
     return k;
@@ -90,8 +90,9 @@ class GridSearch {
     }
   }
 
-  // By the numbers of quads and edges around it: 4 and 4 inside; on a boundary one edge more than quads, of
-  // which there are at most three; two corners of holes may touch.
+  // Checks every vertex by the numbers of quads and edges around it. A vertex inside has 4 quads and 4 edges.
+  // A vertex on a boundary has at most three quads, and one edge more than quads. Two corners of holes may
+  // touch.
   void check_vertices(int vertices) const {
     std::vector<int> quads(static_cast<std::size_t>(vertices), 0), edges = quads;
     for (const Quad& quad : grid_.quads)
@@ -110,15 +111,15 @@ class GridSearch {
     }
   }
 
-  // The quad beyond a side: two rows go on there, and at either end of the side a diagonal, into the quad
-  // beyond the next side.
+  // Looks at the quad beyond a side. Two rows go on there. At either end of the side a diagonal leads into
+  // the quad beyond the next side.
   void look_across(int q, int side) {
     const int beyond = across(q, side);
     if (beyond < 0) return;
     for (int end : {side, side + 1}) {
       const int m = corner(q, end), before = corner(q, end == side ? side - 1 : side + 2);
       const int k = place(beyond, m);
-      // In the quad beyond, m has two sides: the shared one and the next.
+      // In the quad beyond, the vertex m has two sides: the shared one and another.
       const int other = corner(q, end == side ? side + 1 : side);
       const bool shared_comes_after = corner(beyond, k + 1) == other;
       add(grid_.rows, before, m, corner(beyond, shared_comes_after ? k - 1 : k + 1), q, beyond);
@@ -129,7 +130,7 @@ class GridSearch {
   }
 
   static void add(std::vector<QuadGrid::Straight>& list, int a, int m, int c, int quad_a, int quad_c) {
-    if (a == c) return;  // a tube of two quads
+    if (a == c) return;  // the grid is a tube of two quads
     if (a < c)
       list.push_back({a, m, c, quad_a, quad_c});
     else

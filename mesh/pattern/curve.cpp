@@ -7,7 +7,7 @@
 namespace drape {
 namespace {
 
-// Gauss-Legendre with five points on [a, b].
+// The arc length between a and b by the Gauss-Legendre rule with five points.
 double arc_length(const Segment& s, double a, double b) {
   constexpr double x[3] = {0, 0.5384693101056831, 0.9061798459386640};
   constexpr double w[3] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
@@ -37,14 +37,14 @@ Segment quadratic_segment(const Vec2& p0, const Vec2& p1, const Vec2& p2) {
   return cubic_segment(p0, p0 + 2.0 / 3 * (p1 - p0), p2 + 2.0 / 3 * (p1 - p2), p2);
 }
 
-// SVG 1.1, appendix F.6.5 and F.6.6.
+// Computes the centre and the angles of an arc as in SVG 1.1, appendix F.6.5 and F.6.6.
 Segment arc_segment(const Vec2& start, const Vec2& end, double rx, double ry, double turn, bool large,
                     bool counter_clockwise) {
   rx = std::abs(rx), ry = std::abs(ry);
   if (rx == 0 || ry == 0 || start == end) return line_segment(start, end);
   const double c = std::cos(turn), s = std::sin(turn);
   Eigen::Matrix2d axes;
-  axes << c * rx, -s * ry, s * rx, c * ry;  // the unit circle to the ellipse
+  axes << c * rx, -s * ry, s * rx, c * ry;  // maps the unit circle to the ellipse
   Eigen::Matrix2d inverse;
   inverse << c / rx, s / rx, -s / ry, c / ry;
   const Vec2 a = inverse * start, b = inverse * end, half = (b - a) / 2;
@@ -74,7 +74,7 @@ Segment mapped(const Segment& segment, const Eigen::Matrix2d& matrix, const Vec2
   s.start = matrix * s.start + shift, s.end = matrix * s.end + shift;
   for (std::size_t i = 0; i < 4; ++i) {
     s.p[i] = matrix * s.p[i];
-    if (s.kind == Segment::Kind::cubic || i == 0) s.p[i] += shift;  // half axes only turn
+    if (s.kind == Segment::Kind::cubic || i == 0) s.p[i] += shift;  // half axes turn but do not shift
   }
   return s;
 }
@@ -109,7 +109,7 @@ Vec2 derivative(const Segment& s, double t) {
   return 3 * u * u * (s.p[1] - s.p[0]) + 6 * u * t * (s.p[2] - s.p[1]) + 3 * t * t * (s.p[3] - s.p[2]);
 }
 
-// Where control points coincide the derivative vanishes at the end, but not the direction.
+// Where control points coincide, the derivative vanishes at the end but the direction does not.
 Vec2 direction(const Segment& s, bool at_end) {
   double t = 0;  // then 1e-6, 1e-5, ... 1
   while (t <= 1) {
@@ -141,7 +141,7 @@ Vec2 ArcLength::at(double fraction) const {
   const double goal = wanted - sums_[part], whole = sums_[part + 1] - sums_[part];
   double t = whole > 0 ? t0 + (t1 - t0) * std::clamp(goal / whole, 0.0, 1.0) : t0;
   if (s.kind != Segment::Kind::line) {
-    for (int i = 0; i < 8; ++i) {  // Newton; the start is off by the curvature of one part only
+    for (int i = 0; i < 8; ++i) {  // Newton; the start is off only by the curvature within one part
       const double speed = derivative(s, t).norm();
       if (!(speed > 0)) break;
       const double step = (goal - arc_length(s, t0, t)) / speed;

@@ -18,7 +18,7 @@ struct Segment {
   enum class Kind { line, cubic, arc };
   Kind kind = Kind::line;
   Vec2 start, end;  // x(0) and x(1), exactly
-  // The points p0 .. p3 of a cubic; the centre and the half axes of an arc.
+  // The points p0 .. p3 of a cubic, or the centre and the half axes of an arc.
   std::array<Vec2, 4> p = {Vec2::Zero(), Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};
   double angle = 0, sweep = 0;  // rad, of an arc
 };

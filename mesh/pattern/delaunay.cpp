@@ -28,7 +28,7 @@ int Delaunay::new_vertex(const Vec2& x) {
   return static_cast<int>(points_.size()) - 1;
 }
 
-// The corner opposite the same edge, in the triangle on its other side.
+// The corner opposite the same edge in the triangle on the other side of it.
 Delaunay::Corner Delaunay::across(Corner c) const {
   const int other = face(c.t).next[z(c.i)];
   const Face& f = face(other);
@@ -40,7 +40,7 @@ void Delaunay::join(int t, int i, int other, int piece) {
   f.next[z(i)] = other, f.piece[z(i)] = piece;
   if (other < 0) return;
   Face& g = face(other);
-  for (int k = 0; k < 3; ++k) {  // by vertices: two triangles may for a moment name each other twice
+  for (int k = 0; k < 3; ++k) {  // found by vertices: for a moment two triangles may name each other twice
     if (g.v[z(after(k))] != f.v[z(before(i))] || g.v[z(before(k))] != f.v[z(after(i))]) continue;
     g.next[z(k)] = t, g.piece[z(k)] = piece;
   }
@@ -97,7 +97,7 @@ int Delaunay::add(const Vec2& x, const Place& place) {
   return v;
 }
 
-// Both triangles in two; `piece_a` and `piece_b`: what the halves of the edge carry.
+// Splits the two triangles at an edge in two each. The halves of the edge carry `piece_a` and `piece_b`.
 int Delaunay::split_edge(Corner edge, const Vec2& x, int piece_a, int piece_b) {
   const Corner other = across(edge);
   const Face f = face(edge.t), g = face(other.t);
@@ -133,7 +133,7 @@ bool Delaunay::convex(Corner c) const {
          orient2d(p, q, at(face(c.t).v[z(after(c.i))])) < 0;
 }
 
-// p a b and q b a become p a q and q b p.
+// Replaces the triangles p a b and q b a by p a q and q b p.
 void Delaunay::flip(Corner c) {
   const Corner o = across(c);
   const Face f = face(c.t), g = face(o.t);
@@ -149,7 +149,8 @@ void Delaunay::flip(Corner c) {
   face_at_[z(q)] = face_at_[z(b)] = o.t;
 }
 
-// Flips until the edges opposite the suspects' corners, all of them the newest vertex, are Delaunay.
+// Flips edges until all those opposite the corners of the suspects are Delaunay; each such corner is the
+// newest vertex.
 void Delaunay::legalise() {
   while (!suspects_.empty()) {
     const Corner c = suspects_.back();
@@ -158,7 +159,7 @@ void Delaunay::legalise() {
     if (f.next[z(c.i)] < 0 || f.piece[z(c.i)] >= 0) continue;
     const Corner o = across(c);
     if (incircle(at(f.v[0]), at(f.v[1]), at(f.v[2]), at(face(o.t).v[z(o.i)])) <= 0) continue;
-    if (!convex(c)) continue;  // never where the edges around are Delaunay; while edges are forced, it may be
+    if (!convex(c)) continue;  // only while edges are forced; never where the edges around are Delaunay
     flip(c);
     suspects_.push_back({c.t, 0});  // the corner p
     suspects_.push_back({o.t, 2});
@@ -218,8 +219,8 @@ bool Delaunay::force_edge(int a, int b, int piece) {
   return true;
 }
 
-// The edges that the way from a to b crosses, which are not joined, in order. False: it meets a vertex
-// between, or an edge with a piece.
+// Lists in order the edges that the straight way from a to b crosses; a and b are not joined. Returns false
+// when the way meets another vertex or an edge that carries a piece.
 bool Delaunay::crossed_edges(int a, int b, std::deque<std::pair<int, int>>& crossed) const {
   const auto side = [&](int v) { return orient2d(at(a), at(b), at(v)); };
   Corner c;

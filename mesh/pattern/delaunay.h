@@ -1,8 +1,9 @@
 // A constrained Delaunay triangulation of a box in the plane, to which points are added one by one.
 //   Edges that carry a piece (of an outline or a line) are never flipped; any other edge is locally Delaunay:
 //   no corner opposite it lies inside the circle of the triangle on its other side, by exact predicates.
-// Adding: split a triangle in three or an edge's two triangles in four, then flip [Lawson 1977]. A missing
-// edge is brought in by flipping what crosses it [Sloan 1993]. Internal to the library (not installed).
+// A point is added by splitting a triangle in three, or the two triangles of an edge in four, and flipping
+// edges afterwards [Lawson 1977]. A missing edge is brought in by flipping the edges that cross it
+// [Sloan 1993]. Internal to the library (not installed).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,26 +18,27 @@ namespace drape::internal {
 
 class Delaunay {
  public:
-  struct Corner {  // the corner `i` of triangle `t`, and the edge opposite it
+  struct Corner {  // corner `i` of triangle `t`, and the edge opposite it
     int t = -1, i = 0;
   };
   struct Face {
     std::array<int, 3> v;      // counter-clockwise
-    std::array<int, 3> next;   // triangle across the edge opposite each corner, -1: none
-    std::array<int, 3> piece;  // that lies on that edge, -1: none
+    std::array<int, 3> next;   // the triangle across the edge opposite each corner, or -1
+    std::array<int, 3> piece;  // the piece that lies on that edge, or -1
     bool inside = false;
   };
-  static constexpr int kBoxCorners = 4;  // vertices 0 to 3
+  static constexpr int kBoxCorners = 4;  // the corners of the box are vertices 0 to 3
 
-  // Around the points in this box, well away from them.
+  // Makes a triangulation around the points in this box; its own corners are well away from them.
   explicit Delaunay(const Eigen::AlignedBox2d& box);
 
   const std::vector<Face>& faces() const { return faces_; }
   const std::vector<Vec2>& points() const { return points_; }
   int face_at(int vertex) const { return face_at_[vertex]; }
 
-  // Where x is, walking straight from the middle of a triangle: the triangle, or with `blocked` the first
-  // piece's edge on the way. `on_edge`: x is on the edge opposite corner i.
+  // Where x is, found by walking straight from the middle of a triangle. `corner` names the triangle that
+  // holds x or, if `blocked`, the first edge on the way that carries a piece. `on_edge`: x lies on the edge
+  // opposite corner i.
   struct Place {
     Corner corner;
     bool blocked = false, on_edge = false;
@@ -45,15 +47,18 @@ class Delaunay {
   Place locate(const Vec2& x, int from, bool stop_at_pieces) const;
 
   bool fits(Corner edge, const Vec2& x) const;  // whether split() would take x
-  int add(const Vec2& x, const Place& place);   // the new vertex; an edge it is on carries no piece
-  Corner find_edge(int a, int b) const;         // t = -1: a and b are not joined
-  Corner edge_of(int a, int b) const;           // find_edge() of two that are joined
-  // False, with nothing done: a and b are one vertex, or another vertex or piece is in the way.
+  int add(const Vec2& x, const Place& place);   // the new vertex; an edge on which it lies carries no piece
+  Corner find_edge(int a, int b) const;         // t = -1 when a and b are not joined
+  Corner edge_of(int a, int b) const;           // find_edge() of two vertices that are joined
+  // Joins a and b by an edge that carries the piece. Returns false, with nothing done, when a and b are one
+  // vertex or when another vertex or piece is in the way.
   bool force_edge(int a, int b, int piece);
-  // Puts x in the middle of an edge with a piece; the half at vertex `a` of it carries piece_a. x may lie
-  // beside the edge, as long as the four triangles keep their sense; if not, -1 and nothing is done.
+  // Splits an edge that carries a piece at x; the half at vertex `a` then carries piece_a. x may lie beside
+  // the edge, as long as the four new triangles keep their sense; if they do not, -1 is returned and nothing
+  // is done.
   int split(Corner edge, const Vec2& x, int a, int piece_a, int piece_b);
-  // Outside is where the box is, and with every piece whose `closed` is set the side changes.
+  // Marks the triangles inside: the box is outside, and the side changes across every piece whose `closed` is
+  // set.
   void mark_inside(const std::vector<char>& closed);
 
   // Calls f(triangle) for all triangles around a vertex.
@@ -67,7 +72,7 @@ class Delaunay {
         const int i = index_of(face, vertex);
         t = face.next[clockwise ? before(i) : after(i)];
         if (t == start) return;
-      }  // at a corner of the box: what is on the other side of the start
+      }  // at a corner of the box: goes on from the other side of the start
     }
   }
   static int after(int i) { return i == 2 ? 0 : i + 1; }

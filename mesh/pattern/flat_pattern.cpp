@@ -30,7 +30,8 @@ std::vector<Vec3> texture_points(const ObjDocument& document, double scale) {
   return points;
 }
 
-// How many triangles the reader made of a face: two fewer than corners, and fewer still where corners repeat.
+// How many triangles the reader made of a face: two fewer than it has corners, and fewer still where corners
+// repeat.
 std::size_t triangles_of(const std::vector<Triangle>& triangles, std::size_t first, const ObjCorner* corners,
                          std::size_t count) {
   const auto has = [&](int v) {

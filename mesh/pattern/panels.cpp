@@ -13,7 +13,8 @@ using namespace internal;
 
 namespace {
 
-// A place in a file, or what is spoken of where there is none.
+// The beginning of a message: a place in a file, or the thing that the message is about when no place is
+// known.
 std::string at(const std::string& where, const std::string& what) {
   return (where.empty() ? what : where) + ": ";
 }

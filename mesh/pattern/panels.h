@@ -1,7 +1,7 @@
 // A garment's mesh before it is sewn: its panels are placed in space, and its lines say what is sewn to what.
-//   A panel is a group of the mesh's vertices, flat in the plane z = 0. The middle of its box is brought to the
-//   origin; with `wrap` the plane is then wrapped round the y axis, x -> (r sin(x/r), y, r cos(x/r)) with the
-//   radius r = wrap + z; at last x -> rotation x + translate.                                            [m]
+//   A panel is a group of the mesh's vertices, flat in the plane z = 0. The middle of its box is brought to
+//   the origin. With `wrap` the plane is then wrapped round the y axis, x -> (r sin(x/r), y, r cos(x/r)) with
+//   the radius r = wrap + z. At last x -> rotation x + translate.                                        [m]
 #pragma once
 
 #include <optional>
@@ -30,8 +30,9 @@ std::vector<double> place_panels(TriangleMesh& mesh, const std::vector<PanelPlac
 // them: "# seam A B", or "# seam A B same" where both lines run the same way.
 std::vector<Seam> declared_seams(const TriangleMesh& mesh);
 
-// The vertices of a seam's two lines, pair by pair along the seam; the two are one vertex where the lines meet.
-// Throws InputError when a line is missing, is in several pieces, or the two have different numbers of vertices.
+// The vertices of a seam's two lines, pair by pair along the seam; where the lines meet, the two vertices of
+// a pair are the same. Throws InputError when a line is missing or in several pieces, or when the two lines
+// have different numbers of vertices.
 std::vector<std::pair<int, int>> seam_pairs(const std::vector<Polyline>& lines, const Seam& seam);
 
 }  // namespace drape

@@ -1,5 +1,5 @@
-// A sewing pattern: flat panels, their named curves, and which of these curves are sewn
-// together. Lengths in m.
+// A sewing pattern: flat panels, their named curves, and which of these curves are sewn together. Lengths are
+// in m.
 //   A loop or a line is a chain of segments. A segment may have a name; consecutive segments with the same
 //   name form one curve, PANEL.NAME. The corners between segments are vertices of every mesh.
 #pragma once
@@ -26,9 +26,9 @@ struct Panel {
   std::vector<Chain> holes, lines;  // lines are open chains inside the panel; edges of the mesh lie on them
 };
 
-// Outlines are taken counter-clockwise and holes clockwise, whichever way they were drawn. So two
-// curves that are sewn together run in opposite directions: the start of `a` meets the end of `b`,
-// unless `same_way` is set.
+// Outlines are taken counter-clockwise and holes clockwise, whichever way they were drawn. So two curves that
+// are sewn together run in opposite directions: the start of `a` meets the end of `b`, unless `same_way` is
+// set.
 struct Seam {
   std::string a, b;  // PANEL.NAME
   bool same_way = false;

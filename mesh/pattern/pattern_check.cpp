@@ -49,7 +49,7 @@ void for_each_meeting(std::vector<PieceBox> boxes, const F& f) {
 
 bool between(const Vec2& a, const Vec2& b, const Vec2& x) { return (a - x).dot(b - x) <= 0; }
 
-// Whether two straight pieces have a point in common that is not an end of both.
+// Whether two straight pieces have a point in common other than an end that both share.
 bool meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const int abc = orient2d(a, b, c), abd = orient2d(a, b, d), cda = orient2d(c, d, a),
             cdb = orient2d(c, d, b);
@@ -111,7 +111,7 @@ class PieceChecker {
 
   void check_other_panel(int i, int j) const {
     const Vec2 &a = start(i), &b = end(i), &c = start(j), &d = end(j);
-    const auto off = [&](const Vec2& p, const Vec2& q, const Vec2& x) {  // from the line p q
+    const auto off = [&](const Vec2& p, const Vec2& q, const Vec2& x) {  // distance from the line p q
       return std::abs((q - p).x() * (x - p).y() - (q - p).y() * (x - p).x()) / (q - p).norm();
     };
     const bool deep = off(a, b, c) > tolerance_ && off(a, b, d) > tolerance_ && off(c, d, a) > tolerance_ &&
@@ -133,7 +133,7 @@ class PieceChecker {
       if (other.box.contains(x) && other.holds(x) && other.distance(x) > tolerance_) overlap(p, q, x);
     };
     for (const auto& [a, b] : boundary(p).pieces) look(a), look((a + b) / 2);
-    look(boundary(p).inner_point());  // where the one has its sides on the other's
+    look(boundary(p).inner_point());  // where the sides of one panel lie on those of the other
   }
 
   struct Boundary {
@@ -147,7 +147,7 @@ class PieceChecker {
           inside = !inside;
       return inside;
     }
-    // In the middle of the widest part of the line across at half height.
+    // A point in the middle of the widest part of the horizontal line at half the height of the panel.
     Vec2 inner_point() const {
       const double y = box.center().y();
       std::vector<double> crossings;

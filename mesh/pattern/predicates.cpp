@@ -1,4 +1,4 @@
-// The only door to Boost.Multiprecision. See predicates.h.
+// The only file that knows Boost.Multiprecision. See predicates.h.
 #include "mesh/pattern/predicates.h"
 
 #include <algorithm>
@@ -11,7 +11,8 @@ namespace drape::internal {
 namespace {
 
 namespace mp = boost::multiprecision;
-// As long as needed; up to 1024 bits, which is all that a pattern takes, without memory from the heap.
+// A whole number as long as needed. Up to 1024 bits, which every pattern keeps to, it takes no memory from
+// the heap.
 using Whole = mp::number<mp::cpp_int_backend<1024, 0, mp::signed_magnitude, mp::unchecked>, mp::et_off>;
 
 constexpr double kHalfUlp = 0x1p-53;
@@ -20,7 +21,7 @@ constexpr double kCircleBound = (10 + 96 * kHalfUlp) * kHalfUlp;
 
 int sign(double x) { return (x > 0) - (x < 0); }
 
-// The coordinates as whole multiples of one power of two, the greatest that divides them all.
+// The coordinates as whole multiples of the greatest power of two that divides them all.
 template <std::size_t N>
 std::array<Whole, 2 * N> whole(const std::array<const Vec2*, N>& points) {
   std::array<std::int64_t, 2 * N> digits;

@@ -112,7 +112,7 @@ class Refinement {
       if (panel_of(piece) == panel) check_sides(mesh, piece);
   }
 
-  // The panel is on the left of what bounds it, on both sides of a line.
+  // Checks that the panel is on the left of what bounds it, and on both sides of a line.
   void check_sides(const Delaunay& mesh, const Subsegment& piece) const {
     const auto inside = [&](int a, int b) {
       const Delaunay::Corner c = mesh.edge_of(a + kBox, b + kBox);
@@ -129,7 +129,7 @@ class Refinement {
         pattern_.panels[z(run.panel)].name + "', or in one of its holes; move it");
   }
 
-  // What a triangle asks for: that it be mended, that a piece on it be split.
+  // Notes what a triangle asks for: that it be mended, or that a piece on it be split.
   void look_at(int panel, int t) {
     const Delaunay& mesh = refined_.panels[z(panel)];
     const Delaunay::Face& f = mesh.faces()[z(t)];
@@ -200,7 +200,8 @@ class Refinement {
     return asked;
   }
 
-  // The pieces that a vertex at x would see from inside their circles: on the rim of what it would change.
+  // Finds the pieces whose circles would hold a vertex at x that they see. They lie on the rim of the
+  // triangles that the new vertex would change.
   void find_in_the_way(const Delaunay& mesh, const Vec2& x, int from) {
     visited_.assign(1, from);
     seen_.resize(std::max(seen_.size(), mesh.faces().size()), 0);
@@ -218,7 +219,8 @@ class Refinement {
     }
   }
 
-  // Whether x is in the circle of a triangle; nothing hangs on the last bit here.
+  // Whether x is in the circle of a triangle. The test is not exact, because no result depends on its last
+  // bit.
   static bool holds(const Delaunay& mesh, const Delaunay::Face& f, const Vec2& x) {
     const Vec2 a = mesh.points()[z(f.v[0])] - x, b = mesh.points()[z(f.v[1])] - x,
                c = mesh.points()[z(f.v[2])] - x;
@@ -234,7 +236,8 @@ class Refinement {
     for (const int t : around_) look_at(panel, t);
   }
 
-  // Splits a piece, what is sewn on it, and the other first pieces at the sharp corners of any of these.
+  // Splits a piece, the pieces that are sewn on it, and the other first pieces at the sharp corners of any of
+  // these.
   bool split_with_twins(int p) {
     std::vector<int> ring = {p};
     for (int q = refined_.pieces[z(p)].twin; q != p; q = refined_.pieces[z(q)].twin) ring.push_back(q);
@@ -267,7 +270,8 @@ class Refinement {
     return (mesh.points()[z(piece.a + kBox)] - mesh.points()[z(piece.b + kBox)]).squaredNorm();
   }
 
-  // A piece that is half as long has been halved already.
+  // Adds the pieces that are split together with p at a sharp corner. A piece half as long has been halved
+  // already.
   void add_companions(int p, std::vector<Asked>& companions) const {
     const Subsegment& piece = refined_.pieces[z(p)];
     for (const bool at_end : {false, true}) {
@@ -311,7 +315,8 @@ class Refinement {
     look_around(panel, v);
   }
 
-  // The halves of twins are twins: first with first where the runs go the same way, else first with second.
+  // Links the halves of twins as twins: first with first where the runs go the same way, else first with
+  // second.
   void link(const std::vector<int>& ring) {
     const int count = static_cast<int>(ring.size()), fresh = static_cast<int>(refined_.pieces.size()) - count;
     const auto half = [&](int i, bool second) {
@@ -326,12 +331,12 @@ class Refinement {
   const Pattern& pattern_;
   Sides sides_;  // its leg_of grows
   const double edge_, sine_;
-  long left_;  // vertices that may still be added
+  long left_;  // number of vertices that may still be added
   Refined refined_;
   std::deque<Asked> encroached_;
   std::priority_queue<Bad> bad_;
   std::vector<int> in_the_way_, visited_, around_;
-  std::vector<long> seen_;  // of each triangle: the last look that visited it
+  std::vector<long> seen_;  // for each triangle, the last look that visited it
   long look_ = 0;
 };
 

@@ -9,7 +9,7 @@ namespace drape::internal {
 namespace {
 
 constexpr double kSharp = std::numbers::pi / 3;  // rad
-constexpr double kSameDistance = 0.1;  // how far from equal two distances from a sharp corner may be
+constexpr double kSameDistance = 0.1;  // largest relative difference of distances that count as equal
 constexpr int kBox = Delaunay::kBoxCorners;
 
 std::size_t z(int i) { return static_cast<std::size_t>(i); }
@@ -89,8 +89,8 @@ void find_sharp_corners(const Pattern& pattern, double min_angle, Sides& sides) 
       finder.look_at_corner(static_cast<int>(panel), static_cast<int>(v));
 }
 
-// How long the first pieces at sharp corners are: the same at all legs of a corner, and at the same
-// fractions of curves that are sewn.
+// The lengths [m] of the first pieces at sharp corners: the same for all legs of a corner, and the same at
+// equal fractions of curves that are sewn.
 std::vector<double> collars(const Sides& sides, double edge) {
   std::vector<double> length(sides.clusters.size(), 0.6 * edge);
   for (std::size_t c = 0; c < length.size(); ++c)
@@ -100,7 +100,7 @@ std::vector<double> collars(const Sides& sides, double edge) {
       length[c] = std::min(length[c], (f1 - f0) * run.curve.length() / 3);
     }
   for (int round = 0; round < 50; ++round) {
-    std::map<std::tuple<int, long, bool>, double> ratio;  // class, place, way: the shortest
+    std::map<std::tuple<int, long, bool>, double> ratio;  // by class, place and way: the shortest
     const auto for_each = [&](const auto& f) {
       for (std::size_t c = 0; c < length.size(); ++c)
         for (const auto& [leg, at_end] : sides.clusters[c]) {

@@ -1,4 +1,4 @@
-// Sharp corners of a drawing: where two segments meet at less than 60 degrees inside the panel.
+// Finds the sharp corners of a drawing: two segments meet there at less than 60 degrees inside the panel.
 //   Both sides of such a corner begin with a piece of the same length, its collar, and these are halved
 //   together [Ruppert 1995, section 5.2; Shewchuk 2002]. Internal to the library (not installed).
 #pragma once
@@ -8,17 +8,17 @@
 
 namespace drape::internal {
 
-inline constexpr double kSameFraction = 1e-7;  // fractions of a run that count as one
+inline constexpr double kSameFraction = 1e-7;  // fractions of a run that differ by less are the same
 
-// Fraction of the run's class for one of the run, and back.
+// The fraction of the run's class that belongs to the fraction f of the run, and the other way round.
 inline double class_fraction(const ChainRun& run, double f) { return run.turned ? 1 - f : f; }
-double leg_fraction(const ChainRun& run, int leg, bool at_end);  // of a run, at an end of one of its legs
+double leg_fraction(const ChainRun& run, int leg, bool at_end);  // fraction of a run at an end of a leg
 
-// Fills in the clusters, the legs' sharp ends, and the corners below the bound.
+// Fills in the clusters, the sharp ends of the legs, and the corners below the smallest angle [rad].
 void find_sharp_corners(const Pattern& pattern, double min_angle, Sides& sides);
 
-// The length of the collar at each cluster [m]: the same at all its legs,
-// and at the same fractions of curves that are sewn.
+// The length of the collar at each cluster [m]: the same for all its legs, and the same at equal fractions of
+// curves that are sewn.
 std::vector<double> collars(const Sides& sides, double edge);
 
 // The corner (a vertex of the panel) at an end of a leg.

@@ -33,7 +33,7 @@ class SideCutter {
   }
 
  private:
-  struct Attached {  // a corner on a run that is not the end of one of its segments: a line ends there
+  struct Attached {  // a corner on a run where a line ends; it is no end of the run's segments
     double fraction;
     int vertex;
   };
@@ -53,7 +53,7 @@ class SideCutter {
     return static_cast<int>(points.size()) - 1;
   }
 
-  // The end of a line: a corner that is there already, a point of an outline, or a new corner.
+  // The vertex at the end of a line: an existing corner, a point of an outline, or a new corner.
   int line_end(int panel, const Vec2& x) {
     std::vector<Vec2>& points = sides_.points[z(panel)];
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -84,7 +84,8 @@ class SideCutter {
     return (low + high) / 2;
   }
 
-  // Runs of a chain: from each change of name to the next; segments without a name are runs of their own.
+  // Adds the runs of a chain: a run goes from one change of name to the next, and a segment without a name is
+  // a run.
   void add_chain(int panel, const Chain& chain, bool loop) {
     const std::size_t n = chain.segments.size();
     std::vector<int> corners(n + 1);
@@ -95,7 +96,7 @@ class SideCutter {
     const auto same = [&](std::size_t i, std::size_t j) {
       return !chain.names[i].empty() && chain.names[i] == chain.names[j];
     };
-    std::size_t first = 0;  // where a run begins; 0 when the whole loop is one
+    std::size_t first = 0;  // where a run begins; 0 when the whole loop is one run
     for (std::size_t i = 0; loop && i < n; ++i)
       if (!same(i, (i + n - 1) % n)) {
         first = i;
@@ -151,7 +152,8 @@ class SideCutter {
                      (known.empty() ? "no side has a name" : "known are: " + known));
   }
 
-  // Classes of runs that are sewn on one another, each with the way it runs.
+  // Makes classes of the runs that are sewn on one another, and notes for each run the direction in which it
+  // goes.
   void sew() {
     std::vector<int> owner(sides_.runs.size());
     std::iota(owner.begin(), owner.end(), 0);
@@ -177,7 +179,7 @@ class SideCutter {
       members_[z(sides_.runs[r].seam_class)].push_back(static_cast<int>(r));
   }
 
-  // Where every run of a class must have a vertex, in fractions of the class.
+  // Finds where every run of a class must have a vertex, in fractions of the class.
   void place_knots() {
     for (std::size_t r = 0; r < sides_.runs.size(); ++r) {
       const ChainRun& run = sides_.runs[r];
@@ -205,8 +207,8 @@ class SideCutter {
     }
   }
 
-  // Whether one piece will do for a part of a curve: it is not farther from it than the tolerance, and the
-  // curve turns by no more than about a radian.
+  // Whether one straight piece is enough for a part of a curve: the curve is not farther from it than the
+  // tolerance and turns by no more than about a radian.
   bool close_enough(const ArcLength& curve, double f0, double f1) const {
     const Vec2 start = curve.at(f0), chord = curve.at(f1) - start;
     const double length = chord.norm(), allowed = std::min(tolerance_, length / 8);
@@ -218,7 +220,8 @@ class SideCutter {
     return true;
   }
 
-  // Halves a part, in fractions of the class, until each half will do on every run of it.
+  // Halves a part, given in fractions of the class, until one piece is enough for each half on every run of
+  // the class.
   void cut_part(const std::vector<int>& members, double a, double b, int depth,
                 std::vector<double>& cuts) const {
     bool good = true;
@@ -251,13 +254,13 @@ class SideCutter {
     const std::size_t count = cuts.size() - 1, first = sides_.pieces.size();
     for (std::size_t m = 0; m < members.size(); ++m) {
       add_pieces(members[m], cuts);
-      for (std::size_t i = 0; i < count; ++i)  // of the class's order, whichever way the run goes
+      for (std::size_t i = 0; i < count; ++i)  // in the order of the class, whichever way the run goes
         sides_.pieces[first + m * count + i].twin =
             static_cast<int>(first + (m + 1) % members.size() * count + i);
     }
   }
 
-  // The vertices and pieces of a run, in the order of its class.
+  // Adds the vertices and pieces of a run, in the order of its class.
   void add_pieces(int r, const std::vector<double>& cuts) {
     const ChainRun& run = sides_.runs[z(r)];
     std::vector<Attached> fixed = attached_[r];
@@ -290,7 +293,7 @@ class SideCutter {
   }
 
   static int leg_at(const ChainRun& run, double f) {
-    std::size_t low = 0, high = run.curve.segments().size() - 1;  // the first that ends at f or behind it
+    std::size_t low = 0, high = run.curve.segments().size() - 1;  // seeks the first that ends at f or later
     while (low < high) {
       const std::size_t middle = (low + high) / 2;
       f > run.curve.end_of(middle) ? low = middle + 1 : high = middle;
@@ -306,14 +309,14 @@ class SideCutter {
                                     cuts.begin());
   }
 
-  static constexpr int kDeepest = 20;  // halvings of a part that is no longer than the edge
+  static constexpr int kDeepest = 20;  // most halvings of a part that is no longer than the edge
 
   const Pattern& pattern_;
   const double edge_, tolerance_, min_angle_;
   Sides sides_;
   std::set<std::string> names_;                    // of runs
-  std::map<int, std::vector<Attached>> attached_;  // of each run
-  std::vector<std::vector<double>> knots_;         // of each class, ascending
+  std::map<int, std::vector<Attached>> attached_;  // for each run
+  std::vector<std::vector<double>> knots_;         // for each class, ascending
   std::vector<std::vector<int>> members_;          // the runs of each class
 };
 

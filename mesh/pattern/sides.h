@@ -1,12 +1,12 @@
-// The boundary of a pattern cut into pieces: where the vertices on outlines, holes and lines are at first.
-//   run    (ChainRun) a part of a chain with one name (a side that may be sewn), or one nameless segment
-//   piece  (Subsegment, as Ruppert calls it) what lies between two vertices that follow each other on a run;
-//          it is an edge of the mesh
-//   twins  pieces that are sewn on one another: they lie at the same fractions of their runs, and are split
-//          together, so that the vertices of a seam always pair
-//   corner where two segments meet; at a sharp one (less than 60 degrees inside the panel) the first pieces
-//          of both sides are equally long, and are halved together [Ruppert 1995, section 5.2, "concentric
-//          shells"], so that the sides of the corner do not drive each other to ever shorter pieces.
+// The boundary of a pattern cut into pieces, which places the first vertices on outlines, holes and lines.
+//   run     (ChainRun) the part of a chain with one name (a side that may be sewn), or one nameless segment
+//   piece   (Subsegment, as Ruppert calls it) the part of a run between two successive vertices; it is an
+//           edge of the mesh
+//   twins   pieces that are sewn on one another: they lie at the same fractions of their runs and are split
+//           together, so that the vertices of a seam always pair
+//   corner  the place where two segments meet. At a sharp corner (less than 60 degrees inside the panel) the
+//           first pieces of both sides are equally long and are halved together [Ruppert 1995, section 5.2,
+//           "concentric shells"], so that the sides do not drive each other to ever shorter pieces.
 // Internal to the library (not installed).
 #pragma once
 
@@ -20,23 +20,23 @@ namespace drape::internal {
 struct ChainRun {
   int panel;
   std::string name;  // PANEL.NAME, or empty
-  bool boundary;     // of an outline or a hole, with the panel on its left; else a line inside the panel
-  bool closed;       // all of a loop
+  bool boundary;     // part of an outline or a hole, with the panel on its left; else of an inner line
+  bool closed;       // the run is a whole loop
   ArcLength curve;
   std::vector<int> corners;  // vertices at the ends of its segments, one more than segments
-  int first_leg = 0;         // number of its first segment among all
-  int seam_class = 0;        // runs that are sewn on one another have the same
-  bool turned = false;       // runs against the first of its class
+  int first_leg = 0;         // number of its first segment among all segments
+  int seam_class = 0;        // the same for all runs that are sewn on one another
+  bool turned = false;       // runs against the first run of its class
   std::string where;
 };
 
 struct Subsegment {
   int run;
-  int a, b;            // vertices, along the run
+  int a, b;            // vertices, in the direction of the run
   double f0, f1;       // fractions of the run's length
-  int leg;             // the segment it is on
-  int twin;            // the next of those sewn together, itself when there is none
-  bool stuck = false;  // cannot be split any more
+  int leg;             // the segment on which it lies
+  int twin;            // the next of the pieces sewn together; itself when there is none
+  bool stuck = false;  // cannot be split any further
 };
 
 // A segment, and the sharp corners (numbers from 0, or -1) at its start and end.
@@ -53,16 +53,16 @@ struct Sides {
   std::vector<std::vector<std::vector<int>>> corner_legs;   // of each panel and corner
   static constexpr int kCorner = -1, kFree = -2;            // not on one leg: on several, on none
   std::vector<std::vector<int>> leg_of;                     // of each panel and point
-  std::vector<SharpCorner> sharp;                           // less than the bound
+  std::vector<SharpCorner> sharp;                           // corners sharper than the bound
   std::vector<std::vector<std::pair<int, bool>>> clusters;  // of each sharp corner: its legs, and which end
 };
 
 // Throws InputError; see triangulate().
 Sides cut_sides(const Pattern& pattern, double edge, double tolerance, double min_angle);
 
-std::string place_of(const Vec2& x);  // as messages say it
+std::string place_of(const Vec2& x);  // the place as messages give it
 
-// The loop turned to have its area on its left (`left`) or right.
+// The loop, turned round if necessary so that its area is on its left (`left`) or on its right.
 Chain wound(const Chain& loop, bool left);
 
 }  // namespace drape::internal

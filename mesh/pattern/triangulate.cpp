@@ -1,4 +1,5 @@
-// From a pattern to a mesh with its document and a report. See pattern.h; how: sides.h, refine.h.
+// Makes a mesh with its document and a report from a pattern. See pattern.h; sides.h and refine.h explain the
+// method.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <charconv>
@@ -22,7 +23,7 @@ std::size_t z(int i) { return static_cast<std::size_t>(i); }
 
 constexpr int kBox = Delaunay::kBoxCorners;
 constexpr double kMostTriangles = 20e6;
-constexpr double kSharpestBound = 33;  // deg: refinement ends in practice up to here [Shewchuk 2002]
+constexpr double kSharpestBound = 33;  // deg: up to here refinement ends in practice [Shewchuk 2002]
 
 double total_area(const Pattern& pattern) {
   double area = 0;
@@ -44,7 +45,7 @@ double boundary_length(const Pattern& pattern) {
   return length;
 }
 
-// Two digits are enough for what nobody has asked for exactly.
+// Two digits are enough for a value that the user has not given exactly.
 double two_digits(double x) {
   const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
   return std::floor(x / unit) * unit;
@@ -73,7 +74,7 @@ class Assembler {
   }
 
  private:
-  // Near vertices get near numbers: sorted along the curve of Morton (bits of x and y in turn).
+  // Gives near vertices near numbers: they are sorted along the Morton curve (the bits of x and y in turn).
   std::vector<int> ordered(const Delaunay& mesh) const {
     Eigen::AlignedBox2d box;
     for (std::size_t i = kBox; i < mesh.points().size(); ++i) box.extend(mesh.points()[i]);

@@ -1,4 +1,4 @@
-// How far points reach: their box along the axes, an Eigen::AlignedBox. That of no points isEmpty().
+// How far points reach: their box along the axes, an Eigen::AlignedBox. The box of no points isEmpty().
 #pragma once
 
 #include <Eigen/Geometry>
@@ -15,7 +15,7 @@ Eigen::AlignedBox<double, Point::RowsAtCompileTime> box_of(const std::vector<Poi
   return box;
 }
 
-// Of the vertices that carry triangles: a stray one counts for nothing.
+// The box of the vertices that belong to a triangle; stray vertices do not count.
 inline Eigen::AlignedBox3d box_of(const std::vector<Vec3>& positions,
                                   const std::vector<Triangle>& triangles) {
   Eigen::AlignedBox3d box;

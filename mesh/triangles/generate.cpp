@@ -1,4 +1,5 @@
-// The meshes of generate.h. Positions are symmetric about the origin to the last bit where the shape is.
+// Makes the meshes of generate.h. Positions are symmetric about the origin to the last bit where the shape
+// is.
 #include "mesh/triangles/generate.h"
 
 #include <Eigen/Geometry>
@@ -19,10 +20,10 @@ void require(bool good, const std::string& what) {
   if (!good) throw InputError(what);
 }
 
-// From -size/2 to size/2 in count - 1 equal steps.
+// The i-th of `count` numbers from -size/2 to size/2 in equal steps.
 double spread(int i, int count, double size) { return size * (2 * i - (count - 1)) / (2.0 * (count - 1)); }
 
-// Two triangles of the quad p q r s, cut from p to r or from q to s.
+// Adds the two triangles of the quad p q r s, which is cut from p to r or from q to s.
 void add_quad(TriangleMesh& mesh, int p, int q, int r, int s, bool along_pr) {
   if (along_pr) {
     mesh.triangles.push_back({p, q, r});
@@ -44,8 +45,8 @@ TriangleMesh icosahedron() {
   return mesh;
 }
 
-// Every triangle into four; the new vertices, one per edge,
-// come after the old ones in the order of the edges.
+// Divides every triangle into four. The new vertices, one for each edge, come after the old ones in the order
+// of the edges.
 TriangleMesh subdivide(const TriangleMesh& coarse) {
   const std::vector<Edge> all = edges(coarse);
   TriangleMesh fine;
@@ -216,7 +217,7 @@ TriangleMesh capsule(int around, double radius, double length) {
   require(radius > 0 && length >= 0, "a capsule needs a radius above 0 and a length");
   Outline outline;
   add_arc(outline, {0, -length / 2}, radius, -kTurn / 4, 0, around / 4);
-  // Rings on the cylinder so that no cell is a needle, but not without end.
+  // Rings on the cylinder keep its cells from being needles; their number is bounded.
   const double cells = length / (radius * kTurn / around);
   const int pieces = static_cast<int>(std::clamp(std::ceil(cells / 8), 1.0, 256.0));
   for (int k = 1; k < pieces; ++k) outline.emplace_back(radius, spread(k, pieces + 1, length));

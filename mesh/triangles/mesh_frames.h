@@ -14,9 +14,9 @@ namespace drape {
 
 class MeshFrames {
  public:
-  // Adds a frame. Throws InputError when the time [s] is not later than that of the frame before, when
-  // the number of vertices is not that of the first frame, or when a position [m] is not finite or is
-  // beyond the range of float.
+  // Adds a frame. Throws InputError when the time [s] is not later than that of the frame before, when the
+  // number of vertices is not that of the first frame, or when a position [m] is not finite or beyond the
+  // range of float.
   void add(double time, const std::vector<Vec3>& positions);
 
   int frame_count() const { return static_cast<int>(times_.size()); }
@@ -24,7 +24,7 @@ class MeshFrames {
   double first_time() const { return times_.front(); }  // s
   double last_time() const { return times_.back(); }    // s
 
-  // The positions [m] at this time [s]. There must be a frame. Allocates nothing when `out`
+  // Writes the positions [m] at this time [s] into `out`. There must be a frame. Allocates nothing when `out`
   // already has the right size.
   void positions_at(double time, std::vector<Vec3>& out) const;
 

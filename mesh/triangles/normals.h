@@ -1,14 +1,14 @@
-// Normals of triangles and polygons, and what those of vertices are summed of.
+// Normals of triangles and polygons, and the sums of them that are normals of vertices.
 //   triangle  (b - a) x (c - a): as long as twice the area   [m^2]
 //   polygon   N = 1/2 sum_i x_i x x_(i+1), Newell's: as long as the area   [m^2]
-//   vertex    a sum over the corners of faces that meet there. Which corners, and how much each counts, is
-//             the caller's to say, because it serves different ends:
+//   vertex    a sum over the corners of faces that meet there. Each caller chooses which corners count, and
+//             how much, because the sums serve different ends:
 //               mesh/obj/obj_write.cpp         Newell's, of the corners that shared a vn entry of the file
 //               app/export/faces.cpp           by area, of faces joined by edges that are not hard
 //               app/picture/normals.cpp        by the angle at the corner, of faces that lean little away
-//               mesh/distance/surface_pose.h   by the angle, of all: its sign tells inside from outside
-//             (The page of `drape view` sums by area, too, in the browser: app/view/web/src/normals.js.)
-// Without an area a triangle has the normal 0. Internal to the library (not installed).
+//               mesh/distance/surface_pose.h   by the angle, of all faces: the sign tells inside from outside
+//             (The page of `drape view` also sums by area, in the browser: app/view/web/src/normals.js.)
+// A triangle without an area has the normal 0. Internal to the library (not installed).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -21,10 +21,10 @@ namespace drape {
 
 inline Vec3 twice_area_normal(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
-// Of the polygon with these corners (vertex numbers).
+// The normal of the polygon with these corners (vertex numbers).
 Vec3 newell_normal(const std::vector<Vec3>& positions, const int* corners, int count);
 
-// Between two directions of any length, exact where they are nearly parallel, too. [rad]
+// The angle [rad] between two directions of any length; it is also accurate where they are nearly parallel.
 inline double angle_between(const Vec3& p, const Vec3& q) { return std::atan2(p.cross(q).norm(), p.dot(q)); }
 
 }  // namespace drape

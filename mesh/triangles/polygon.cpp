@@ -14,14 +14,15 @@ namespace {
 // Diagonals that differ by less than this are equally long: files hold some six digits, so that the diagonals
 // of a regular grid come out 1e-5 to 1e-4 apart.
 constexpr double kSameLength = 1e-3;
-constexpr double kFlat = 1e-10;  // area over squared size below which an ear counts as collinear
+constexpr double kFlat = 1e-10;  // area / squared size below which an ear counts as collinear
 
-// How much an ear may be touched by the rest of the polygon.
+// How closely the rest of the polygon may come to an ear that is cut off.
 enum Strictness { kUntouched = 0, kTouched = 1, kCollinear = 2 };
 
 double cross(double ax, double ay, double bx, double by) { return ax * by - ay * bx; }
 
-// Drops corners equal to the one before, and spikes (a b a), which have no area; true if there were any.
+// Drops corners equal to the one before, and spikes (a b a), which have no area. Returns true if there were
+// any.
 bool drop_repeated(std::vector<int>& corners) {
   const std::size_t before = corners.size();
   std::vector<int> kept;
@@ -33,7 +34,7 @@ bool drop_repeated(std::vector<int>& corners) {
     }
     kept.push_back(corner);
   }
-  // The same across the seam between the last corner and the first.
+  // Drops repeated corners and spikes also where the last corner meets the first.
   std::size_t first = 0;
   while (kept.size() - first >= 2) {
     if (kept[first] == kept.back()) {
@@ -94,7 +95,7 @@ void PolygonCutter::cut_quad(std::vector<Triangle>& triangles) {
   }
 }
 
-// Coordinates in the plane of the Newell normal, in which the polygon runs counter-clockwise.
+// Computes coordinates in the plane of the Newell normal, in which the polygon runs counter-clockwise.
 void PolygonCutter::flatten() {
   const int count = static_cast<int>(corners_.size());
   const Vec3 normal = newell_normal(positions_, corners_.data(), count).stableNormalized();
@@ -109,7 +110,7 @@ void PolygonCutter::flatten() {
   }
 }
 
-// Shape of the ear at corner i, or -1 if there is none.
+// The quality of the shape of the ear at corner i, or -1 if there is no ear.
 double PolygonCutter::ear_quality(int i, int strictness) const {
   const int a = before_[i], c = after_[i];
   if (corners_[a] == corners_[c]) return -1;
@@ -132,7 +133,7 @@ double PolygonCutter::ear_quality(int i, int strictness) const {
   return area / size;
 }
 
-// False if some of the polygon had to be cut as a fan.
+// Cuts off ears. Returns false if a part of the polygon had to be cut as a fan.
 bool PolygonCutter::clip_ears(std::vector<Triangle>& triangles) {
   flatten();
   int left = static_cast<int>(corners_.size()), start = 0;

@@ -4,7 +4,7 @@
 //   larger   ear clipping in the plane of Newell's normal (mesh/triangles/normals.h), best-shaped ear first
 //            (area over the sum of squared edges)
 // n corners give n - 2 triangles, wound like the polygon; concave, non-planar and self-touching polygons are
-// welcome. A corner equal to the one before it is passed over, and so is a spike (1 2 1), which has no area:
+// allowed. A corner equal to the one before it is passed over, and so is a spike (1 2 1), which has no area:
 // they give no triangle. No triangle names a vertex twice.
 #pragma once
 
@@ -35,8 +35,8 @@ class PolygonCutter {
   const std::vector<Vec3>& positions_;
   std::vector<int> diagonals_at_;    // how many quad diagonals end at each vertex so far
   std::vector<int> corners_;         // of the polygon being cut
-  std::vector<double> u_, w_;        // its corners in its own plane
-  std::vector<int> before_, after_;  // corners that are still there, as a ring
+  std::vector<double> u_, w_;        // the corners in the plane of the polygon
+  std::vector<int> before_, after_;  // neighbours among the corners that are left, as a ring
 };
 
 }  // namespace drape::internal

@@ -1,6 +1,6 @@
-// Topology by sorting: the three sides of every triangle are put into buckets by their lower vertex and each
-// small bucket is sorted by the upper one. Linear time, no hashing,
-// the same lists whatever the order of the triangles.
+// Topology by sorting: the three sides of every triangle are put into buckets by their lower vertex, and each
+// small bucket is sorted by the upper one. This takes linear time and no hashing, and gives the same lists
+// whatever the order of the triangles.
 #include "mesh/triangles/topology.h"
 
 #include <Eigen/Geometry>
@@ -17,7 +17,7 @@ namespace {
 
 bool names_twice(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
-// One side of a triangle, in the bucket of its lower vertex.
+// One side of a triangle; it stands in the bucket of its lower vertex.
 struct Side {
   int b;         // upper vertex
   int opposite;  // third vertex of the triangle
@@ -27,11 +27,11 @@ struct Side {
 
 struct Sides {
   std::vector<std::size_t> start;  // vertices + 1 entries into sides
-  std::vector<Side> sides;         // of each bucket by (b, opposite)
+  std::vector<Side> sides;         // within each bucket sorted by (b, opposite)
 };
 
-// Puts items 0 .. count-1 into buckets by key(item); place(item, slot) stores each.
-// Returns the start of every bucket.
+// Puts the items 0 .. count-1 into buckets by key(item); place(item, slot) stores each item. Returns the
+// start of every bucket.
 template <class Key, class Place>
 std::vector<std::size_t> fill_buckets(int buckets, std::size_t count, const Key& key, const Place& place) {
   std::vector<std::size_t> start(static_cast<std::size_t>(buckets) + 1, 0);
@@ -165,7 +165,7 @@ std::vector<Diagonal> diagonals(const TriangleMesh& mesh) {
 
 namespace {
 
-// Boundary edges around each vertex, both ways round, and the walk that takes every one of them once.
+// The boundary edges around each vertex, in both directions, and the walk that takes every edge once.
 class BoundaryWalk {
  public:
   explicit BoundaryWalk(const TriangleMesh& mesh) {
@@ -188,7 +188,7 @@ class BoundaryWalk {
   }
 
  private:
-  // The lowest edge at v that has not been walked yet, -1 if there is none.
+  // The lowest edge at v that has not been walked yet, or -1 if there is none.
   int take_edge(int v) {
     std::size_t& next = next_[v];
     while (next < start_[v + 1] && used_[around_[next]]) ++next;
@@ -220,10 +220,10 @@ class BoundaryWalk {
     }
   }
 
-  // The path from `from` on has come back to where it began: it is a loop.
+  // Closes a loop: the path from `from` on has come back to where it began.
   void close_loop(std::size_t from) {
     std::vector<int> loop(path_.begin() + static_cast<std::ptrdiff_t>(from), path_.end());
-    int with = 0;  // edges run as their triangle runs, less those run against it
+    int with = 0;  // edges that run as their triangle runs, less those that run against it
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const Edge& edge = edges_[path_edges_[from + k]];
       with += (edge.a == loop[k]) == (edge.forward == 1) ? 1 : -1;
@@ -240,7 +240,7 @@ class BoundaryWalk {
   std::vector<std::size_t> start_, next_;
   std::vector<int> around_;  // edge numbers, vertex by vertex
   std::vector<char> used_;
-  std::vector<int> path_, path_edges_, place_;  // place_: where a vertex stands in the path, -1: nowhere
+  std::vector<int> path_, path_edges_, place_;  // place_: where a vertex stands in the path, or -1
   std::vector<std::vector<int>> loops_;
 };
 
@@ -252,7 +252,7 @@ std::vector<int> welded(const std::vector<Vec3>& positions) {
   std::vector<int> order(positions.size()), first(positions.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](int i, int j) {
-    for (int k = 0; k < 3; ++k)  // a weak order: a place that is not a number must not break the sorting
+    for (int k = 0; k < 3; ++k)  // a weak order: NaN must not break the sorting
       if (const auto between = std::weak_order(positions[i][k], positions[j][k]); between != 0)
         return between < 0;
     return i < j;

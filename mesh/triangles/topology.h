@@ -23,13 +23,13 @@ struct Hinge {
   int tc, td;  // the triangle that has c and the triangle that has d
 };
 
-// Two different vertices, c < d, that are opposite each other across one or
-// more edges [Noh & Jung, section 2].
+// Two different vertices, c < d, that are opposite each other across one or more edges
+// [Noh & Jung, section 2].
 struct Diagonal {
   int c, d;
 };
 
-// The numbers of the triangles that count, ascending; of equal triangles the first one.
+// The numbers of the triangles that count, ascending; equal triangles count once, as the first of them.
 std::vector<int> counted_triangles(const TriangleMesh& mesh);
 
 std::vector<Edge> edges(const TriangleMesh& mesh);  // sorted by (a, b), each once

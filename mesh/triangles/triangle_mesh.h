@@ -2,8 +2,8 @@
 //   positions  one per vertex, in the order of the file   [m]
 //   triangles  three vertex numbers each, from 0
 //   groups     named sets of vertices ('g' and 'o' in the OBJ file)
-// The mesh knows no physics. Edges, diagonals, areas and the like are
-// free functions (mesh/triangles/topology.h).
+// The mesh knows no physics. Edges, diagonals, areas and the like are free functions
+// (mesh/triangles/topology.h).
 #pragma once
 
 #include <array>

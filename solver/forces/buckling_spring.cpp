@@ -5,7 +5,7 @@
 namespace drape {
 namespace {
 
-// Power series in y = u^2 of three entire functions, so that nothing is lost near the straight state:
+// Power series in y = u^2 of three entire functions; with them no digits are lost near the straight state:
 //   S = (1 - sinc u) / y,   C = (cos u - sinc u) / y,   N = (3 C + 1 - y S) / y
 constexpr int terms = 14;
 struct Series {
@@ -30,7 +30,7 @@ constexpr Series make_series() {
 
 constexpr Series series = make_series();
 
-// First guess of y from delta: a fit of relative error 5e-4 over [0, 1].
+// A first guess of y for a given delta: a fit with a relative error of 5e-4 over [0, 1].
 double first_guess(double delta) {
   return delta *
          (5.99860042 +
@@ -63,7 +63,7 @@ Buckling immediate_buckling(double delta) {
 double clamp_crossing(double c_hat) {
   constexpr double four_pi_squared = 39.478417604357434;
   if (!(c_hat > four_pi_squared)) return 1;
-  double low = 0, high = 1;  // c_hat delta + force(delta) < 0 at low, > 0 at high
+  double low = 0, high = 1;  // c_hat delta + force(delta) is < 0 at low and > 0 at high
   for (int k = 0; k < 80; ++k) {
     const double mid = 0.5 * (low + high);
     (c_hat * mid + immediate_buckling(mid).force < 0 ? low : high) = mid;

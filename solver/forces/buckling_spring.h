@@ -5,7 +5,7 @@
 //   t(l) = dE/dl = (k_b / L^2) 4 u^2 / (cos u - sinc u)       negative: it pushes apart
 //   t*   = max(t, c_b (l - L))       the clamp: linear in l from L down to where the two forces are equal
 // k_b [N m^2], L [m], c_b [N/m].  For l >= L there is no force.
-// The clamp takes the bending rigidity away below a curvature, which solver/forces/noh_jung.h gives;
+// The clamp takes the bending rigidity away below a curvature that solver/forces/noh_jung.h gives;
 // solver/forces/connections.h chooses c_b. When c_b L^3 / k_b <= 4 pi^2 the force never leaves the clamp, and
 // the connection is a linear spring throughout.
 #pragma once
@@ -14,7 +14,7 @@
 
 namespace drape {
 
-// The law in numbers without dimension, at delta = 1 - l/L in [0, 1].
+// The law in dimensionless numbers, at delta = 1 - l/L in [0, 1].
 struct Buckling {
   double energy;     // E L / k_b    = 2 u^2
   double force;      // t L^2 / k_b
@@ -47,9 +47,9 @@ struct BucklingSpring {
     const Buckling b = immediate_buckling(delta);
     return {r.k_b / (r.L * r.L) * b.force, r.k_b / (r.L * r.L * r.L) * b.stiffness};
   }
-  // The force of a buckled connection hardly changes until the clamp takes it away at once: with its slope
-  // alone, a step shoots past the clamp and back, for ever. The chord to the rest length sees it coming; its
-  // parabola lies above the energy.
+  // The force of a buckled connection hardly changes until the clamp takes it away at once. With the slope of
+  // the force alone, a step shoots past the clamp and back, for ever. The chord to the rest length foresees
+  // the clamp, and the parabola with the stiffness of the chord lies above the energy.
   static double chord(const Rest& r, double l) { return l < r.L ? tension(r, l).t / (l - r.L) : 0; }
   static double stiffest(const Rest& r, double l) { return l >= r.L && l < 1.02 * r.L ? r.c_b : chord(r, l); }
 };

@@ -10,7 +10,7 @@
 namespace drape {
 namespace {
 
-// Where every vertex of the mesh rests.
+// The rest position [m] of every vertex of the mesh.
 std::vector<Vec3> rest_positions(const TriangleMesh& mesh, const TriangleMesh& rest) {
   std::vector<Vec3> positions = mesh.positions;
   std::vector<char> known(positions.size(), 0);
@@ -27,7 +27,7 @@ std::vector<Vec3> rest_positions(const TriangleMesh& mesh, const TriangleMesh& r
   return positions;
 }
 
-// A cell at rest: a is the mean length of its sides 0-1 and 2-3, b that of the others.
+// A cell at rest: a is the mean length of its sides 0-1 and 2-3, b that of its other two sides.
 struct Cell {
   double a, b;  // m
 };
@@ -42,12 +42,12 @@ class RestGrid {
   }
 
   double length(int i, int j) const { return (x_[i] - x_[j]).norm(); }
-  double area(const QuadGrid::Quad& q) const {  // of its two triangles, m^2
+  double area(const QuadGrid::Quad& q) const {  // m^2, of its two triangles
     const auto at = [&](int k) { return x_[q[k]]; };
     return 0.5 * ((at(1) - at(0)).cross(at(2) - at(0)).norm() + (at(2) - at(0)).cross(at(3) - at(0)).norm());
   }
   const Cell& cell(int quad) const { return cells_[quad]; }
-  // The cell's extent along its side i j, and across it.
+  // The extents of the cell: a along its side i j, b across it.
   Cell along(int quad, int i, int j) const {
     const QuadGrid::Quad& q = grid.quads[quad];
     const auto is_side = [&](std::size_t s) {
@@ -84,7 +84,8 @@ std::vector<StretchConnection> stretch_connections(const RestGrid& rest, const F
   return out;
 }
 
-// A connection over the links h_1, h_2 that bends a strip of this width: k_b for a rigidity of 1.
+// The k_b that a connection over the links h1, h2 [m], which bends a strip of this width [m], has for a
+// rigidity of 1.
 double per_rigidity(double width, double h1, double h2, double L) {
   return width * L * L * L / (6 * h1 * h2 * (h1 + h2));
 }
@@ -96,7 +97,7 @@ void add_bends(const RestGrid& rest, const Fabric& fabric, bool diagonal, std::v
                two = diagonal ? rest.cell(s.quad_c) : rest.along(s.quad_c, s.m, s.c);
     const double a = 0.5 * (one.a + two.a), b = 0.5 * (one.b + two.b), d2 = a * a + b * b;
     if (!(h1 > 0 && h2 > 0 && L > 0 && a > 0 && b > 0)) continue;
-    // A row has a half of its width on either side; a line of diagonals is alone.
+    // A row counts half of its width on either side; a line of diagonals has its whole width at once.
     const double width = diagonal ? a * b / std::sqrt(d2) : 0.5 * b;
     const double share = diagonal ? d2 * d2 / (6 * a * a * b * b) : std::max(0.0, 1 - a * a / (3 * b * b));
     const double unit = per_rigidity(width, h1, h2, L);

@@ -1,4 +1,4 @@
-// The elements of a force, cut at the chunks of a pattern, so that threads never write the same row.
+// The elements of a force, divided by the chunks of a pattern, so that two threads never write the same row.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,8 @@ namespace drape {
 
 class ChunkSchedule {
  public:
-  // first_row(e) ascending over the elements e = 0 .. count-1, whose rows all lie within the bandwidth.
+  // Divides the elements e = 0 .. count-1. first_row(e) must ascend, and all rows of an element must lie
+  // within the bandwidth.
   template <class FirstRow>
   void bind(const BlockPattern& pattern, int count, const FirstRow& first_row) {
     start_.assign(static_cast<std::size_t>(pattern.chunks()) + 1, count);
@@ -23,7 +24,8 @@ class ChunkSchedule {
     serial_ = pattern.rows() < serial_below;
   }
 
-  // f(e) for every element: even chunks side by side, then odd ones; in order when not bound.
+  // Calls f(e) for every element: first the even chunks in parallel, then the odd ones. When the schedule is
+  // not bound, the elements are taken in order.
   template <class F>
   void run(int count, const F& f) const {
     if (start_.empty()) {

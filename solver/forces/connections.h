@@ -1,16 +1,16 @@
-// What joins the particles of a cloth, as plain numbers. A model makes these numbers from a mesh
-// (solver/forces/noh_jung.h, solver/forces/choi_ko.h), and forces are made from them. The ends i, j are
+// The connections that join the particles of a cloth, as plain numbers. A model makes these numbers from a
+// mesh (solver/forces/noh_jung.h, solver/forces/choi_ko.h), and forces are made from them. The ends i, j are
 // vertices of the mesh.
 //   stretch  TensionSpring                                        k [N/m], L [m]
 //   bend     BucklingSpring                                       k_b [N m^2], c_b [N/m], L [m]
-//   damping  PairDamping along both                               k_d [N s/m], of the fabric
+//   damping  PairDamping along both kinds                         k_d [N s/m], of the fabric
 //
 // The clamp c_b of the bend connections makes their response continuous but removes bending rigidity below a
 // curvature kappa; c_b kappa^2 is a constant of the connection. By default c_b is chosen so that kappa is at
 // most a tenth of the curvature that the fabric takes under its own weight,
-//   limp_curvature = 0.1 / c,  c = (B / (sigma g))^(1/3) its bending length,
-// but between k_s and stiffest_clamp k_s: a clamp stiffer than that would cost more than the rigidity is
-// worth (limp_below says when a mesh is so fine that it shows).
+//   limp_curvature = 0.1 / c,  c = (B / (sigma g))^(1/3) the bending length of the fabric,
+// but c_b is kept between k_s and stiffest_clamp k_s: a stiffer clamp would cost more than the rigidity is
+// worth. (limp_below says when a mesh is so fine that the lost rigidity shows.)
 #pragma once
 
 #include <memory>
@@ -40,20 +40,21 @@ struct Connections {
   std::vector<BendConnection> bend;
 };
 
-// m_i / w_i with w_i = max_k N_k / N_i, N_i the number of particles that i is connected to: exactly Noh &
-// Jung's weighted forces (eq. 1-3), as a symmetric system.
+// Divides every mass m_i by w_i = max_k N_k / N_i, where N_i is the number of particles to which i is
+// connected. This gives exactly Noh & Jung's weighted forces (eq. 1-3), as a symmetric system.
 std::vector<double> neighbour_weighted(std::vector<double> masses, const Connections& connections);
 
-// 0.1 / c [1/m] of a bending rigidity [N m] and an area density [kg/m^2] under g = 9.81 m/s^2.
+// The curvature 0.1 / c [1/m] for a bending rigidity [N m] and an area density [kg/m^2] under g = 9.81 m/s^2.
 double limp_curvature(double bend, double area_density);
 
 inline constexpr double stiffest_clamp = 10;  // times k_s
 
-// Vertex v is the particle first_particle + v of the system. Connections without stiffness give no force.
+// Makes the forces. Vertex v is the particle first_particle + v of the system. Connections without stiffness
+// give no force.
 std::vector<std::unique_ptr<Force>> forces_of(const Connections& connections, const Fabric& fabric,
                                               int first_particle = 0);
 
-// The curvature [1/m] below which the clamp makes this cloth limp: the median over the bend connections, 0
+// The curvature [1/m] below which the clamp makes this cloth limp: the median over the bend connections, or 0
 // when there are none.
 double limp_below(const Connections& connections, const Fabric& fabric);
 

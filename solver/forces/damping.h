@@ -1,7 +1,7 @@
 // Internal damping between two particles; neither kind slows a free fall.
 //   relative  f_i = -k_d (v_i - v_j),             D = k_d I       [Noh & Jung, eq. 14]
 //   axial     f_i = -k_d ((v_i - v_j) . n) n,     D = k_d n n^T   along the connection only
-// k_d [N s/m].  Coincident particles: axial damping is nil.
+// k_d [N s/m]. Axial damping is zero between coincident particles.
 #pragma once
 
 #include "solver/forces/stencil_force.h"

@@ -8,7 +8,7 @@ namespace {
 struct FaceLaw {
   static constexpr const char* name = "face-contact";
   static constexpr int particles = 3;
-  using Rest = const FaceContact*;  // of the contacts of the step
+  using Rest = const FaceContact*;  // points to a contact of the step
   struct Common {};
 
   static std::array<double, 3> weights(const Rest& c) {
@@ -48,7 +48,7 @@ class FaceContactForce final : public StencilForce<FaceLaw> {
         constraints_(constraints) {}
 
   bool from_contact() const override { return true; }
-  // The edges of all triangles: which of them touch changes with every step.
+  // The edges of all triangles are listed, because other triangles touch in every step.
   void list_pairs(std::vector<ParticlePair>& pairs) const override {
     for (const ClothFace& face : constraints_.faces().all())
       for (std::size_t k = 0; k < 3; ++k) pairs.push_back({face.particles[k], face.particles[(k + 1) % 3]});

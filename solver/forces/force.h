@@ -1,6 +1,7 @@
-// What pushes on particles. Const during a step, once it is bound to the matrix.
+// A force pushes on particles. It is const during a step, once it is bound to the matrix.
 //   f = -dE/dx (+ damping),  K = -df/dx (positive semidefinite part),  D = -df/dv
-// Vectors are in particle order, 3 a particle; the matrix is in row order (solver/matrix/block_matrix.h).
+// Vectors are in the order of the particles, 3 numbers for each; the matrix is in row order
+// (solver/matrix/block_matrix.h).
 #pragma once
 
 #include <string_view>
@@ -10,19 +11,21 @@
 
 namespace drape {
 
-// Of all relative motion, or along the connection only (solver/forces/damping.h).
+// What damping slows: all relative motion, or only that along the connection (solver/forces/damping.h).
 enum class DampingKind { relative, axial };
 
-// Which K stands in an implicit step.
+// Which stiffness K an implicit step uses.
 enum class Stiffness {
-  tangent,  // the positive semidefinite part of -df/dx here
-  // Stiffer where a force falls off on the way to the rest length, so that a step does not overshoot it.
+  tangent,  // the positive semidefinite part of -df/dx at the current positions
+  // A stiffer K where a force falls off on the way to the rest length, so that a step does not overshoot that
+  // length.
   chord,
-  // Also what a slack connection will resist with once it is taut: slower, and never surprised.
+  // A K that also contains the stiffness that slack connections will have once they are taut: Newton's
+  // iteration is slower, but a connection that becomes taut never surprises it.
   majorant,
 };
 
-// What a force is told before a step.
+// What a force learns before a step.
 struct StepStart {
   double t, h;    // s
   const VecX& x;  // m, at t
@@ -33,26 +36,26 @@ class Force {
  public:
   virtual ~Force() = default;
   virtual std::string_view name() const = 0;
-  // Of bodies in the way, and not of the cloth: what it stores is counted apart.
+  // True for a force of bodies in the way, not of the cloth. The energy that it stores is counted apart.
   virtual bool from_contact() const { return false; }
 
-  // Which particles act on each other: the off-diagonal blocks that this force fills as long as it stands.
+  // Lists the pairs of particles that act on each other as long as the force exists: its off-diagonal blocks.
   virtual void list_pairs(std::vector<ParticlePair>& pairs) const = 0;
-  // Whether it has stencils that come and go.
+  // Whether the force has stencils that come and go.
   virtual bool changes() const { return false; }
-  // Finds those of a step; true when they are others than in the last one.
+  // Finds the stencils of a step. Returns true when they differ from those of the last step.
   virtual bool begin_step(const StepStart&) { return false; }
-  // Their pairs, besides those of list_pairs.
+  // Lists the pairs of those stencils, besides the pairs of list_pairs.
   virtual void list_changing_pairs(std::vector<ParticlePair>&) const {}
-  // Remembers where its blocks stand in matrices of this layout.
+  // Remembers where the blocks of the force are in matrices of this layout.
   virtual void bind(const BlockLayout& layout) = 0;
 
-  // Pure functions of x and v, given the stencils of the step.
+  // All functions below are pure functions of x and v, given the stencils of the step.
   virtual double energy(const VecX& x) const = 0;                                       // J
   virtual double dissipation(const VecX& /*x*/, const VecX& /*v*/) const { return 0; }  // v . D v / 2 [W]
   virtual void add_force(const VecX& x, const VecX& v, VecX& f) const = 0;              // f += force [N]
-  // The two sides of an implicit step, linearised at (x, v):  A += c D + c^2 K,  b += c (f - K y).
-  // c [s], y [m]: see solver/integrators/bdf.h.
+  // Adds this force to the two sides of an implicit step, linearised at (x, v):
+  //   A += c D + c^2 K,  b += c (f - K y).        solver/integrators/bdf.h explains c [s] and y [m].
   virtual void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,
                               BlockMatrix& A, VecX& b) const = 0;
 };

@@ -1,7 +1,7 @@
-// Spring that resists both ways, as the lattices of soft bodies have it.                              [SB]
+// A spring that resists both ways, as in the lattices of soft bodies.                                  [SB]
 //   E(l) = k/2 (l - L)^2,   t = k (l - L)
-// k [N/m], L [m]. Under compression the stiffness along the spring stays, that across it, t/l < 0, is dropped
-// (solver/forces/pair_force.h).
+// k [N/m], L [m]. Under compression the stiffness along the spring stays, and the negative stiffness t/l
+// across it is dropped (solver/forces/pair_force.h).
 #pragma once
 
 #include "solver/forces/pair_force.h"

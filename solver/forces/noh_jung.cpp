@@ -11,18 +11,18 @@
 namespace drape {
 namespace {
 
-// One side of an edge: what a triangle knows of it.
+// One side of an edge, as one of its triangles sees it.
 struct RestSide {
   int a, b;       // a < b
   double l;       // m
   double area;    // m^2
-  int count = 1;  // triangles
+  int count = 1;  // number of triangles
 };
 
 const Triangle& at(const std::vector<Triangle>& triangles, int k) { return triangles[k]; }
 const Vec3& at(const std::vector<Vec3>& positions, int k) { return positions[k]; }
 
-// The sides of all edges, sorted, those of one edge and of one length together.
+// The sides of all edges, sorted; the sides of one edge that have the same length count as one.
 std::vector<RestSide> rest_sides(const TriangleMesh& mesh, const TriangleMesh& rest) {
   std::vector<RestSide> sides;
   sides.reserve(3 * mesh.triangles.size());
@@ -40,7 +40,7 @@ std::vector<RestSide> rest_sides(const TriangleMesh& mesh, const TriangleMesh& r
   });
   std::size_t kept = 0;
   for (std::size_t k = 0; k < sides.size(); ++k) {
-    constexpr double same = 1e-9;  // relative: lengths that differ by what a file rounds off
+    constexpr double same = 1e-9;  // relative: lengths that differ only by the rounding of a file
     RestSide* const last = kept > 0 ? &sides[kept - 1] : nullptr;
     if (last && last->a == sides[k].a && last->b == sides[k].b && sides[k].l <= last->l * (1 + same)) {
       last->area += sides[k].area;
@@ -59,7 +59,7 @@ std::vector<StretchConnection> stretch_connections(const TriangleMesh& mesh, con
   const std::vector<RestSide> sides = rest_sides(mesh, rest);
   out.reserve(sides.size());
   for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
-    int triangles = 0;  // of the edge, over all lengths
+    int triangles = 0;  // of the edge, over all its lengths
     for (; last < sides.size() && sides[last].a == sides[first].a && sides[last].b == sides[first].b; ++last)
       triangles += sides[last].count;
     for (std::size_t k = first; k < last; ++k) {
@@ -72,12 +72,13 @@ std::vector<StretchConnection> stretch_connections(const TriangleMesh& mesh, con
   return out;
 }
 
-// A hinge as it rests: its edge and the heights and feet of c and d over it.
+// A hinge at rest: the length of its edge, the rest length across it, and the heights of c and d over the
+// edge.
 struct RestHinge {
   double l, L, h1, h2;  // m
 };
 
-// The corners of the rest's triangle that belong to a, b and c of the cloth's.
+// The corners of the rest shape's triangle that correspond to these vertices of the cloth's triangle.
 std::array<Vec3, 3> corners(const TriangleMesh& mesh, const TriangleMesh& rest, int triangle,
                             const std::array<int, 3>& vertices) {
   std::array<Vec3, 3> found;
@@ -88,7 +89,7 @@ std::array<Vec3, 3> corners(const TriangleMesh& mesh, const TriangleMesh& rest, 
   return found;
 }
 
-// All lengths are 0 where the edge has none.
+// The rest lengths of a hinge. All of them are 0 where the edge has no length.
 RestHinge rest_hinge(const TriangleMesh& mesh, const TriangleMesh& rest, const Hinge& hinge) {
   const std::array<Vec3, 3> one = corners(mesh, rest, hinge.tc, {hinge.a, hinge.b, hinge.c}),
                             two = corners(mesh, rest, hinge.td, {hinge.a, hinge.b, hinge.d});
@@ -115,7 +116,7 @@ std::vector<BendConnection> bend_connections(const TriangleMesh& mesh, const Tri
   for (const Hinge& hinge : hinges(mesh)) {
     auto [l, L, h1, h2] = rest_hinge(mesh, rest, hinge);
     if (l == 0 || L == 0) continue;
-    // Slivers would be infinitely stiff: a height counts for at least a fifth of the edge.
+    // Slivers would be infinitely stiff, so a height counts for at least a fifth of the edge.
     if (h1 < 1e-9 * l || h2 < 1e-9 * l) continue;
     h1 = std::max(h1, 0.2 * l);
     h2 = std::max(h2, 0.2 * l);

@@ -4,16 +4,16 @@
 //   struct Spring { struct Rest {...}; static constexpr const char* name;
 //     static double energy(const Rest&, double l);      // E(l)                                        [J]
 //     static Tension tension(const Rest&, double l);    // t = dE/dl [N], dt/dl [N/m]
-//     static double chord(const Rest&, double l);       // stiffer where a step would overshoot, else 0  [N/m]
+//     static double chord(const Rest&, double l);       // stiffer where a step would overshoot, else 0 [N/m]
 //     static double stiffest(const Rest&, double l);    // >= dt/dl: of a parabola above E(l)          [N/m]
 //   };
 // With d = x_i - x_j, l = |d|, n = d/l:
 //   f_i = -t n - k_d ((v_i - v_j) . n) n,   f_j = -f_i
 //   K   = max(dt/dl, 0) n n^T + max(t/l, 0) (I - n n^T)     of block (i,i) and (j,j); -K of (i,j)
-// The two eigenvalues of the exact stiffness are dt/dl and t/l (twice), so clamping them at zero is its exact
-// positive semidefinite part: it drops the transverse term under compression, as Choi & Ko 2002 do.
-// Coincident particles: no direction, so no force; K = dt/dl I when t = 0 there (a weld), else 0.
-// k_d [N s/m]: damping along every pair.
+// The two eigenvalues of the exact stiffness are dt/dl and t/l (twice). So clamping them at zero gives the
+// positive semidefinite part exactly. It drops the transverse term under compression, as Choi & Ko 2002 do.
+// Coincident particles have no direction and so no force; K = dt/dl I when t = 0 there (a weld), else 0.
+// k_d [N s/m] is the damping along every pair.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 namespace drape {
 
 struct Tension {
-  double t;   // N, positive pulls together
+  double t;   // N, positive: it pulls the particles together
   double dt;  // N/m
 };
 

@@ -1,4 +1,4 @@
-// Numbers of a material that make no sense are refused at the door. Internal (not installed).
+// Refuses material numbers that make no sense before anything is computed. Internal (not installed).
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace drape {
 
-// Throws InputError "field = value unit: what" unless the value is good, and a finite number.
+// Throws InputError "field = value unit: what" unless `good` is true and the value is a finite number.
 inline void require(bool good, const char* field, double value, const char* unit, const char* what) {
   if (good && std::isfinite(value)) return;
   std::ostringstream message;

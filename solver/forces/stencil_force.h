@@ -6,9 +6,9 @@
 //   struct Rest {...};      // one element's data, such as its rest length
 //   struct Common {...};    // the same for all elements, such as a damping coefficient (may be any type)
 // and, with X [m] the positions, one column a particle, either
-//   static double energy(const Common&, const Rest&, const Points<n>& X);                          // E [J]
-//   static Points<n> gradient(const Common&, const Rest&, const Points<n>& X);                     // dE/dX [N]
-//   static Blocks<n> hessian(const Common&, const Rest&, const Points<n>& X, Stiffness);           // [N/m]
+//   static double energy(const Common&, const Rest&, const Points<n>& X);                        // E [J]
+//   static Points<n> gradient(const Common&, const Rest&, const Points<n>& X);                   // dE/dX [N]
+//   static Blocks<n> hessian(const Common&, const Rest&, const Points<n>& X, Stiffness);         // [N/m]
 //   static Blocks<n> damping(const Common&, const Rest&, const Points<n>& X);  // D [N s/m]; may be left out
 // where the Hessian is symmetric and positive semidefinite: the exact one, projected, for Stiffness::tangent;
 // one that is nowhere smaller where the law asks for a chord or a majorant (solver/forces/force.h). Or, when
@@ -19,12 +19,13 @@
 //   static Vec3 pull(const Common&, const Rest&, const Vec3& p, const auto& velocity);
 //   static VectorResponse linearised(const Common&, const Rest&, const Vec3& p, const auto& velocity,
 //                                    const auto& shift, double c, Stiffness);
-// velocity() is sum w_k v_k, shift() is sum w_k y_k: asked for only where they are needed. The pull is
-// dE/dp + D v: f_k = -w_k pull. The response is that of an implicit step, see Force::add_linearised.
+// velocity() is sum w_k v_k and shift() is sum w_k y_k; they are functions because they are computed only
+// when asked for. The pull is dE/dp + D v, and f_k = -w_k pull. The response is that of an implicit step (see
+// Force::add_linearised).
 //
-// Stencils either stand as long as the force does, or are found anew in every step by a function that is given
-// to the force. Those that stand are worked on by all threads; those that are found, in the order in which
-// they were found, by one.
+// Stencils either stand as long as the force exists, or are found anew in every step by a function that is
+// given to the force. All threads add the forces and blocks of stencils that stand. One thread adds those of
+// found stencils, in the order in which they were found.
 #pragma once
 
 #include <array>
@@ -41,7 +42,8 @@ using Points = Eigen::Matrix<double, 3, n>;
 template <int n>
 using Blocks = Eigen::Matrix<double, 3 * n, 3 * n>;
 
-// c (dE/dp + K s) + c D v  [N s] and c D + c^2 K  [kg], symmetric to the last bit.
+// The impulse c (dE/dp + K s) + c D v [N s], with s the shift, and the block c D + c^2 K [kg], which is
+// symmetric to the last bit.
 struct VectorResponse {
   Vec3 impulse = Vec3::Zero();
   Mat3 block = Mat3::Zero();
@@ -63,10 +65,11 @@ class StencilForce : public Force {
   struct Element {
     std::array<int, static_cast<std::size_t>(n)> particles;
     typename Law::Rest rest = {};
-    // Of the blocks (0,0), (0,1) .. (n-1,n-1) in the matrix; ~slot where it stands there transposed.
+    // Where the blocks (0,0), (0,1) .. (n-1,n-1) are in the matrix: slot, or ~slot for a block that is
+    // transposed there.
     std::array<int, static_cast<std::size_t>(blocks)> slots = {};
   };
-  // Fills in the stencils of a step, and says whether they are others than those that it was given.
+  // Fills in the stencils of a step, and returns whether they differ from those that it was given.
   using Finder = std::function<bool(const StepStart&, std::vector<Element>&)>;
 
   explicit StencilForce(std::vector<Element> elements, Common common = {})
@@ -74,7 +77,7 @@ class StencilForce : public Force {
   explicit StencilForce(Finder find, Common common = {}) : common_(common), find_(std::move(find)) {}
 
   const std::vector<Element>& elements() const { return elements_; }
-  // Between steps: change(rest) for every element, such as a rest length that goes with time.
+  // Calls change(rest) for every element, between steps, such as for a rest length that changes with time.
   template <class F>
   void change_rest(const F& change) {
     for (Element& e : elements_) change(e.rest);
@@ -215,7 +218,7 @@ class StencilForce : public Force {
   static Eigen::Map<const Eigen::Matrix<double, 3 * n, 1>> flat(const Points<n>& X) {
     return Eigen::Map<const Eigen::Matrix<double, 3 * n, 1>>(X.data());
   }
-  // sum w_k x_k
+  // The vector sum w_k x_k of an element.
   static Vec3 at(const Element& e, const VecX& all) {
     const auto w = Law::weights(e.rest);
     Vec3 p = w[0] * all.segment<3>(3 * e.particles[0]);

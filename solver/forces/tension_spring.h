@@ -1,4 +1,4 @@
-// The connection along an edge: a spring that goes slack instead of pushing.             [Noh & Jung, eq. 5-8]
+// The connection along an edge: a spring that goes slack instead of pushing.            [Noh & Jung, eq. 5-8]
 //   E(l) = k/2 (l - L)^2   l >= L,   0 otherwise
 //   t    = k (l - L)
 // k [N/m], L [m]. A pair within round-off of its rest length counts as taut, so that a sheet at rest resists

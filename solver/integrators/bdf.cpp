@@ -34,9 +34,9 @@ StepReport Bdf::advance(State& state, double h) {
   return report;
 }
 
-// S (A dv - b) = 0 within the contacts as they are.                                   [Baraff & Witkin 1998, 5.3]
-// Which contacts hold is found with loose solves; the last one is to the tolerance asked for, from where they
-// came. Bodies that react wait for that one, and then the contacts may change their mind again.
+// Solves S (A dv - b) = 0 within the contacts as they are.                        [Baraff & Witkin 1998, 5.3]
+// Loose solves find out which contacts hold. The last solve keeps the tolerance asked for and starts from the
+// last loose one. Bodies that react are moved only after that solve, and then the contacts may change again.
 class Bdf::ContactSolve {
  public:
   ContactSolve(Bdf& bdf, const State& state, Stiffness stiffness, ContactStep& contacts, StepReport& report)
@@ -107,7 +107,7 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
     linearise(state, newton.stiffness(), contacts, report);
     if (newton.may_stop() && residual(contacts) <= residual_wanted()) break;
     if (!newton.first()) dv_.setZero();
-    // S (A dv - b) = 0 within the contacts, until they agree with dv                       [BW98, 5.1 to 5.3]
+    // Solve S (A dv - b) = 0 within the contacts, until the contacts agree with dv.    [BW98, 5.1 to 5.3]
     ContactSolve solve(*this, state, newton.stiffness(), contacts, report);
     if (!settle_contacts(contacts, options_.max_contact_solves, solve, report) || !good(linear_))
       return fail(report, "linear solve: " + std::string(drape::name(linear_.reason)));
@@ -117,9 +117,10 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
   }
   if (k().order_2() && merit_.makes_energy(state, p_, contacts.work())) {
     ++report.rescues;
-    return attempt(state, {piece.h, false, piece.shortest}, report);  // order 1
+    return attempt(state, {piece.h, false, piece.shortest}, report);  // taken again by order 1
   }
-  // In a shorter step the cloth weighs less on bodies; where none is short enough the report says so.
+  // A shorter step lets the cloth weigh less on the bodies. When even the shortest piece is too long, the
+  // report says so.
   if (!contacts.bodies_agree() && !piece.shortest)
     return fail(report, "the motion of a body that reacts and that of the cloth do not agree");
   finish(state, contacts, report);
@@ -141,8 +142,9 @@ ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& repor
   system_.begin_step({state.time, piece.h, state.x, state.v});
   history_.begin(state, piece, contacts);
   history_.first_point(state, p_);
-  // The first dv is free fall: so rigid motion is right from the first iterate, and a solve that is cut short
-  // cannot eat gravity. In the point of order 2 it is there already, but for what starts anew.
+  // The first dv is free fall. So rigid motion is right from the first iterate, and a solve that is cut short
+  // cannot lose gravity. The point of order 2 already includes the fall, except for particles that start
+  // anew.
   for (int i = 0; i < system_.particles(); ++i)
     dv_.segment<3>(3 * i) =
         history_.extrapolates(i) ? Vec3(Vec3::Zero()) : Vec3(piece.h * system_.gravity_acceleration());
@@ -165,7 +167,7 @@ void Bdf::linearise(const State& state, Stiffness stiffness, const ContactStep& 
   merit_.measure(A_.matrix(), p_, k().c);
 }
 
-// |S b| at (x, v): what is left of the nonlinear equation in the free directions [N s].
+// The norm |S b| at (x, v), in the free directions: how far the nonlinear equation is from being met [N s].
 double Bdf::residual(ContactStep& contacts) {
   add_friction(friction(contacts));
   contacts.filter(p_.v, filter_);
@@ -177,7 +179,7 @@ double Bdf::residual_wanted() const {
   return options_.newton_tolerance * merit_.weight_impulse() + merit_.noise_impulse();
 }
 
-// The friction of contacts, scaled as the rows are.
+// The friction of the contacts, scaled as the rows of the matrix are.
 const std::vector<ContactFriction>& Bdf::friction(ContactStep& contacts) {
   friction_ = contacts.friction();
   for (ContactFriction& f : friction_) {
@@ -187,7 +189,7 @@ const std::vector<ContactFriction>& Bdf::friction(ContactStep& contacts) {
   return friction_;
 }
 
-// A += h D,  b_rubbed = b + the impulse - h D slip.
+// Adds friction to both sides:  A += h D,  b_rubbed = b + the impulse - h D slip.
 void Bdf::add_friction(const std::vector<ContactFriction>& friction) {
   b_rubbed_ = b_;
   for (const ContactFriction& f : friction) {
@@ -201,7 +203,7 @@ void Bdf::add_friction(const std::vector<ContactFriction>& friction) {
 
 bool Bdf::descend(ContactStep& contacts, bool first) {
   v_base_ = p_.v;
-  if (first) {  // standing still, but for what is prescribed
+  if (first) {  // standing still, except for what is prescribed
     contacts.filter(p_.v, filter_);
     v_base_ = -p_.v;
     filter_.impose(v_base_);

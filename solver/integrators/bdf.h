@@ -1,11 +1,13 @@
 // The backward difference formulas of order 1 and 2 in one step: "implicit-euler" and "bdf2".
 //   (M + c D + c^2 K) dv = M (v_bar - v) + c (f(x, v) - K y),   y = x_bar + c v - x,   c = gamma h
 //   then v += dv, x = x_bar + c v.    K = -df/dx, D = -df/dv at the point of linearisation (x, v).
-// gamma, x_bar, v_bar, and where they differ from particle to particle: solver/integrators/step_history.h.
-// Order 1 linearises at the last state. Order 2 at v_n + w (v_n - v_{n-1}), x_bar + c times that: from the
-// last state one solve with a K that is not the exact one would be of first order only.
-// This is Newton's iteration for the minimum of the incremental potential, kept from overshooting by
-// solver/integrators/merit.h. Contacts are settled within each of its solves: solver/integrators/contact_loop.h.
+// gamma, x_bar and v_bar, which may differ between particles, are explained in
+// solver/integrators/step_history.h.
+// Order 1 linearises at the last state. Order 2 linearises at the velocity v_n + w (v_n - v_{n-1}) and at
+// x_bar + c times that velocity: from the last state, one solve with a K that is not the exact one would be
+// of first order only.
+// The iteration is Newton's for the minimum of the incremental potential; solver/integrators/merit.h keeps it
+// from overshooting. Contacts are settled within each of its solves (solver/integrators/contact_loop.h).
 // A step of order 2 that made energy is taken again by order 1 (and counted in rescues).
 // x [m], v [m/s], M [kg], f [N], h [s].
 #pragma once
@@ -19,13 +21,13 @@ namespace drape {
 
 class Bdf final : public Integrator {
  public:
-  // Keeps references to the system and the constraints. order: 1 or 2.
+  // Keeps references to the system and the constraints. `order` is 1 or 2.
   Bdf(System& system, Constraints& constraints, std::unique_ptr<LinearSolver> solver,
       const StepOptions& options = {}, int order = 1);
 
   std::string_view name() const override { return history_.order() == 1 ? "implicit-euler" : "bdf2"; }
-  // A step that fails (not finite, no convergence) is taken again in halves, at most max_halvings times
-  // halved.
+  // A step that fails (not finite, no convergence) is taken again in halves, those again in halves, and so
+  // on, at most max_halvings times.
   StepReport advance(State& state, double h) override;
 
   StepOptions& options() { return options_; }
@@ -55,10 +57,10 @@ class Bdf final : public Integrator {
   StepHistory history_;
   NewtonMatrix A_;
   Merit merit_;
-  Point p_;              // where Newton's iteration stands
-  VecX dv_;              // m/s: in, the guess of a solve; out, its solution
+  Point p_;              // the current point of Newton's iteration
+  VecX dv_;              // m/s: before a solve its guess, afterwards its solution
   LinearReport linear_;  // of the last solve
-  State before_;         // where a step that fails half-way returns to
+  State before_;         // the state to which a step that fails half-way returns
 
   // Scratch of a step.
   Point end_;
@@ -67,7 +69,7 @@ class Bdf final : public Integrator {
   std::vector<ContactFriction> friction_;  // scaled as the rows are
 };
 
-// The step of Baraff & Witkin, order 1.
+// Implicit Euler, the step of Baraff & Witkin: order 1.
 using ImplicitEuler = Bdf;
 
 }  // namespace drape

@@ -46,7 +46,7 @@ void Explicit::take(State& state, double h, StepReport& report) {
   motion_.begin(state, h, report);
   count_given(state);
   const VecX& start = motion_.start_velocity();
-  double work = 0;  // J, of what holds particles
+  double work = 0;  // J, done by what holds particles
   for (std::size_t i = 0; i < static_cast<std::size_t>(tableau_.stages); ++i) {
     x_ = state.x;
     V_[i] = start;
@@ -81,7 +81,8 @@ void Explicit::take(State& state, double h, StepReport& report) {
   }
 }
 
-// What came since the end of the last step, by contact or from outside; at first, all that there is.
+// Adds the energy that came since the end of the last step, by contact or from outside; before the first
+// step, all the energy that there is.
 void Explicit::count_given(const State& state) {
   double more = system_.kinetic_energy(motion_.start_velocity());
   if (x_.size() != state.x.size())
@@ -93,9 +94,9 @@ void Explicit::count_given(const State& state) {
   given_ += std::max(0.0, more);
 }
 
-// See the header. What gravity does in one step counts whole, since a scheme may give the speed before the
-// fall; and what is slower than a micrometre a second counts as standing still, or round-off would be a
-// motion.
+// The header explains the test. The fall of one whole step counts as given, because a scheme may give the
+// speed before the fall. A speed below a micrometre per second counts as standing still, so that round-off is
+// not a motion.
 bool Explicit::explodes(double h) const {
   constexpr double too_much = 1000, still = 1e-6;  // m/s
   const double mass = std::accumulate(system_.masses().begin(), system_.masses().end(), 0.0);
@@ -104,7 +105,7 @@ bool Explicit::explodes(double h) const {
   return std::isfinite(kinetic) && kinetic > too_much * (given_ + mass * (fall * fall + still * still));
 }
 
-// Which particle is the fastest, and which force holds most of the energy.
+// Names the fastest particle and the force that holds most of the energy.
 StepFailure Explicit::explosion() const {
   StepFailure failure{.what = "the cloth has a thousand times the energy that it was ever given",
                       .force = {}};

@@ -1,4 +1,5 @@
-// State(t) -> State(t + h), and a report that is data: what it took, how well it went, and where it failed.
+// An integrator takes State(t) to State(t + h). Its report is data: what the step cost, how well it went,
+// where it failed.
 #pragma once
 
 #include <optional>
@@ -12,26 +13,27 @@
 namespace drape {
 
 struct StepOptions {
-  // Linear solves per step at least; 1 is Baraff & Witkin's step.
+  // The least number of linear solves in a step; 1 is Baraff & Witkin's step.
   int newton_iterations = 1;
-  // Of the nonlinear residual, relative to h |m g|. When it is met the step needs no more iterations.
+  // The tolerance of the nonlinear residual, relative to h |m g|. When it is met, the step needs no more
+  // iterations.
   double newton_tolerance = 1e-6;
   double tolerance = 1e-6;  // of the linear solve, see LinearOptions
-  // 0: the limit is chosen by the size of the system, and reaching it is a failure. When a limit is given, the
-  // solve stops there, and the report says so.
+  // The most iterations of a linear solve. 0: the size of the system gives the limit, and reaching it is a
+  // failure. When a limit is given, the solve stops there, and the report says so.
   int max_linear_iterations = 0;
   std::optional<ContactMode> contact = {};  // unset: the mode that suits the integrator best
-  // How often a step may be solved again because a contact changed, for every motion that is tried for a body
-  // that reacts.
+  // How often a step may be solved again because a contact changed. The count starts again for every motion
+  // that is tried for a body that reacts.
   int max_contact_solves = 8;
   int max_rescues = 20;  // further Newton iterations when a full one would raise the incremental potential
   int max_halvings = 6;  // how often a failed step may be halved before it is given up
-  // Of the integrators with inner steps (cvode-, arkode-): the error of an inner step may be
+  // For the integrators with inner steps (cvode-, arkode-): the error of an inner step may be
   // relative_tolerance times |x| or |v|, plus the absolute tolerance.
   double relative_tolerance = 1e-4;
   double absolute_tolerance_position = 1e-5;  // m
   double absolute_tolerance_velocity = 1e-3;  // m/s
-  int max_inner_steps = 5000;                 // in a step; more is a failure
+  int max_inner_steps = 5000;                 // most inner steps in a step; more is a failure
 };
 
 // Why and where a step failed.
@@ -42,11 +44,11 @@ struct StepFailure {
 };
 
 struct StepReport {
-  bool done = true;        // false: the state is as it was before the step, but bodies that react may not be
-  StepFailure failure;     // of a step that is not done
-  int substeps = 1;        // pieces that the step was cut into, because it failed as a whole
-  int inner_steps = 0;     // of the integrators that choose their inner steps
-  int inner_rejected = 0;  // inner steps tried in vain: the error was too large, or nothing converged
+  bool done = true;           // false: the state is as before the step, but bodies that react may not be
+  StepFailure failure;        // of a step that is not done
+  int substeps = 1;           // pieces that the step was cut into, because it failed as a whole
+  int inner_steps = 0;        // of the integrators that choose their inner steps
+  int inner_rejected = 0;     // inner steps tried in vain: the error was too large, or nothing converged
   int newton_iterations = 0;  // this and the next counts are sums over the substeps
   int linear_solves = 0;
   int linear_iterations = 0;
@@ -64,8 +66,8 @@ class Integrator {
   virtual ~Integrator() = default;
   virtual std::string_view name() const = 0;
   virtual StepReport advance(State& state, double h) = 0;  // h [s]
-  // Energy [J] that came from outside since the last step, other than by a changed state: a force was
-  // changed.
+  // Tells the integrator of energy [J] that came from outside since the last step without a change of the
+  // state, because a force was changed.
   virtual void count_given(double /*energy*/) {}
 };
 
@@ -75,13 +77,14 @@ void check_step(const System& system, const State& state, double h);
 // Lets the constraints end a step at x, v, which they may change, and notes in the report what they found.
 void end_step(ContactStep& contacts, VecX& x, VecX& v, StepReport& report);
 
-// "implicit-euler". Throws InputError for a name that integrators() does not list.
+// Makes the integrator of that name, "implicit-euler" for example. Throws InputError for a name that
+// integrators() does not list.
 std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,
                                             std::unique_ptr<LinearSolver> solver,
                                             const StepOptions& options = {});
 
-// How the integrator of that name treats contact: as asked for, else in its own way. Throws InputError where
-// it cannot do as asked.
+// How the integrator of that name treats contact: as asked, or else in its own way. Throws InputError when it
+// cannot do what was asked.
 ContactMode contact_mode(std::string_view integrator, std::optional<ContactMode> asked);
 
 struct IntegratorInfo {

@@ -1,5 +1,5 @@
-// A step that fails whole is taken in halves, those again in halves, at most max_halvings times; and none of
-// it is done when the shortest piece fails, too.
+// Takes a step in pieces: a step that fails as a whole is taken in halves, and those again in halves, at most
+// max_halvings times. When the shortest piece fails, too, the state returns to where the step began.
 #pragma once
 
 #include <cmath>
@@ -10,12 +10,13 @@ namespace drape {
 
 struct Piece {
   double h;       // s
-  bool whole;     // it is all of the step
-  bool shortest;  // it will not be halved
+  bool whole;     // the piece is all of the step
+  bool shortest;  // the piece will not be halved
 };
 
-// attempt(piece) takes `state` on by the piece, or returns false and leaves it. `before` is where a step that
-// fails half-way returns to; it is the caller's, so that nothing is allocated.
+// attempt(piece) takes `state` on by the piece, or returns false and leaves the state as it is. `before` is
+// the state to which a step that fails half-way returns; it belongs to the caller, so that nothing is
+// allocated.
 template <class Attempt>
 void take_in_pieces(State& state, double h, int max_halvings, State& before, StepReport& report,
                     const Attempt& attempt) {

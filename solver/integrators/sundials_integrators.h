@@ -1,4 +1,4 @@
-// The integrators that are in the build when SUNDIALS is. Internal to the library (not installed).
+// The integrators that this build has only with SUNDIALS. Internal to the library (not installed).
 #pragma once
 
 #include "solver/integrators/integrator.h"
@@ -9,7 +9,7 @@ std::unique_ptr<Integrator> make_newton_kinsol(System& system, Constraints& cons
                                                std::unique_ptr<LinearSolver> solver,
                                                const StepOptions& options);
 
-// CVODE and ARKODE.
+// The integrators of CVODE and ARKODE.
 std::vector<IntegratorInfo> sundials_ode_methods();
 std::unique_ptr<Integrator> make_sundials_ode(std::string_view name, System& system, Constraints& constraints,
                                               std::unique_ptr<LinearSolver> solver,
