@@ -2,7 +2,6 @@
 //   h <- (h xor byte) * 1099511628211, for one byte after the other, from h = 14695981039346656037
 //                                                  [Fowler, Noll & Vo 1991; offset and prime as in RFC 9923]
 // Numbers are hashed by the bytes that hold them, so 0 and -0 differ.
-// Internal to the library (not installed).
 #pragma once
 
 #include <cstddef>

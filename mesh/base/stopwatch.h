@@ -1,6 +1,6 @@
 // A stopwatch adds the time for which it lives to a number of milliseconds when it is destroyed. That number
 // must outlive the stopwatch: when the number belongs to a report that is returned by value, the stopwatch
-// stands in a block of its own that ends before the return. Internal to the library (not installed).
+// stands in a block of its own that ends before the return.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,6 @@
 // The point of a triangle nearest to x, and the feature (vertex, edge or face) that holds it.
 //   [Ericson 2005, Real-time collision detection, 5.1.5]
-// For a triangle without an area the feature is a vertex or an edge. Internal to the library (not installed).
+// For a triangle without an area the feature is a vertex or an edge.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -3,7 +3,6 @@
 //                                        [Provot 1997, Collision and self-collision handling]
 // The roots of g are sought between its turning points, where it is monotone, so that no root is passed over.
 // A point that stays in the plane all the way (g = 0) does not cross it.
-// Internal to the library (not installed).
 #pragma once
 
 #include <array>

@@ -6,7 +6,6 @@
 // node stand side by side, so that a search measures four at once (Eigen::AlignedBox holds only one). The
 // effect of rounding is less than `slack`, by which a search looks farther. So no triangle that counts is
 // left out, and further triangles that a search proposes do not change any answer.
-// Internal to the library (not installed).
 #pragma once
 
 #include <Eigen/Core>

@@ -2,7 +2,7 @@
 // neighbours, and is wound like them. Unclean input is mended. Triangles with a repeated vertex and second
 // copies of a triangle are dropped. Triangles of zero area stay in the topology, because they close cracks,
 // and stand after the others. A surface that is open as numbered is tried again with vertices of exactly
-// equal position made one, as uv seams need. Internal to the library (not installed).
+// equal position made one, as uv seams need.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,7 +1,6 @@
 // A surface in one configuration: where its vertices are, and the normals of its faces there.
 //   Standing  the surface as it was constructed; which faces have no area is known
 //   Moving    the surface at s of a step, when every vertex goes straight from its start to its end
-// Internal to the library (not installed).
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-// Grids of level sets as OpenVDB files; the only place that knows OpenVDB (vdb_file.cpp). Internal.
+// Grids of level sets as OpenVDB files; the only place that knows OpenVDB (vdb_file.cpp).
 // A file holds three grids:
 //   "surface"  a level set: the nodes that are needed are active, and the background is the largest of their
 //              distances, so that other programs read it as a narrow band

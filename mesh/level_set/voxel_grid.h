@@ -1,5 +1,4 @@
 // The grid of a level set: sparse bricks of distances near the surface, and a coarse lattice everywhere.
-// Internal.
 //   node i       stands at voxel * i
 //   brick        4 x 4 x 4 nodes
 //   cell         2 x 2 x 2 bricks; `far` is the signed distance at its centre

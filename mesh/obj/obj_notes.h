@@ -1,6 +1,6 @@
 // What the OBJ reader notes while it reads: warnings, one of each kind, and which faces are in which group.
 //   Groups: a face belongs to the names of the last 'g' (several are allowed) and of the last 'o'. An 'o'
-//   ends the groups of the object before it, unless no face has come since the 'g'. Internal (not installed).
+//   ends the groups of the object before it, unless no face has come since the 'g'.
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// The letters of an OBJ file: lines, words and numbers. Internal (not installed).
+// The letters of an OBJ file: lines, words and numbers.
 //   line      ends with LF, CRLF or (in a file without any LF) CR; a backslash at its end joins the next one,
 //             unless it stands in a comment
 //   comment   from '#' to the end of the line, where '#' begins the line or follows a blank

@@ -3,7 +3,7 @@
 //   no corner opposite it lies inside the circle of the triangle on its other side, by exact predicates.
 // A point is added by splitting a triangle in three, or the two triangles of an edge in four, and flipping
 // edges afterwards [Lawson 1977]. A missing edge is brought in by flipping the edges that cross it
-// [Sloan 1993]. Internal to the library (not installed).
+// [Sloan 1993].
 #pragma once
 
 #include <Eigen/Geometry>

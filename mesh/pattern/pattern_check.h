@@ -1,4 +1,4 @@
-// Finds what is wrong with a pattern before it is meshed. Internal to the library (not installed).
+// Finds what is wrong with a pattern before it is meshed.
 #pragma once
 
 #include "mesh/pattern/sides.h"

@@ -1,5 +1,4 @@
 // Tells on which side a point is, exactly: rounding cannot change the signs.
-// Internal to the library (not installed).
 //   orient2d(a, b, c)     sign of  | bx-ax by-ay ; cx-ax cy-ay |          > 0: a, b, c counter-clockwise
 //   incircle(a, b, c, d)  sign of  | ax-dx ay-dy (ax-dx)^2+(ay-dy)^2 ; ... |   > 0: d inside the circle of
 //                                                                              a, b, c (counter-clockwise)

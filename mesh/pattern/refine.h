@@ -7,7 +7,7 @@
 //   A triangle whose shortest edge spans such a corner, with both ends equally far from it, is left as it is
 //   [Miller, Pav & Walkington 2003].
 // No piece is split below 1/1000 of the edge, and the number of vertices is limited, so that refinement ends
-// for every drawing; the triangles that stay bad are counted. Internal to the library (not installed).
+// for every drawing; the triangles that stay bad are counted.
 #pragma once
 
 #include <memory>

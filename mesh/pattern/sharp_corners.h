@@ -1,6 +1,6 @@
 // Finds the sharp corners of a drawing: two segments meet there at less than 60 degrees inside the panel.
 //   Both sides of such a corner begin with a piece of the same length, its collar, and these are halved
-//   together [Ruppert 1995, section 5.2; Shewchuk 2002]. Internal to the library (not installed).
+//   together [Ruppert 1995, section 5.2; Shewchuk 2002].
 #pragma once
 
 #include "mesh/pattern/delaunay.h"

@@ -7,7 +7,6 @@
 //   corner  the place where two segments meet. At a sharp corner (less than 60 degrees inside the panel) the
 //           first pieces of both sides are equally long and are halved together [Ruppert 1995, section 5.2,
 //           "concentric shells"], so that the sides do not drive each other to ever shorter pieces.
-// Internal to the library (not installed).
 #pragma once
 
 #include <string>

@@ -8,7 +8,7 @@
 //               app/picture/normals.cpp        by the angle at the corner, of faces that lean little away
 //               mesh/distance/surface_pose.h   by the angle, of all faces: the sign tells inside from outside
 //             (The page of `drape view` also sums by area, in the browser: app/view/web/src/normals.js.)
-// A triangle without an area has the normal 0. Internal to the library (not installed).
+// A triangle without an area has the normal 0.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-// Refuses material numbers that make no sense before anything is computed. Internal (not installed).
+// Refuses material numbers that make no sense before anything is computed.
 #pragma once
 
 #include <cmath>

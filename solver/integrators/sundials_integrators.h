@@ -1,4 +1,4 @@
-// The integrators that this build has only with SUNDIALS. Internal to the library (not installed).
+// The integrators that this build has only with SUNDIALS.
 #pragma once
 
 #include "solver/integrators/integrator.h"

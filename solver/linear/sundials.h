@@ -1,4 +1,4 @@
-// What all that wraps SUNDIALS shares. Internal to the library (not installed).
+// What all that wraps SUNDIALS shares.
 //   SUNDIALS calls our assembly and our linear solver through a SUNLinearSolver of our own, which it asks for
 //   the solution of its Newton system; it never sees a matrix.                     [Hindmarsh et al. 2005]
 //   Its vectors are views of ours, with serial arithmetic in a fixed order.

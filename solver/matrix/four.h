@@ -1,4 +1,4 @@
-// Four doubles at a time, read from anywhere. Internal to the library (not installed).
+// Four doubles at a time, read from anywhere.
 #pragma once
 
 #ifdef __AVX__
