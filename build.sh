@@ -19,7 +19,7 @@ usage: ./build.sh WORD
                   checked out, from the one before), from REVISION, or all
   format          format the sources in place; format --check only looks
   sanitize        build with the address and undefined-behaviour sanitizers and run the tests, but for the slow ones
-  debug           build without optimisation, with assertions, and run the quick tests
+  debug           build with assertions, for a debugger, and run the quick tests
   clang           build with clang and run the quick tests
   odr             build as for debug and check, when linking, that no two source files mean different things by one name
   docs            make a site of the pages in docs/ and of the C++ interface, build/docs/site, and look for dead links in it

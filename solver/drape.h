@@ -20,6 +20,7 @@
 #include "solver/forces/pair_force.h"
 #include "solver/forces/soft.h"
 #include "solver/forces/stencil_force.h"
+#include "solver/forces/woven.h"
 #include "solver/integrators/bdf.h"
 #include "solver/system/measure.h"
 #include "solver/system/system.h"

@@ -8,6 +8,8 @@
 #include "solver/forces/damping.h"
 #include "solver/forces/linear_spring.h"
 #include "solver/forces/pair_force.h"
+#include "solver/forces/plate_pair.h"
+#include "solver/forces/woven.h"
 #include "tests/integrators.h"
 #include "tests/outside/forces.h"
 #include "tests/same_bits.h"
@@ -109,7 +111,32 @@ struct PointTriangle {
   static Law::Rest rest() { return {{0.5, 0.2, 0.3}, Vec3(1, 2, -1).normalized(), 0.3, 50}; }
   static Law::Common common() { return {}; }
 };
-using Cases = std::tuple<FullSpring, Distance, Area, PointTriangle>;
+Membrane::Common fabric_of(double compression) {
+  Fabric fabric{.stretch = 60};
+  fabric.weave = {.stretch_weft = 30,
+                  .shear = 12,
+                  .poisson = 0.2,
+                  .compression = compression,
+                  .stretch_time = 0.01,
+                  .shear_time = 0.02};
+  return membrane_of(fabric);
+}
+template <int percent>
+struct Woven {  // taut in some triangles and slack in others
+  using Law = Membrane;
+  static Law::Rest rest() {
+    Law::Rest rest{.weights = {}, .area = 0.3};
+    rest.weights << -1.2, -0.9, 1.4, 0.2, -0.2, 0.7;
+    return rest;
+  }
+  static Law::Common common() { return fabric_of(0.01 * percent); }
+};
+struct PlateOfTwo {
+  using Law = PlateLaw;
+  static Law::Rest rest() { return {3}; }
+  static Law::Common common() { return 0.02; }
+};
+using Cases = std::tuple<FullSpring, Distance, Area, PointTriangle, Woven<100>, Woven<30>, PlateOfTwo>;
 
 Eigen::MatrixXd dense(const BlockMatrix& A) {  // in particle order
   const Eigen::Index n = 3 * A.rows();

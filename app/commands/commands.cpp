@@ -74,6 +74,7 @@ std::vector<Part> shape_parts() {
 std::vector<Part> force_parts() {
   return {{"noh-jung", "edges that pull, diagonals that buckle, damping along both"},
           {"choi-ko", "of a regular grid of quads: neighbours that pull, next but one that buckle, damping"},
+          {"woven", "a membrane of triangles and a plate, along warp and weft, on any mesh"},
           {"soft", "springs of a lattice that resist both ways, damping along them"},
           {"gravity", "mass times gravity"}};
 }

@@ -9,6 +9,7 @@
 #include "solver/forces/choi_ko.h"
 #include "solver/forces/noh_jung.h"
 #include "solver/forces/soft.h"
+#include "solver/forces/woven.h"
 
 namespace drape::app::python {
 namespace {
@@ -25,10 +26,14 @@ const char* name_of(DampingKind kind) { return kind == DampingKind::axial ? "axi
 using Given = std::optional<double>;
 
 Fabric made(double area_density, double stretch, double bend, Given stretch_spring, Given bend_spring,
-            Given buckling_clamp, double damping, const std::string& kind, bool neighbour_weighting) {
+            Given buckling_clamp, double damping, const std::string& kind, bool neighbour_weighting,
+            Given stretch_weft, Given shear, double poisson, double compression, Given bend_weft,
+            Given bend_bias, double bend_poisson, double stretch_time, double shear_time, double bend_time) {
   Fabric fabric{area_density,       stretch,        bend,    stretch_spring,
                 bend_spring,        buckling_clamp, damping, damping_kind(kind),
                 neighbour_weighting};
+  fabric.weave = {stretch_weft, shear,        poisson,      compression, bend_weft,
+                  bend_bias,    bend_poisson, stretch_time, shear_time,  bend_time};
   check(fabric);
   return fabric;
 }
@@ -50,10 +55,15 @@ void add_fabric(py::module_& m) {
       "area_density [kg/m^2], stretch [N/m] membrane stiffness per width, bend [N m] bending rigidity\n"
       "per width; stretch_spring [N/m] and bend_spring [N m^2] replace these two by the same constant\n"
       "for every connection; buckling_clamp [N/m]; damping [N s/m] of every connection, 'relative' or\n"
-      "'axial'; neighbour_weighting after Noh & Jung, eq. 1-3.")
+      "'axial'; neighbour_weighting after Noh & Jung, eq. 1-3. For woven(): stretch and bend are along\n"
+      "the warp; stretch_weft, shear [N/m], poisson, compression, bend_weft, bend_bias [N m],\n"
+      "bend_poisson; stretch_time, shear_time, bend_time [s], viscosity over stiffness.")
       .def(py::init(&made), py::kw_only(), "area_density"_a = 0.15, "stretch"_a = 500.0, "bend"_a = 1e-5,
            "stretch_spring"_a = py::none(), "bend_spring"_a = py::none(), "buckling_clamp"_a = py::none(),
            "damping"_a = 0.0, "damping_kind"_a = "relative", "neighbour_weighting"_a = false,
+           "stretch_weft"_a = py::none(), "shear"_a = py::none(), "poisson"_a = 0.3, "compression"_a = 1.0,
+           "bend_weft"_a = py::none(), "bend_bias"_a = py::none(), "bend_poisson"_a = 0.0,
+           "stretch_time"_a = 0.0, "shear_time"_a = 0.0, "bend_time"_a = 0.0,
            "ValueError names a value that is negative, not finite, or zero where it may not be.")
       .def_readwrite("area_density", &Fabric::area_density, "kg/m^2")
       .def_readwrite("stretch", &Fabric::stretch, "N/m, membrane stiffness per width")
@@ -67,6 +77,44 @@ void add_fabric(py::module_& m) {
           [](Fabric& fabric, const std::string& kind) { fabric.damping_kind = damping_kind(kind); },
           "'relative' or 'axial'")
       .def_readwrite("neighbour_weighting", &Fabric::neighbour_weighting, "Noh & Jung, eq. 1-3")
+      .def_property(
+          "stretch_weft", [](const Fabric& fabric) { return fabric.weave.stretch_weft; },
+          [](Fabric& fabric, Given value) { fabric.weave.stretch_weft = value; },
+          "N/m, along the weft; None: as along the warp")
+      .def_property(
+          "shear", [](const Fabric& fabric) { return fabric.weave.shear; },
+          [](Fabric& fabric, Given value) { fabric.weave.shear = value; },
+          "N/m; None: that of an isotropic fabric")
+      .def_property(
+          "poisson", [](const Fabric& fabric) { return fabric.weave.poisson; },
+          [](Fabric& fabric, double value) { fabric.weave.poisson = value; },
+          "geometric mean of the two Poisson's ratios")
+      .def_property(
+          "compression", [](const Fabric& fabric) { return fabric.weave.compression; },
+          [](Fabric& fabric, double value) { fabric.weave.compression = value; },
+          "share of the resistance to compression that stays, from 0 to 1")
+      .def_property(
+          "bend_weft", [](const Fabric& fabric) { return fabric.weave.bend_weft; },
+          [](Fabric& fabric, Given value) { fabric.weave.bend_weft = value; },
+          "N m, along the weft; None: as along the warp")
+      .def_property(
+          "bend_bias", [](const Fabric& fabric) { return fabric.weave.bend_bias; },
+          [](Fabric& fabric, Given value) { fabric.weave.bend_bias = value; },
+          "N m, at 45 degrees; None: that of an isotropic fabric")
+      .def_property(
+          "bend_poisson", [](const Fabric& fabric) { return fabric.weave.bend_poisson; },
+          [](Fabric& fabric, double value) { fabric.weave.bend_poisson = value; },
+          "Poisson's ratio of bending")
+      .def_property(
+          "stretch_time", [](const Fabric& fabric) { return fabric.weave.stretch_time; },
+          [](Fabric& fabric, double value) { fabric.weave.stretch_time = value; },
+          "s, viscosity over stiffness, of stretch")
+      .def_property(
+          "shear_time", [](const Fabric& fabric) { return fabric.weave.shear_time; },
+          [](Fabric& fabric, double value) { fabric.weave.shear_time = value; }, "s, of shear")
+      .def_property(
+          "bend_time", [](const Fabric& fabric) { return fabric.weave.bend_time; },
+          [](Fabric& fabric, double value) { fabric.weave.bend_time = value; }, "s, of bending")
       .def(
           "copy", [](const Fabric& fabric) { return Fabric(fabric); },
           "Another fabric with the same numbers.")
@@ -179,6 +227,16 @@ void add_fabrics(py::module_& m) {
       },
       "mesh"_a, "fabric"_a, "first_particle"_a = 0,
       "The same for a regular grid of quads. [Choi & Ko 2002, section 3] ValueError when the mesh is none.");
+  m.def(
+      "woven",
+      [](const TriangleMesh& mesh, const Fabric& fabric, const std::optional<Vec3>& warp, int first) {
+        return Forces{woven(mesh, mesh, fabric, warp, first)};
+      },
+      "mesh"_a, "fabric"_a, "warp"_a = py::none(), "first_particle"_a = 0,
+      "A membrane of triangles and a plate, of any triangle mesh that rests as it is, but flat where it is\n"
+      "folded. [Baraff & Witkin 1998, 4.2; Morley 1968] `warp` (3,) is a direction in the mesh, needed "
+      "where\n"
+      "the fabric differs along warp and weft. ValueError where the numbers make no law.");
   m.def(
       "soft_body",
       [](const Lattice& lattice, const SoftMaterial& material, int first) {

@@ -4,6 +4,7 @@
 
 #include "app/base/words.h"
 #include "constraints/pins.h"
+#include "solver/forces/woven.h"
 
 namespace drape::app {
 namespace {
@@ -54,6 +55,12 @@ std::string fabric_words(const Json& fabric) {
   words.number("buckling clamp ", fabric["buckling_clamp"], " N/m");
   words.number("damping ", fabric["damping"], " N s/m " + fabric["damping_kind"].text());
   if (fabric["neighbour_weighting"].is(true)) words.add("neighbour weighting");
+  const Json& weave = fabric["weave"];
+  words.number("weft ", weave["stretch_weft"], " N/m");
+  words.number("shear ", weave["shear"], " N/m");
+  words.number("bend of the weft ", weave["bend_weft"], " N m");
+  words.number("of the bias ", weave["bend_bias"], " N m");
+  words.number("compression ", weave["compression"], "");
   return words.text();
 }
 
@@ -114,6 +121,32 @@ std::string list_words(const Json& list, const InWords& in_words) {
 
 }  // namespace
 
+namespace {
+
+// The numbers that the forces are made of, chosen ones included.
+Json weave_json(const ClothEntry& entry) {
+  const Membrane::Common membrane = membrane_of(entry.fabric);
+  const PlateStiffness plate = plate_of(entry.fabric);
+  const Weave& weave = entry.fabric.weave;
+  Json warp;
+  if (entry.warp) warp = Json::List{entry.warp->x(), entry.warp->y(), entry.warp->z()};
+  return Json::Members{{"warp", warp},
+                       {"stretch_warp", membrane.warp},
+                       {"stretch_weft", membrane.weft},
+                       {"shear", membrane.shear},
+                       {"poisson", weave.poisson},
+                       {"compression", weave.compression},
+                       {"bend_warp", plate.warp},
+                       {"bend_weft", plate.weft},
+                       {"bend_bias", 0.25 * (plate.warp + plate.weft + 2 * plate.cross) + plate.twist},
+                       {"bend_poisson", weave.bend_poisson},
+                       {"stretch_time", weave.stretch_time},
+                       {"shear_time", weave.shear_time},
+                       {"bend_time", weave.bend_time}};
+}
+
+}  // namespace
+
 Json fabric_json(const ClothEntry& entry) {
   const Fabric& f = entry.fabric;
   return Json::Members{{"name", optional_json(entry.fabric_name)},
@@ -126,7 +159,8 @@ Json fabric_json(const ClothEntry& entry) {
                        {"buckling_clamp", optional_json(f.buckling_clamp)},
                        {"damping", f.damping},
                        {"damping_kind", name_of(f.damping_kind)},
-                       {"neighbour_weighting", f.neighbour_weighting}};
+                       {"neighbour_weighting", f.neighbour_weighting},
+                       {"weave", entry.model == "woven" ? weave_json(entry) : Json()}};
 }
 
 Json material_json(const SoftMaterial& m) {

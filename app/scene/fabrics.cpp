@@ -26,6 +26,61 @@ fs::path fabric_folder() {
   return fs::path(DRAPE_DATA_DIR) / "fabrics";
 }
 
+// A number, the same in all directions, or a table of directions. Null: the number was read, or nothing.
+std::optional<Table> directions(Table& table, const std::string& key, double& value,
+                                const Dimension& dimension, const About& about) {
+  const Node* const node = table.take(key, "a number ≥ 0, or a table", about);
+  if (node && node->kind == Node::Kind::table) return table.inner(key);
+  table.read(key, value, dimension, Range::not_negative, about);
+  return {};
+}
+
+void read_stretch(Table& table, Fabric& fabric) {
+  std::optional<Table> both =
+      directions(table, "stretch", fabric.stretch, dimension::stretch,
+                 "membrane stiffness: force per width for a strain of 1; of model = \"woven\" also by "
+                 "directions, as a table");
+  if (!both) return;
+  Weave& weave = fabric.weave;
+  both->read_required("warp", fabric.stretch, dimension::stretch, Range::positive,
+                      "of a strip pulled along the warp");
+  both->read("weft", weave.stretch_weft, dimension::stretch, Range::positive,
+             {"of a strip pulled along the weft", "as along the warp"});
+  both->read("shear", weave.shear, dimension::stretch, Range::positive,
+             {"force per width for a shear of 1 rad", "sqrt(warp weft) / (2 (1 + poisson))"});
+  both->read("poisson", weave.poisson, dimension::number, Range::any,
+             "geometric mean of the Poisson's ratios of warp and weft");
+  both->finish();
+}
+
+void read_bend(Table& table, Fabric& fabric) {
+  std::optional<Table> both =
+      directions(table, "bend", fabric.bend, dimension::bend,
+                 "bending rigidity: moment per width for a curvature of 1/m; of model = \"woven\" also by "
+                 "directions, as a table");
+  if (!both) return;
+  Weave& weave = fabric.weave;
+  both->read_required("warp", fabric.bend, dimension::bend, Range::positive, "of a strip cut along the warp");
+  both->read("weft", weave.bend_weft, dimension::bend, Range::positive,
+             {"of a strip cut along the weft", "as along the warp"});
+  both->read("bias", weave.bend_bias, dimension::bend, Range::positive,
+             {"of a strip cut at 45 degrees", "as of a fabric with poisson, and equal along warp and weft"});
+  both->read("poisson", weave.bend_poisson, dimension::number, Range::any, "Poisson's ratio of bending");
+  both->finish();
+}
+
+void read_viscosity(Table& table, Weave& weave) {
+  const Node* const node =
+      table.take("viscosity", "a table", "of model = \"woven\": how long strains resist being changed");
+  if (!node) return;
+  Table times = table.inner("viscosity");
+  times.read("stretch", weave.stretch_time, dimension::time, Range::not_negative,
+             "viscosity over stiffness, of stretch");
+  times.read("shear", weave.shear_time, dimension::time, Range::not_negative, "of shear");
+  times.read("bend", weave.bend_time, dimension::time, Range::not_negative, "of bending");
+  times.finish();
+}
+
 }  // namespace
 
 void set_data_folder(const fs::path& folder) { data_folder = folder; }
@@ -47,12 +102,10 @@ void read_fabric(Table& table, Fabric& fabric) {
       table.fail(spring, "give either " + std::string(width) + " or " + spring + ", not both");
   if (table.has("stretch")) fabric.stretch_spring.reset();
   if (table.has("bend")) fabric.bend_spring.reset();
-  table.read("stretch", fabric.stretch, dimension::stretch, Range::not_negative,
-             "membrane stiffness: force per width for a strain of 1");
+  read_stretch(table, fabric);
   table.read("stretch_spring", fabric.stretch_spring, dimension::spring, Range::not_negative,
              "instead of stretch: the constant of every edge, k_s");
-  table.read("bend", fabric.bend, dimension::bend, Range::not_negative,
-             "bending rigidity: moment per width for a curvature of 1/m");
+  read_bend(table, fabric);
   table.read("bend_spring", fabric.bend_spring, dimension::bend_spring, Range::not_negative,
              "instead of bend: the stiffness of every diagonal, k_b");
   table.read(
@@ -68,6 +121,11 @@ void read_fabric(Table& table, Fabric& fabric) {
   fabric.damping_kind = kind == "axial" ? DampingKind::axial : DampingKind::relative;
   table.read("neighbour_weighting", fabric.neighbour_weighting,
              "forces at a vertex times the largest number of neighbours over its own: Noh & Jung, eq. 1-3");
+  table.read(
+      "compression", fabric.weave.compression, dimension::number, Range::not_negative,
+      "of model = \"woven\": the share of the resistance to compression that stays; below 1 the fabric "
+      "wrinkles finer than the mesh");
+  read_viscosity(table, fabric.weave);
   try {
     check(fabric);
   } catch (const InputError& error) {

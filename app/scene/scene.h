@@ -72,7 +72,8 @@ struct ClothEntry {
   std::vector<PanelEntry> panels;
   std::vector<SeamEntry> seams;
   std::string model = "noh-jung";
-  std::string fabric_name;  // empty when the scene names none
+  std::optional<Vec3> warp;  // direction in the rest shape, of model = "woven"
+  std::string fabric_name;   // empty when the scene names none
   Fabric fabric;
   std::vector<PinEntry> pins;
   std::string where;

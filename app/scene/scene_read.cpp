@@ -11,6 +11,7 @@
 #include "app/scene/soft_read.h"
 #include "mesh/base/errors.h"
 #include "mesh/base/threads.h"
+#include "solver/forces/woven.h"
 
 namespace drape::app {
 namespace {
@@ -164,6 +165,32 @@ PinEntry read_pin(Table& pin, const fs::path& folder) {
 
 constexpr const char* pins_about = "vertices that are held, or led";
 
+std::optional<Vec3> read_warp(Table& table, const ClothEntry& cloth) {
+  if (table.has("warp") && cloth.model != "woven") table.fail("warp", "goes with model = \"woven\"");
+  Vec3 warp = cloth.rest_is_flat ? Vec3(0, 1, 0) : Vec3(Vec3::Zero());
+  table.read("warp", warp, dimension::number,
+             {"of model = \"woven\": the direction of the warp in the rest shape, as the file has it",
+              "v of the texture coordinates, with rest = \"uv\""});
+  if (table.has("warp") && warp.isZero()) table.fail("warp", "a direction is not [0, 0, 0]");
+  return warp.isZero() ? std::optional<Vec3>() : warp;
+}
+
+// A woven cloth has no connections, and a cloth of connections no warp.
+void check_model(const Table& table, const ClothEntry& cloth) {
+  const bool woven = cloth.model == "woven";
+  for (const char* key :
+       {"stretch_spring", "bend_spring", "buckling_clamp", "damping", "damping_kind", "neighbour_weighting"})
+    if (woven && table.has(key)) table.fail(key, "is of connections, and model = \"woven\" has none");
+  if (woven && has_directions(cloth.fabric) && !cloth.warp)
+    table.fail("model",
+               "the fabric differs along warp and weft; give warp = [x, y, z], the direction of the "
+               "warp in the rest shape, or rest = \"uv\", whose v it is");
+  for (const char* key : {"compression", "viscosity"})
+    if (!woven && table.has(key)) table.fail(key, "goes with model = \"woven\"");
+  if (!woven && has_directions(cloth.fabric))
+    table.fail("model", "a fabric that differs along warp and weft needs model = \"woven\"");
+}
+
 ClothEntry read_cloth(Table& table, const fs::path& folder) {
   ClothEntry cloth;
   cloth.where = table.where();
@@ -188,14 +215,18 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
   if (table.has("uv_scale") && !cloth.rest_is_flat) table.fail("uv_scale", "goes with rest = \"uv\"");
   cloth.panels = read_panels(table);
   cloth.seams = read_seams(table);
-  table.read("model", cloth.model, model_names(),
-             "noh-jung: of any mesh; choi-ko: of a regular grid of quads (holes and tubes are welcome)");
-  if (!cloth.seams.empty() && cloth.model != "noh-jung")
-    table.fail("model", "a cloth with seams is no regular grid; expected \"noh-jung\"");
+  table.read(
+      "model", cloth.model, model_names(),
+      "noh-jung: springs, of any mesh; choi-ko: springs, of a regular grid of quads (holes and tubes are "
+      "welcome); woven: a membrane and a plate, of any mesh");
+  cloth.warp = read_warp(table, cloth);
+  if (!cloth.seams.empty() && cloth.model == "choi-ko")
+    table.fail("model", "a cloth with seams is no regular grid; expected \"noh-jung\" or \"woven\"");
   table.read_part("fabric", cloth.fabric_name, fabric_names(),
                   "its values hold where the keys below say nothing");
   if (!cloth.fabric_name.empty()) cloth.fabric = load_fabric(cloth.fabric_name).fabric;
   read_fabric(table, cloth.fabric);
+  check_model(table, cloth);
   for (Table& pin : table.tables("pins", pins_about)) cloth.pins.push_back(read_pin(pin, folder));
   table.finish();
   return cloth;
@@ -239,7 +270,7 @@ void check_follow(const PinEntry& pin, const std::vector<ObstacleEntry>& obstacl
 
 bool is_pattern(const fs::path& path) { return path.extension() == ".svg" || path.extension() == ".toml"; }
 
-Names model_names() { return {"noh-jung", "choi-ko"}; }
+Names model_names() { return {"noh-jung", "choi-ko", "woven"}; }
 
 Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path& folder, std::string label,
                  KeyNotes* notes) {

@@ -45,7 +45,10 @@ ClothPart load_cloth(const ClothEntry& entry, Names& messages) {
   ClothPart part;
   part.name = entry.name;
   part.fabric = entry.fabric;
-  part.model = entry.model == "choi-ko" ? ClothModel::choi_ko : ClothModel::noh_jung;
+  part.model = entry.model == "choi-ko" ? ClothModel::choi_ko
+               : entry.model == "woven" ? ClothModel::woven
+                                        : ClothModel::noh_jung;
+  part.warp = entry.warp;
   part.mesh = placed(is_pattern(entry.mesh) ? cut_pattern(entry, messages) : read_obj(entry.mesh),
                      {.scale = entry.placement.scale}, entry.mesh.string());
   try {

@@ -6,9 +6,11 @@
 
 #include "mesh/base/errors.h"
 #include "mesh/lattice/solid.h"
+#include "mesh/triangles/topology.h"
 #include "solver/forces/choi_ko.h"
 #include "solver/forces/face_contact_force.h"
 #include "solver/forces/noh_jung.h"
+#include "solver/forces/woven.h"
 
 namespace drape {
 namespace {
@@ -27,12 +29,34 @@ Connections connections_of(const Cloth& cloth, const TriangleMesh& mesh) {
                                             : noh_jung_connections(mesh, cloth.rest, cloth.fabric);
 }
 
-std::vector<double> masses_of(const Cloth& cloth, const Connections& connections) {
+std::vector<double> masses_of(const Cloth& cloth) {
   const double density = cloth.fabric.area_density;
   std::vector<double> masses = cloth.model == ClothModel::choi_ko
                                    ? choi_ko_mass(cloth.mesh, cloth.rest, density)
                                    : lumped_mass(cloth.mesh, cloth.rest, density);
-  return cloth.fabric.neighbour_weighting ? neighbour_weighted(std::move(masses), connections) : masses;
+  if (!cloth.fabric.neighbour_weighting || cloth.model == ClothModel::woven) return masses;
+  return neighbour_weighted(std::move(masses), connections_of(cloth, cloth.mesh));
+}
+
+// The edges of a woven cloth, from its first particle; where two triangles differ about a length, the first's.
+std::vector<RestEdge> rest_edges(const Cloth& cloth, const TriangleMesh& mesh) {
+  std::vector<RestEdge> all;
+  for (int t : counted_triangles(mesh))
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto number = static_cast<std::size_t>(t);
+      const Triangle &v = mesh.triangles[number], &r = cloth.rest.triangles[number];
+      const auto& rest = cloth.rest.positions;
+      const double L =
+          (rest[static_cast<std::size_t>(r[k])] - rest[static_cast<std::size_t>(r[(k + 1) % 3])]).norm();
+      const auto [i, j] = std::minmax(v[k], v[(k + 1) % 3]);
+      if (L > 0) all.push_back({cloth.first_particle + i, cloth.first_particle + j, L});
+    }
+  const auto ends = [](const RestEdge& e) { return std::pair(e.i, e.j); };
+  std::stable_sort(all.begin(), all.end(), [&](const auto& a, const auto& b) { return ends(a) < ends(b); });
+  all.erase(
+      std::unique(all.begin(), all.end(), [&](const auto& a, const auto& b) { return ends(a) == ends(b); }),
+      all.end());
+  return all;
 }
 
 void append(std::vector<std::unique_ptr<Force>> more, std::vector<std::unique_ptr<Force>>& forces) {
@@ -91,15 +115,15 @@ Cloth& Assembly::add(ClothPart part) {
   check_rest(cloth);
   cloth.fabric = part.fabric;
   cloth.model = part.model;
+  cloth.warp = part.warp;
   for (OpenSeam& seam : open_seams(part.seams, cloth.fabric, cloth.mesh, cloth.rest))
     cloth.seams.push_back({std::move(seam), nullptr});
   cloth.first_particle = state.particles();
   cloth.end_particle = cloth.first_particle + cloth.mesh.vertex_count();
   cloth.embedding = Embedding::each(cloth.first_particle, cloth.mesh.vertex_count());
 
-  const Connections connections = connections_of(cloth, cloth.mesh);
-  const std::vector<double> masses = masses_of(cloth, connections);
-  connect(cloth, connections, forces_);
+  const std::vector<double> masses = masses_of(cloth);
+  connect(cloth, forces_);
   const int first = cloth.first_particle;
   for (const Triangle& t : cloth.mesh.triangles)
     faces_.push_back({{first + t[0], first + t[1], first + t[2]},
@@ -153,16 +177,19 @@ void Assembly::pin(const PinRule& rule, std::size_t k) {
 }
 
 void Assembly::connect(Cloth& cloth, Forces& forces) const {
-  if (!cloth.soft) return connect(cloth, connections_of(cloth, between_particles(cloth)), forces);
-  append(soft_body(*cloth.lattice, cloth.material, cloth.first_particle), forces);
-}
-
-void Assembly::connect(Cloth& cloth, const Connections& connections, Forces& forces) const {
-  cloth.limp_below = limp_below(connections, cloth.fabric);
-  cloth.edges.clear();
-  for (const StretchConnection& s : connections.stretch)
-    if (s.L > 0) cloth.edges.push_back({cloth.first_particle + s.i, cloth.first_particle + s.j, s.L});
-  append(forces_of(connections, cloth.fabric, cloth.first_particle), forces);
+  if (cloth.soft) return append(soft_body(*cloth.lattice, cloth.material, cloth.first_particle), forces);
+  const TriangleMesh mesh = between_particles(cloth);
+  if (cloth.model == ClothModel::woven) {
+    append(woven(mesh, cloth.rest, cloth.fabric, cloth.warp, cloth.first_particle), forces);
+    cloth.edges = rest_edges(cloth, mesh);
+  } else {
+    const Connections connections = connections_of(cloth, mesh);
+    cloth.limp_below = limp_below(connections, cloth.fabric);
+    cloth.edges.clear();
+    for (const StretchConnection& s : connections.stretch)
+      if (s.L > 0) cloth.edges.push_back({cloth.first_particle + s.i, cloth.first_particle + s.j, s.L});
+    append(forces_of(connections, cloth.fabric, cloth.first_particle), forces);
+  }
   for (Cloth::Stitched& open : cloth.seams) {
     std::unique_ptr<Force> force = stitches(open.seam, cloth.embedding, state.time);
     open.force = force.get();

@@ -61,7 +61,6 @@ struct Assembly {
   Cloth& take(Cloth cloth, const std::vector<Vec3>& positions, const std::vector<double>& masses);
   // Adds the forces of a part, as far as it has been sewn, and notes its edges.
   void connect(Cloth& cloth, Forces& forces) const;
-  void connect(Cloth& cloth, const Connections& connections, Forces& forces) const;
   void make_system(std::vector<double> masses, Forces forces);
   bool merge_closed_seams();
   State merged_state(const std::vector<double>& masses, const std::vector<int>& number) const;

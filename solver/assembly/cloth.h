@@ -21,8 +21,9 @@
 namespace drape {
 
 enum class ClothModel {
-  noh_jung,  // for any triangle mesh (solver/forces/noh_jung.h)
-  choi_ko    // for a regular grid of quads (solver/forces/choi_ko.h)
+  noh_jung,  // springs, for any triangle mesh (solver/forces/noh_jung.h)
+  choi_ko,   // springs, for a regular grid of quads (solver/forces/choi_ko.h)
+  woven      // membrane and plate, for any triangle mesh (solver/forces/woven.h)
 };
 
 struct ClothPart {
@@ -31,6 +32,7 @@ struct ClothPart {
   std::optional<TriangleMesh> rest = {};  // as in solver/forces/noh_jung.h; unset: as the cloth starts
   Fabric fabric = {};
   ClothModel model = ClothModel::noh_jung;
+  std::optional<Vec3> warp = {};  // direction in the rest shape, of a woven cloth
   std::vector<SeamPlan> seams = {};
   std::optional<MeshReport> report = {};  // what examine() says of the mesh; unset: examine() is called
 };
@@ -67,7 +69,8 @@ struct Cloth {
 
   Fabric fabric;  // of a cloth
   ClothModel model = ClothModel::noh_jung;
-  double limp_below = 0;  // curvature [1/m] below which the cloth is limp (solver/forces/connections.h)
+  std::optional<Vec3> warp;  // direction in the rest shape
+  double limp_below = 0;     // curvature [1/m] below which the cloth is limp (solver/forces/connections.h)
 
   std::optional<LatticeCounts> soft;       // set: this is a soft body and no cloth
   std::shared_ptr<const Lattice> lattice;  // of a soft body

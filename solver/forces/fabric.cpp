@@ -1,11 +1,34 @@
 #include "solver/forces/fabric.h"
 
 #include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "mesh/triangles/topology.h"
 #include "solver/forces/require.h"
 
 namespace drape {
+namespace {
+
+void check(const Weave& w) {
+  for (const auto& [field, value, unit] :
+       {std::tuple{"stretch_weft", w.stretch_weft, "N/m"}, std::tuple{"shear", w.shear, "N/m"},
+        std::tuple{"bend_weft", w.bend_weft, "N.m"}, std::tuple{"bend_bias", w.bend_bias, "N.m"}})
+    if (value) require(*value > 0, field, *value, unit, "a stiffness in one direction is greater than zero");
+  for (const auto& [field, value] :
+       {std::pair{"poisson", w.poisson}, std::pair{"bend_poisson", w.bend_poisson}})
+    require(std::abs(value) < 1, field, value, "", "Poisson's ratio is between -1 and 1");
+  require(w.compression >= 0 && w.compression <= 1, "compression", w.compression, "",
+          "the share of the resistance to compression is from 0 to 1");
+  for (const auto& [field, value] :
+       {std::pair{"stretch_time", w.stretch_time}, std::pair{"shear_time", w.shear_time},
+        std::pair{"bend_time", w.bend_time}})
+    require(value >= 0, field, value, "s", "a time is not negative");
+}
+
+}  // namespace
+
 void check(const Fabric& f) {
   require(f.area_density > 0, "area_density", f.area_density, "kg/m^2",
           "an area density is greater than zero");
@@ -20,6 +43,11 @@ void check(const Fabric& f) {
     require(*f.buckling_clamp >= 0, "buckling_clamp", *f.buckling_clamp, "N/m",
             "a stiffness is not negative");
   require(f.damping >= 0, "damping", f.damping, "N.s/m", "a damping coefficient is not negative");
+  check(f.weave);
+  require(f.stretch > 0 || !(f.weave.stretch_weft || f.weave.shear), "stretch", f.stretch, "N/m",
+          "with stretch_weft or shear it is greater than zero");
+  require(f.bend > 0 || !(f.weave.bend_weft || f.weave.bend_bias), "bend", f.bend, "N.m",
+          "with bend_weft or bend_bias it is greater than zero");
 }
 
 std::vector<double> mass_of_areas(std::vector<double> areas, const TriangleMesh& mesh, double area_density) {

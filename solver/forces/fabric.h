@@ -11,6 +11,17 @@
 
 namespace drape {
 
+// What the woven model (solver/forces/woven.h) knows besides. Unset: as of a fabric that is the same in all
+// directions. The stiffnesses of Fabric are then those along the warp.
+struct Weave {
+  std::optional<double> stretch_weft = {}, shear = {};  // N/m, Y along the weft, and G
+  double poisson = 0.3;                                 // geometric mean of the two Poisson's ratios
+  double compression = 1;  // share of the resistance to compression that stays, from 0 to 1
+  std::optional<double> bend_weft = {}, bend_bias = {};  // N m, B along the weft and at 45 degrees
+  double bend_poisson = 0;
+  double stretch_time = 0, shear_time = 0, bend_time = 0;  // s, viscosity over stiffness
+};
+
 struct Fabric {
   double area_density = 0.15;                 // kg/m^2
   double stretch = 500;                       // N/m, membrane stiffness Y per width
@@ -21,6 +32,7 @@ struct Fabric {
   double damping = 0;                         // N s/m, k_d of every connection
   DampingKind damping_kind = DampingKind::relative;
   bool neighbour_weighting = false;  // Noh & Jung eq. 1-3
+  Weave weave = {};
 };
 
 // Throws InputError, which names the field, when a value is negative, not finite, or zero where it may not

@@ -69,6 +69,16 @@ class Fabric(metaclass=_Class):
     damping: float
     damping_kind: str
     neighbour_weighting: bool
+    stretch_weft: Optional[float]
+    shear: Optional[float]
+    poisson: float
+    compression: float
+    bend_weft: Optional[float]
+    bend_bias: Optional[float]
+    bend_poisson: float
+    stretch_time: float
+    shear_time: float
+    bend_time: float
     def __init__(
         self,
         *,
@@ -81,6 +91,16 @@ class Fabric(metaclass=_Class):
         damping: float = ...,
         damping_kind: str = ...,
         neighbour_weighting: bool = ...,
+        stretch_weft: Optional[float] = ...,
+        shear: Optional[float] = ...,
+        poisson: float = ...,
+        compression: float = ...,
+        bend_weft: Optional[float] = ...,
+        bend_bias: Optional[float] = ...,
+        bend_poisson: float = ...,
+        stretch_time: float = ...,
+        shear_time: float = ...,
+        bend_time: float = ...,
     ) -> None: ...
     def copy(self) -> Fabric: ...
     def __copy__(self) -> Fabric: ...
@@ -150,6 +170,9 @@ def masses(mesh: TriangleMesh, fabric: Fabric) -> _Floats: ...
 def masses(lattice: Lattice, material: SoftMaterial) -> _Floats: ...
 def noh_jung(mesh: TriangleMesh, fabric: Fabric, first_particle: int = ...) -> Forces: ...
 def choi_ko(mesh: TriangleMesh, fabric: Fabric, first_particle: int = ...) -> Forces: ...
+def woven(
+    mesh: TriangleMesh, fabric: Fabric, warp: Optional[ArrayLike] = ..., first_particle: int = ...
+) -> Forces: ...
 def soft_body(lattice: Lattice, material: SoftMaterial, first_particle: int = ...) -> Forces: ...
 
 class Gravity(metaclass=_Class):

@@ -1,0 +1,42 @@
+// Bending without a clamp: a plate that knows no stretch, on any mesh of triangles.
+//   E = 1/2 int (D_11 |x_uu|^2 + 2 D_12 x_uu . x_vv + D_22 |x_vv|^2 + 4 D_66 |x_uv|^2) du dv
+// u and v [m] run along warp and weft of the rest shape, which is flat. Where cloth bends without stretching,
+// |x_uu| is the curvature along u, so E is the bending energy; and E is quadratic in the positions
+//                                     [Bergou et al. 2006; Wardetzky et al. 2007], so that its stiffness is constant:
+//   E = 1/2 sum over pairs k_ij |x_i - x_j|^2
+//
+// The sum is that of Morley's element [Morley 1968]: x is quadratic in every triangle; besides its values at
+// the corners it has one slope at the middle of each edge, the same in both triangles. The slope is no unknown
+// here: it is what a quadratic function through the vertices around the edge has there. As every choice of the
+// slope gives at least the energy of Morley's element, and this one gives just that energy wherever x is
+// quadratic, constant curvature costs what it should in every direction and is in equilibrium, on every mesh;
+// and no bending is free. At a border no moment is transmitted: the slope there is the one of least energy.
+// D [N m], k [N/m].
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "mesh/triangles/triangle_mesh.h"
+
+namespace drape {
+
+struct PlateStiffness {
+  double warp, weft, cross, twist;  // D_11, D_22, D_12 and D_66 [N m]
+};
+
+struct PlatePair {
+  int i, j;  // vertices, i < j
+  double k;  // N/m; also negative
+};
+
+using Corners = std::array<Eigen::Vector2d, 3>;  // of a triangle at rest, (u, v) [m]
+
+// corners[t] are those of triangle t of the mesh, vertex by vertex; each triangle may have an origin of its
+// own. Sorted by (i, j). Triangles of no area and edges of more than two triangles bend freely.
+std::vector<PlatePair> plate_pairs(const TriangleMesh& mesh, const std::vector<Corners>& corners,
+                                   const PlateStiffness& stiffness);
+
+}  // namespace drape

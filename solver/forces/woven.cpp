@@ -1,0 +1,115 @@
+#include "solver/forces/woven.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <string>
+
+#include "mesh/base/errors.h"
+#include "mesh/triangles/topology.h"
+#include "solver/forces/plate_pair.h"
+#include "solver/forces/require.h"
+
+namespace drape {
+namespace {
+
+// The rest data of triangle t; its area is 0 where the corners are on one line.
+Membrane::Rest rest_of(const Corners& corners) {
+  Eigen::Matrix2d edges;  // from corner 0 to 1 and to 2, in (u, v)
+  edges << corners[1] - corners[0], corners[2] - corners[0];
+  const double twice = edges.determinant();
+  const double longest = std::max(edges.colwise().norm().maxCoeff(), (corners[2] - corners[1]).norm());
+  if (std::abs(twice) <= 1e-9 * longest * longest) return {Eigen::Matrix<double, 3, 2>::Zero(), 0};
+  Membrane::Rest rest;
+  rest.weights.bottomRows<2>() = edges.inverse();
+  rest.weights.row(0) = -rest.weights.bottomRows<2>().colwise().sum();
+  rest.area = 0.5 * std::abs(twice);
+  return rest;
+}
+
+}  // namespace
+
+Membrane::Common membrane_of(const Fabric& fabric) {
+  const Weave& weave = fabric.weave;
+  const double warp = fabric.stretch, weft = weave.stretch_weft.value_or(warp),
+               mean = std::sqrt(warp * weft), nu = weave.poisson, full = 1 / (1 - nu * nu);
+  return {.warp = warp,
+          .weft = weft,
+          .cross = nu * mean,
+          .uu = full * warp,
+          .uv = full * nu * mean,
+          .vv = full * weft,
+          .shear = weave.shear.value_or(mean / (2 * (1 + nu))),
+          .compression = weave.compression,
+          .stretch_time = weave.stretch_time,
+          .shear_time = weave.shear_time};
+}
+
+PlateStiffness plate_of(const Fabric& fabric) {
+  const Weave& weave = fabric.weave;
+  const double warp = fabric.bend, weft = weave.bend_weft.value_or(warp), mean = std::sqrt(warp * weft),
+               cross = weave.bend_poisson * mean;
+  // Bent about the direction between them, it takes (D_11 + D_22 + 2 D_12) / 4 + D_66.
+  const double twist = weave.bend_bias ? *weave.bend_bias - 0.25 * (warp + weft + 2 * cross)
+                                       : 0.5 * (1 - weave.bend_poisson) * mean;
+  if (weave.bend_bias)
+    require(twist > 0, "bend_bias", *weave.bend_bias, "N.m",
+            "between warp and weft a fabric bends no easier than (bend + bend_weft) / 4, and that times "
+            "1 + bend_poisson where they are equal");
+  return {warp, weft, cross, twist};
+}
+
+bool has_directions(const Fabric& fabric) {
+  const Weave& w = fabric.weave;
+  return w.stretch_weft || w.shear || w.bend_weft || w.bend_bias;
+}
+
+std::vector<Corners> woven_corners(const TriangleMesh& rest, const std::optional<Vec3>& warp) {
+  std::vector<Corners> all;
+  all.reserve(rest.triangles.size());
+  for (const Triangle& t : rest.triangles) {
+    const auto at = [&](std::size_t k) { return rest.positions[static_cast<std::size_t>(t[k])]; };
+    const Vec3 one = at(1) - at(0), two = at(2) - at(0), normal = one.cross(two).normalized();
+    Vec3 u = warp ? Vec3(*warp - normal.dot(*warp) * normal) : one;
+    if (warp && !normal.isZero() && u.norm() < 1e-6 * warp->norm())
+      throw InputError("triangle " + std::to_string(all.size() + 1) +
+                       " is square to the warp: give a direction that lies in the cloth, or uv");
+    u.normalize();
+    const Vec3 v = normal.cross(u);
+    all.push_back({Eigen::Vector2d(0, 0), {u.dot(one), v.dot(one)}, {u.dot(two), v.dot(two)}});
+  }
+  return all;
+}
+
+std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const TriangleMesh& rest,
+                                          const Fabric& fabric, const std::optional<Vec3>& warp, int first) {
+  check(fabric);
+  if (fabric.stretch_spring || fabric.bend_spring || fabric.buckling_clamp || fabric.neighbour_weighting)
+    throw InputError(
+        "stretch_spring, bend_spring, buckling_clamp and neighbour_weighting are of connections, and a woven "
+        "cloth has none; give stretch and bend");
+  if (has_directions(fabric) && !warp)
+    throw InputError(
+        "the fabric differs along warp and weft, and where the warp runs is not known; give its direction");
+  const std::vector<Corners> corners = woven_corners(rest, warp);
+  std::vector<std::unique_ptr<Force>> forces;
+  if (fabric.stretch > 0) {
+    std::vector<StencilForce<Membrane>::Element> triangles;
+    for (int t : counted_triangles(mesh)) {
+      const auto k = static_cast<std::size_t>(t);
+      const Membrane::Rest at_rest = rest_of(corners[k]);
+      const Triangle& v = mesh.triangles[k];
+      if (at_rest.area > 0)
+        triangles.push_back({.particles = {first + v[0], first + v[1], first + v[2]}, .rest = at_rest});
+    }
+    forces.push_back(std::make_unique<StencilForce<Membrane>>(std::move(triangles), membrane_of(fabric)));
+  }
+  if (fabric.bend > 0) {
+    std::vector<StencilForce<PlateLaw>::Element> pairs;
+    for (const PlatePair& p : plate_pairs(mesh, corners, plate_of(fabric)))
+      pairs.push_back({.particles = {first + p.i, first + p.j}, .rest = {p.k}});
+    forces.push_back(std::make_unique<StencilForce<PlateLaw>>(std::move(pairs), fabric.weave.bend_time));
+  }
+  return forces;
+}
+
+}  // namespace drape
