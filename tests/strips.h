@@ -31,9 +31,9 @@ inline void join(const std::vector<int>& left, const std::vector<int>& right, Tr
   const auto z = [&](int i) { return mesh.positions[static_cast<std::size_t>(i)].z(); };
   std::size_t l = 0, r = 0;
   while (l + 1 < left.size() || r + 1 < right.size()) {
-    const bool right_next = l + 1 == left.size() ||
-                            (r + 1 < right.size() && std::abs(z(right[r + 1]) - z(left[l])) <=
-                                                         std::abs(z(left[l + 1]) - z(right[r])));
+    const bool right_next =
+        l + 1 == left.size() || (r + 1 < right.size() && std::abs(z(right[r + 1]) - z(left[l])) <=
+                                                             std::abs(z(left[l + 1]) - z(right[r])));
     if (right_next) {
       mesh.triangles.push_back({left[l], right[r + 1], right[r]});
       ++r;
@@ -72,7 +72,8 @@ inline Strip strip(StripMesh kind, int cells, int across, double length) {
     }
     case StripMesh::diagonal: {  // squares on a corner, cut by alternate diagonals; half squares at the sides
       // Two columns of corners make one square; its edge is that of the other meshes.
-      const int columns = 2 * static_cast<int>(std::lround(cells / std::sqrt(2.0))) + 1, rows = 2 * static_cast<int>(std::lround(across / std::sqrt(2.0)));
+      const int columns = 2 * static_cast<int>(std::lround(cells / std::sqrt(2.0))) + 1,
+                rows = 2 * static_cast<int>(std::lround(across / std::sqrt(2.0)));
       h = length / (columns - 1 - 0.5);
       std::map<std::pair<int, int>, int> at;
       const auto vertex = [&](int i, int j) {
@@ -118,7 +119,8 @@ inline Strip strip(StripMesh kind, int cells, int across, double length) {
       // The first column, which is clamped, has a copy to its left.
       std::map<double, int> of_z;
       for (int i = 0; i < out.mesh.vertex_count(); ++i)
-        if (const Vec3& x = out.mesh.positions[static_cast<std::size_t>(i)]; x.x() < left + 1e-9) of_z[x.z()] = i;
+        if (const Vec3& x = out.mesh.positions[static_cast<std::size_t>(i)]; x.x() < left + 1e-9)
+          of_z[x.z()] = i;
       std::vector<int> column, copy;
       for (const auto& [z, i] : of_z) {
         column.push_back(i);

@@ -51,6 +51,7 @@ struct SpringLaw {
     const double across = std::max(0.0, r.k * (1 - r.L / d.norm()));
     return spread((r.k - across) * n * n.transpose() + across * Mat3::Identity());
   }
+  static bool damped(double k_d) { return k_d > 0; }
   static Blocks<2> damping(double k_d, const Rest&, const Points<2>&) {
     return spread(k_d * Mat3::Identity());
   }

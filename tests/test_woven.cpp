@@ -75,7 +75,8 @@ VecX pushed(const Force& force, const VecX& x) {
 
 }  // namespace
 
-TEST_CASE("a membrane has the moduli it was given, on every mesh, whatever the direction of the strain", "[woven]") {
+TEST_CASE("a membrane has the moduli it was given, on every mesh, whatever the direction of the strain",
+          "[woven]") {
   const double tiny = 1e-6;
   for (StripMesh kind : strip_meshes)
     for (int cells : {4, 8, 16}) {
@@ -159,8 +160,9 @@ TEST_CASE("constant curvature of a plate is in equilibrium on every mesh and in 
     }
 }
 
-TEST_CASE("a plate bends with the energy of its curvature in every direction, and nothing but a plane is free",
-          "[woven]") {
+TEST_CASE(
+    "a plate bends with the energy of its curvature in every direction, and nothing but a plane is free",
+    "[woven]") {
   // A wave w = sin(k s) along a direction that fades out before the border: the energy is that of the wave's
   // curvature, by the exact second derivatives, to second order in the mesh size.
   const double L = 0.4, k = 2 * M_PI / 0.2;
@@ -170,12 +172,15 @@ TEST_CASE("a plate bends with the energy of its curvature in every direction, an
       for (int cells : {20, 40}) {
         const TriangleMesh mesh = strip(kind, cells, cells, L).mesh;
         const Vec3 warp(std::cos(0.2), 0, std::sin(0.2));
-        const auto fade = [&](double a) { return std::pow(std::cos(M_PI * std::clamp(a / L, -0.5, 0.5)), 4); };
+        const auto fade = [&](double a) {
+          return std::pow(std::cos(M_PI * std::clamp(a / L, -0.5, 0.5)), 4);
+        };
         Vec3 middle = Vec3::Zero();
         for (const Vec3& x : mesh.positions) middle += x / mesh.vertex_count();
         const auto height = [&](double a, double b) {
           const double p = a - middle.x(), q = b - middle.z();
-          return 1e-3 * std::sin(k * (std::cos(angle) * p + std::sin(angle) * q)) * fade(1.1 * p) * fade(1.1 * q);
+          return 1e-3 * std::sin(k * (std::cos(angle) * p + std::sin(angle) * q)) * fade(1.1 * p) *
+                 fade(1.1 * q);
         };
         const PlateStiffness D = plate_of(directed());
         double expected = 0;
@@ -194,8 +199,10 @@ TEST_CASE("a plate bends with the energy of its curvature in every direction, an
             expected += 0.5 * d * d *
                         (D.warp * uu * uu + D.weft * vv * vv + 2 * D.cross * uu * vv + 4 * D.twist * uv * uv);
           }
-        const double energy = force_of(mesh, directed(), warp, "bend")
-                                  ->energy(moved(mesh, [&](double a, double b) { return Vec3(a, height(a, b), b); }));
+        const double energy =
+            force_of(mesh, directed(), warp, "bend")->energy(moved(mesh, [&](double a, double b) {
+              return Vec3(a, height(a, b), b);
+            }));
         error.push_back(std::abs(energy / expected - 1));
       }
       INFO(name(kind) << ", along " << angle << " rad: " << error[0] << " " << error[1]);
@@ -320,5 +327,6 @@ TEST_CASE("numbers that make no woven law are refused by name", "[woven]") {
   CHECK_THAT(refused([](Fabric& f) { f.stretch = 0; }), Contains("stretch = 0 N/m"));
   CHECK_THAT(refused([](Fabric& f) { f.buckling_clamp = 3; }), Contains("buckling_clamp"));
   CHECK_THROWS_WITH(woven(mesh, mesh, directed()), Contains("direction"));
-  CHECK_THROWS_WITH(woven(mesh, mesh, directed(), Vec3::UnitY()), Contains("triangle 1 is square to the warp"));
+  CHECK_THROWS_WITH(woven(mesh, mesh, directed(), Vec3::UnitY()),
+                    Contains("triangle 1 is square to the warp"));
 }

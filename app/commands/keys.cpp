@@ -24,6 +24,14 @@ panels = [{ group = "front" }]
 seams  = [{}]
 pins   = [{ group = "collar", motion = { keyframes = [{ time = 0 }] } }]
 
+[[cloth]]
+mesh      = "flag.obj"
+model     = "woven"
+warp      = [1, 0, 0]
+stretch   = { warp = 500 }
+bend      = { warp = 1e-5 }
+viscosity = {}
+
 [[soft]]
 particles = [2, 2, 2]
 spacing   = 0.1

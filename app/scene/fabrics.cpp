@@ -38,8 +38,9 @@ std::optional<Table> directions(Table& table, const std::string& key, double& va
 void read_stretch(Table& table, Fabric& fabric) {
   std::optional<Table> both =
       directions(table, "stretch", fabric.stretch, dimension::stretch,
-                 "membrane stiffness: force per width for a strain of 1; of model = \"woven\" also by "
-                 "directions, as a table");
+                 {"membrane stiffness: force per width for a strain of 1, in N/m; of model = \"woven\" also "
+                  "by directions, as a table",
+                  "500 N/m"});
   if (!both) return;
   Weave& weave = fabric.weave;
   both->read_required("warp", fabric.stretch, dimension::stretch, Range::positive,
@@ -56,8 +57,9 @@ void read_stretch(Table& table, Fabric& fabric) {
 void read_bend(Table& table, Fabric& fabric) {
   std::optional<Table> both =
       directions(table, "bend", fabric.bend, dimension::bend,
-                 "bending rigidity: moment per width for a curvature of 1/m; of model = \"woven\" also by "
-                 "directions, as a table");
+                 {"bending rigidity: moment per width for a curvature of 1/m, in N m; of model = \"woven\" "
+                  "also by directions, as a table",
+                  "10 uN.m"});
   if (!both) return;
   Weave& weave = fabric.weave;
   both->read_required("warp", fabric.bend, dimension::bend, Range::positive, "of a strip cut along the warp");

@@ -36,10 +36,10 @@ struct Membrane {
     double area;                          // m^2
   };
   struct Common {
-    double warp, weft, cross;  // Y_u, Y_v and nu sqrt(Y_u Y_v) [N/m]
-    double uu, uv, vv;         // C [N/m]
-    double shear;              // G [N/m]
-    double compression;        // s, from 0 to 1
+    double warp, weft, cross;         // Y_u, Y_v and nu sqrt(Y_u Y_v) [N/m]
+    double uu, uv, vv;                // C [N/m]
+    double shear;                     // G [N/m]
+    double compression;               // s, from 0 to 1
     double stretch_time, shear_time;  // T_s, T_g [s]
   };
 
@@ -106,11 +106,10 @@ struct Membrane {
     return of_corners(h, r);
   }
 
+  static bool damped(const Common& c) { return c.stretch_time > 0 || c.shear_time > 0; }
   static Blocks<3> damping(const Common& c, const Rest& r, const Points<3>& X) {
-    if (c.stretch_time == 0 && c.shear_time == 0) return Blocks<3>::Zero();
     const Eigen::Matrix<double, 3, 2> f = X * r.weights;
-    return of_corners(
-        material(c, f, f.col(0).norm(), f.col(1).norm(), c.stretch_time, c.shear_time), r);
+    return of_corners(material(c, f, f.col(0).norm(), f.col(1).norm(), c.stretch_time, c.shear_time), r);
   }
 
  private:

@@ -32,7 +32,8 @@ struct Functional {
 
 // How the corner across from an edge lies over it.
 struct Apex {
-  double l, foot, height;  // m: the edge, and of the corner its foot from the middle of the edge and its height
+  double l, foot,
+      height;  // m: the edge, and of the corner its foot from the middle of the edge and its height
 };
 
 class Plate {
@@ -75,7 +76,9 @@ class Plate {
     const Triangle& all = triangle(t);
     return static_cast<std::size_t>(std::find(all.begin(), all.end(), vertex) - all.begin());
   }
-  const Vec2& at_rest(int t, int vertex) const { return corners_[static_cast<std::size_t>(t)][corner(t, vertex)]; }
+  const Vec2& at_rest(int t, int vertex) const {
+    return corners_[static_cast<std::size_t>(t)][corner(t, vertex)];
+  }
 
   bool bends(int t) const {
     const Corners& p = corners_[static_cast<std::size_t>(t)];
@@ -93,9 +96,8 @@ class Plate {
 
   // Hinges that join two triangles with area and are the only one of their edge; the others bend freely.
   void find_neighbours() {
-    std::stable_sort(hinges_.begin(), hinges_.end(), [](const Hinge& p, const Hinge& q) {
-      return std::tie(p.a, p.b) < std::tie(q.a, q.b);
-    });
+    std::stable_sort(hinges_.begin(), hinges_.end(),
+                     [](const Hinge& p, const Hinge& q) { return std::tie(p.a, p.b) < std::tie(q.a, q.b); });
     const std::vector<Hinge> all = std::move(hinges_);
     hinges_ = {};
     const auto same_edge = [&](std::size_t h, std::size_t other) {
@@ -116,7 +118,8 @@ class Plate {
     const Apex over = apex(t, hinge.a, hinge.b, c);
     const Vec2 &p = known.at[corner(known.triangle, hinge.a)], &q = known.at[corner(known.triangle, hinge.b)];
     const Vec2 middle = 0.5 * (p + q), e = (q - p).normalized(), n(-e.y(), e.x());
-    const double side = n.dot(known.at[corner(known.triangle, from_c ? hinge.c : hinge.d)] - middle) > 0 ? -1 : 1;
+    const double side =
+        n.dot(known.at[corner(known.triangle, from_c ? hinge.c : hinge.d)] - middle) > 0 ? -1 : 1;
     Placed beside{t, {}};
     beside.at[corner(t, hinge.a)] = p;
     beside.at[corner(t, hinge.b)] = q;
@@ -137,7 +140,8 @@ class Plate {
 
   // The slope at the middle of the hinge's edge, across it and into the triangle of c.
   Functional slope(const Hinge& hinge) const {
-    const Apex one = apex(hinge.tc, hinge.a, hinge.b, hinge.c), two = apex(hinge.td, hinge.a, hinge.b, hinge.d);
+    const Apex one = apex(hinge.tc, hinge.a, hinge.b, hinge.c),
+               two = apex(hinge.td, hinge.a, hinge.b, hinge.d);
     Placed first{hinge.tc, {}};
     first.at[corner(hinge.tc, hinge.a)] = Vec2(-0.5 * one.l, 0);
     first.at[corner(hinge.tc, hinge.b)] = Vec2(0.5 * one.l, 0);
@@ -157,39 +161,59 @@ class Plate {
     return between;
   }
 
-  // The slope along y at the origin of the quadratic function that fits these vertices best, the near ones more
-  // than the far ones. Nothing where they do not determine one.
+  // The slope along y at the origin that is right for every quadratic function, from the two triangles' vertices
+  // and as few others as will do: often none, never more than two unless they lie badly. Nothing where the
+  // vertices do not determine it.
   std::optional<Functional> quadratic_slope(const std::vector<Placed>& patch, double unit) const {
-    Functional slope;
+    std::vector<int> vertices;
     std::vector<Vec2> at;
     for (const Placed& p : patch)
       for (std::size_t k = 0; k < 3; ++k) {
         const int vertex = triangle(p.triangle)[k];
-        if (std::find(slope.vertices.begin(), slope.vertices.end(), vertex) != slope.vertices.end()) continue;
-        slope.add(vertex, 0);
+        if (std::find(vertices.begin(), vertices.end(), vertex) != vertices.end()) continue;
+        vertices.push_back(vertex);
         at.push_back(p.at[k] / unit);
       }
-    if (at.size() < 6) return {};
-    const auto n = static_cast<Eigen::Index>(at.size());
-    Eigen::MatrixXd fit(n, 6);
-    VecX nearness(n);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const Vec2& p = at[static_cast<std::size_t>(k)];
-      nearness[k] = std::exp(-0.25 * p.squaredNorm());
-      fit.row(k) << 1, p.x(), p.y(), 0.5 * p.x() * p.x(), p.x() * p.y(), 0.5 * p.y() * p.y();
-      fit.row(k) *= nearness[k];
+    constexpr double steep = 4;  // times 1 / unit: weights beyond this would make the plate stiff
+    std::optional<Functional> best;
+    double least = steep * steep;
+    const auto consider = [&](const std::vector<std::size_t>& chosen) {
+      const VecX weights = exact_slope(at, chosen);
+      if (weights.size() == 0 || weights.squaredNorm() >= least * (1 - 1e-9)) return;
+      least = weights.squaredNorm();
+      best.emplace();
+      for (std::size_t k = 0; k < chosen.size(); ++k)
+        if (const double w = weights[static_cast<Eigen::Index>(k)]; std::abs(w) > 1e-12)
+          best->add(vertices[chosen[k]], w / unit);
+    };
+    const std::vector<std::size_t> own = {0, 1, 2, 3};
+    consider(own);
+    if (best) return best;
+    const auto with = [&](auto... more) {
+      std::vector<std::size_t> chosen = own;
+      (chosen.push_back(more), ...);
+      consider(chosen);
+    };
+    for (std::size_t k = 4; k < at.size(); ++k) with(k);
+    if (best) return best;
+    for (std::size_t k = 4; k < at.size(); ++k)
+      for (std::size_t l = k + 1; l < at.size(); ++l) with(k, l);
+    return best;
+  }
+
+  // The smallest weights of these points that give the slope along y at the origin of every quadratic function;
+  // empty when there are none.
+  static VecX exact_slope(const std::vector<Vec2>& at, const std::vector<std::size_t>& chosen) {
+    Eigen::MatrixXd values(6, static_cast<Eigen::Index>(chosen.size()));
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      const Vec2& p = at[chosen[k]];
+      values.col(static_cast<Eigen::Index>(k)) << 1, p.x(), p.y(), 0.5 * p.x() * p.x(), p.x() * p.y(),
+          0.5 * p.y() * p.y();
     }
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(fit);
-    const auto& R = qr.matrixR();
-    if (std::abs(R(5, 5)) < 0.02 * std::abs(R(0, 0))) return {};
-    VecX wanted = VecX::Zero(6);
-    wanted[2] = 1 / unit;
-    VecX rotated = VecX::Zero(n);
-    rotated.head(6) = R.topRows(6).triangularView<Eigen::Upper>().transpose().solve(
-        VecX(qr.colsPermutation().transpose() * wanted));
-    const VecX weights = nearness.cwiseProduct(VecX(qr.householderQ() * rotated));
-    slope.weights.assign(weights.begin(), weights.end());
-    return slope;
+    const Eigen::Matrix<double, 6, 1> wanted = Eigen::Matrix<double, 6, 1>::Unit(2);
+    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(values);
+    const VecX weights = solver.solve(wanted);
+    return (values * weights - wanted).norm() < 1e-9 ? weights : VecX();
   }
 
   // Adds `factor` times the slope of the linear function in the triangle, from the edge of the hinge inward.
@@ -205,7 +229,8 @@ class Plate {
   // The energy of a triangle is d . S^-1 d / 2, d being how far the slope of its linear function is from the
   // slope of each edge. In a constant curvature H the moments are m = l n . (D H) n, and d = c : H = S m.
   void add_triangle(int t) {
-    Eigen::Matrix3d off, moments;  // c and m of the three edges, over (H_uu, H_vv, 2 H_uv) and (M_uu, M_vv, M_uv)
+    Eigen::Matrix3d off,
+        moments;  // c and m of the three edges, over (H_uu, H_vv, 2 H_uv) and (M_uu, M_vv, M_uv)
     std::array<int, 3> hinge_of = {-1, -1, -1};
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = triangle(t)[k], b = triangle(t)[(k + 1) % 3], c = triangle(t)[(k + 2) % 3];

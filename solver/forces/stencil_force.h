@@ -10,6 +10,7 @@
 //   static Points<n> gradient(const Common&, const Rest&, const Points<n>& X);                   // dE/dX [N]
 //   static Blocks<n> hessian(const Common&, const Rest&, const Points<n>& X, Stiffness);         // [N/m]
 //   static Blocks<n> damping(const Common&, const Rest&, const Points<n>& X);  // D [N s/m]; may be left out
+//   static bool damped(const Common&);  // whether D is anything but zero; goes with damping
 // where the Hessian is symmetric and positive semidefinite: the exact one, projected, for Stiffness::tangent;
 // one that is nowhere smaller where the law asks for a chord or a majorant (solver/forces/force.h). Or, when
 // the law depends on one vector alone, p = sum w_k x_k (a distance, the gap of a contact; a VectorLaw),
@@ -132,7 +133,7 @@ class StencilForce : public Force {
         return Law::dissipation(common_, e.rest, at(e, x), [&] { return at(e, v); });
       });
     else if constexpr (damps)
-      return sum([&](const Element& e) {
+      return !Law::damped(common_) ? 0 : sum([&](const Element& e) {
         const Points<n> V = points(e, v);
         return 0.5 * flat(V).dot(Law::damping(common_, e.rest, points(e, x)) * flat(V));
       });
@@ -148,7 +149,8 @@ class StencilForce : public Force {
       } else {
         const Points<n> X = points(e, x);
         Points<n> pull = Law::gradient(common_, e.rest, X);
-        if constexpr (damps) flat(pull) += Law::damping(common_, e.rest, X) * flat(points(e, v));
+        if constexpr (damps)
+          if (Law::damped(common_)) flat(pull) += Law::damping(common_, e.rest, X) * flat(points(e, v));
         subtract(e, pull, f);
       }
     });
@@ -170,11 +172,12 @@ class StencilForce : public Force {
         flat(impulse) += K * flat(points(e, y));
         Blocks<n> block = c * c * K;
         impulse *= c;
-        if constexpr (damps) {
-          const Blocks<n> cD = c * Law::damping(common_, e.rest, X);
-          flat(impulse) += cD * flat(points(e, v));
-          block += cD;
-        }
+        if constexpr (damps)
+          if (Law::damped(common_)) {
+            const Blocks<n> cD = c * Law::damping(common_, e.rest, X);
+            flat(impulse) += cD * flat(points(e, v));
+            block += cD;
+          }
         subtract(e, impulse, b);
         add_blocks(e, block, A);
       }

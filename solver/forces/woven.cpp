@@ -30,8 +30,8 @@ Membrane::Rest rest_of(const Corners& corners) {
 
 Membrane::Common membrane_of(const Fabric& fabric) {
   const Weave& weave = fabric.weave;
-  const double warp = fabric.stretch, weft = weave.stretch_weft.value_or(warp),
-               mean = std::sqrt(warp * weft), nu = weave.poisson, full = 1 / (1 - nu * nu);
+  const double warp = fabric.stretch, weft = weave.stretch_weft.value_or(warp), mean = std::sqrt(warp * weft),
+               nu = weave.poisson, full = 1 / (1 - nu * nu);
   return {.warp = warp,
           .weft = weft,
           .cross = nu * mean,

@@ -1,0 +1,57 @@
+// What a fabric makes of the bending rigidity it was given: cantilevers of every kind of mesh and of three sizes,
+// by both models of a triangle mesh, against the elastica.
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "solver/drape.h"
+#include "tests/strips.h"
+
+using namespace drape;
+using namespace drape::test;
+
+namespace {
+
+const Fabric fabric{.area_density = 0.15, .stretch = 500, .bend = 1e-5};
+
+// Height over width of the strip at rest.
+double droop(const Strip& sheet, bool as_woven) {
+  System system(masses(sheet.mesh, fabric));
+  system.add(as_woven ? woven(sheet.mesh, sheet.mesh, fabric) : noh_jung(sheet.mesh, fabric));
+  system.add(gravity({0, -9.81, 0}));
+  Constraints constraints;
+  constraints.pin(sheet.clamped);
+  const auto stepper = make_integrator("implicit-euler", system, constraints, make_linear_solver("mpcg+block-ic0"),
+                                       {.tolerance = 1e-10});
+  State state = at_rest(sheet.mesh);
+  const double h = 0.1 * std::sqrt(sheet.length);
+  for (int step = 0; step < 4000 && (step == 0 || max_speed(state.v) > 1e-8); ++step)
+    if (!stepper->advance(state, h).done) return NAN;
+  double height = 0, width = 0;
+  for (int i : sheet.tip) {
+    height -= state.x[3 * i + 1];
+    width += state.x[3 * i];
+  }
+  return height / width;
+}
+
+}  // namespace
+
+int main() {
+  // Gamma = area_density g L^3 / B and H/W: rows of data/reference/cantilever_master.csv.
+  constexpr std::pair<double, double> curve[] = {
+      {0.01, 0.00124999955}, {1, 0.124561766}, {10, 1.06680232}, {100, 5.88810462}, {1000, 21.3354405}};
+  std::printf("Error of H/W of a cantilever, %%: %g kg/m^2, Y = %g N/m, B = %g N m\n", fabric.area_density,
+              fabric.stretch, fabric.bend);
+  std::printf("%-26s %8s %6s %10s %10s\n", "mesh", "Gamma", "cells", "noh-jung", "woven");
+  for (const auto& [gamma, expected] : curve)
+    for (StripMesh kind : strip_meshes)
+      for (int cells : {10, 20, 40}) {
+        const double length = std::cbrt(gamma * fabric.bend / (fabric.area_density * 9.81));
+        const Strip sheet = strip(kind, cells, cells < 40 ? 4 : 8, length);
+        const auto error = [&](bool as_woven) { return 100 * (droop(sheet, as_woven) / expected - 1); };
+        std::printf("%-26s %8g %6d %10.2f %10.2f\n", name(kind), gamma, cells, error(false), error(true));
+        std::fflush(stdout);
+      }
+  return 0;
+}
