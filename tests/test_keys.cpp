@@ -153,7 +153,7 @@ TEST_CASE("drape keys prints a table, or says which there are", "[keys]") {
   const test::Outcome cloth = folder.drape("keys cloth");
   CHECK(cloth.exit_code == 0);
   CHECK(cloth.out.find("bend ") != std::string::npos);
-  CHECK(cloth.out.find("a bending rigidity ≥ 0 [N.m]; default: 1e-05") != std::string::npos);
+  CHECK(cloth.out.find("a mass per area > 0 [kg/m^2]; default: 0.15") != std::string::npos);
   const test::Outcome table = folder.drape("keys simulation --markdown");
   CHECK(table.out.find("| `time_step` | a time > 0 | s | 0.01 |") != std::string::npos);
   const test::Outcome wrong = folder.drape("keys obstcale");

@@ -151,6 +151,51 @@ TEST_CASE("a mistake in a scene is told with its line", "[scene]") {
   test::check_mistakes(table, [](const std::string& text) { return read(text); });
 }
 
+TEST_CASE("a woven cloth is read, and refused where its directions are not known", "[scene][woven]") {
+  const std::string woven = cloth + "model = \"woven\"\n";
+  const Scene scene =
+      read(woven +
+           "warp = [0, 0, 2]\nstretch = { warp = \"6 N/cm\", weft = 400, shear = 50, poisson = 0.2 }\n"
+           "bend = { warp = \"2.1 uN.m\", weft = \"1.4 uN.m\", bias = \"1.6 uN.m\", poisson = 0.1 }\n"
+           "compression = 0.25\nviscosity = { stretch = \"1 ms\", bend = \"5 ms\" }\n");
+  const ClothEntry& entry = scene.cloths.at(0);
+  CHECK(entry.model == "woven");
+  CHECK((*entry.warp - Vec3(0, 0, 2)).norm() == 0);
+  const Weave& w = entry.fabric.weave;
+  CHECK(entry.fabric.stretch == Approx(600));
+  CHECK(*w.stretch_weft == 400);
+  CHECK(*w.shear == 50);
+  CHECK(w.poisson == 0.2);
+  CHECK(entry.fabric.bend == Approx(2.1e-6));
+  CHECK(*w.bend_weft == Approx(1.4e-6));
+  CHECK(*w.bend_bias == Approx(1.6e-6));
+  CHECK(w.bend_poisson == 0.1);
+  CHECK(w.compression == 0.25);
+  CHECK(w.stretch_time == Approx(1e-3));
+  CHECK(w.shear_time == 0);
+  CHECK(w.bend_time == Approx(5e-3));
+  CHECK_FALSE(read(woven).cloths[0].warp);
+  CHECK((*read(woven + "rest = \"uv\"\n").cloths[0].warp - Vec3(0, 1, 0)).norm() == 0);
+
+  const test::Mistake table[] = {
+      {cloth + "warp = [1, 0, 0]\n", "scene.toml:3:", "goes with model = \"woven\""},
+      {cloth + "compression = 0.5\n", "scene.toml:3:", "goes with model = \"woven\""},
+      {cloth + "viscosity = { bend = 1 }\n", "scene.toml:3:", "goes with model = \"woven\""},
+      {cloth + "stretch = { warp = 500, weft = 300 }\n", "scene.toml:1:", "needs model = \"woven\""},
+      {woven + "warp = [0, 0, 0]\n", "scene.toml:4:", "a direction is not [0, 0, 0]"},
+      {woven + "stretch = { warp = 500, weft = 300 }\n", "scene.toml:3:", "give warp = [x, y, z]"},
+      {woven + "stretch = { weft = 300 }\n", "scene.toml:4:", "'warp' is missing"},
+      {woven + "stretch = { warp = 500, wefft = 300 }\n", "scene.toml:4:", "did you mean 'weft'?"},
+      {woven + "stretch = { warp = 500, poisson = 1 }\n", "scene.toml:1:", "poisson = 1"},
+      {woven + "bend = { warp = \"2 N/m\" }\n", "scene.toml:4:", "expected a bending rigidity"},
+      {woven + "buckling_clamp = 3\n", "scene.toml:4:", "is of connections"},
+      {woven + "damping = 3\n", "scene.toml:4:", "is of connections"},
+      {woven + "compression = 1.5\n", "scene.toml:1:", "from 0 to 1"},
+      {woven + "viscosity = 3\n", "scene.toml:4:", "expected a table"},
+  };
+  test::check_mistakes(table, [](const std::string& text) { return read(text); });
+}
+
 TEST_CASE("settings change a scene before it is read", "[scene]") {
   const std::string text =
       cloth + "[[cloth]]\nmesh = \"b.obj\"\nname = \"skirt\"\nbend = 1\n" + sphere + "radius = 1\n";

@@ -75,6 +75,9 @@ void read_viscosity(Table& table, Weave& weave) {
   const Node* const node =
       table.take("viscosity", "a table", "of model = \"woven\": how long strains resist being changed");
   if (!node) return;
+  if (node->kind != Node::Kind::table)
+    table.fail("viscosity",
+               "expected a table such as { stretch = \"1 ms\", shear = \"1 ms\", bend = \"5 ms\" }");
   Table times = table.inner("viscosity");
   times.read("stretch", weave.stretch_time, dimension::time, Range::not_negative,
              "viscosity over stiffness, of stretch");

@@ -21,8 +21,8 @@ double droop(const Strip& sheet, bool as_woven) {
   system.add(gravity({0, -9.81, 0}));
   Constraints constraints;
   constraints.pin(sheet.clamped);
-  const auto stepper = make_integrator("implicit-euler", system, constraints, make_linear_solver("mpcg+block-ic0"),
-                                       {.tolerance = 1e-10});
+  const auto stepper = make_integrator("implicit-euler", system, constraints,
+                                       make_linear_solver("mpcg+block-ic0"), {.tolerance = 1e-10});
   State state = at_rest(sheet.mesh);
   const double h = 0.1 * std::sqrt(sheet.length);
   for (int step = 0; step < 4000 && (step == 0 || max_speed(state.v) > 1e-8); ++step)

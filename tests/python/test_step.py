@@ -30,6 +30,28 @@ class Step(unittest.TestCase):
                 self.assertGreater(report.contacts, 0)
         self.assertEqual(len(set(expected[1::2])), 3)
 
+    def test_a_woven_sheet_hangs_as_stiff_as_it_was_said_to_be(self):
+        sheet = drape.grid(3, 11, 0.1, 1)  # hung by an edge, it is longer by density g L^2 / (2 Y)
+        fabric = drape.Fabric(area_density=0.2, stretch=300, stretch_weft=80, shear=20, poisson=0)
+        self.assertEqual(fabric.stretch_weft, 80)
+        self.assertIsNone(drape.Fabric().shear)
+        for warp, stiffness in (([0, 0, 1], 300), ([1, 0, 0], 80)):
+            system = drape.System(drape.masses(sheet, fabric))
+            system.add(drape.woven(sheet, fabric, warp))
+            system.add(drape.gravity([0, 0, 9.81]))
+            constraints = drape.Constraints()
+            constraints.pin([0, 1, 2])
+            state = drape.at_rest(sheet)
+            stepper = drape.ImplicitEuler(system, constraints)
+            for _ in range(400):
+                stepper.advance(state, 0.05)
+            longer = state.x[:, 2].max() - sheet.positions[:, 2].max()
+            self.assertAlmostEqual(longer / (0.2 * 9.81 / (2 * stiffness)), 1, delta=2e-3)
+        with self.assertRaisesRegex(ValueError, "direction"):
+            drape.woven(sheet, fabric)
+        with self.assertRaisesRegex(ValueError, "poisson = 2"):
+            drape.Fabric(poisson=2)
+
     def test_free_fall(self):
         sheet = drape.grid(5, 5, 1, 1)
         fabric = drape.Fabric()

@@ -150,5 +150,6 @@ __all__ = [
     "tube",
     "vertex_areas",
     "view_html",
+    "woven",
     "write_obj",
 ]
