@@ -306,6 +306,10 @@ pictures() {
     say "running $scene into $out/$scene"
     build/release/drape simulate "data/scenes/$scene.toml" --out "$out/$scene" || die "$scene failed, see above"
   done
+  for scene in noh-jung woven; do
+    build/release/drape drop data/meshes/tee.obj --onto plane --duration 1.5 --set "cloth.0.model=$scene" --out "$out/dropped/$scene" \
+      || die "dropping the shirt failed, see above"
+  done
   say "drawing into data/pictures"
   draw poncho 1100x580 -25,10 '' tee poncho
   draw noh-jung 900x400 -25,18 '' noh-jung-{200,100}
@@ -318,6 +322,7 @@ pictures() {
   draw tablecloth-pull 1100x440 -20,14 50,80,90,last tablecloth-pull
   draw ls-ball 800x600 -20,14 14,20 ls-ball-{0,09}
   draw dressed-turn 1100x420 15,8 1,41,59,last dressed-turn
+  draw dropped-shirt 1000x360 -25,30 '' dropped/noh-jung dropped/woven
   draw strain 640x480 -25,14 last poncho --color strain
 }
 

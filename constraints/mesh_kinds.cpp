@@ -57,14 +57,14 @@ std::optional<UniformSolid> uniform_solid(const LevelSetBody& body, double mass)
   constexpr double most = 3e5;  // cubes
   const Vec3 extent = body->upper() - body->lower(), corner = body->lower();
   const double h = std::max(body->voxel(), std::cbrt(extent.prod() / most));
-  const Vec3 count = (extent / h).array().ceil().max(1.0);
+  const Eigen::Array3i count = (extent / h).array().ceil().max(1.0).cast<int>();
   double volume = 0;
   Vec3 first = Vec3::Zero();   // integral of x, measured from the middle
   Mat3 second = Mat3::Zero();  // integral of x x^T
   const Vec3 origin = middle_of(body);
-  for (double i = 0; i < count.x(); ++i)
-    for (double j = 0; j < count.y(); ++j)
-      for (double k = 0; k < count.z(); ++k) {
+  for (int i = 0; i < count.x(); ++i)
+    for (int j = 0; j < count.y(); ++j)
+      for (int k = 0; k < count.z(); ++k) {
         const Vec3 at = body->to_world(corner + h * Vec3(i + 0.5, j + 0.5, k + 0.5));
         const double share = std::clamp(0.5 - body->closest(at).distance / h, 0.0, 1.0);
         if (share == 0) continue;

@@ -28,19 +28,19 @@ fs::path fabric_folder() {
 
 // A number, the same in all directions, or a table of directions. Null: the number was read, or nothing.
 std::optional<Table> directions(Table& table, const std::string& key, double& value,
-                                const Dimension& dimension, const About& about) {
-  const Node* const node = table.take(key, "a number ≥ 0, or a table", about);
+                                const Dimension& dimension, const char* kind, const About& about) {
+  const Node* const node = table.take(key, kind, about);
   if (node && node->kind == Node::Kind::table) return table.inner(key);
   table.read(key, value, dimension, Range::not_negative, about);
   return {};
 }
 
 void read_stretch(Table& table, Fabric& fabric) {
-  std::optional<Table> both =
-      directions(table, "stretch", fabric.stretch, dimension::stretch,
-                 {"membrane stiffness: force per width for a strain of 1, in N/m; of model = \"woven\" also "
-                  "by directions, as a table",
-                  "500 N/m"});
+  std::optional<Table> both = directions(
+      table, "stretch", fabric.stretch, dimension::stretch, "a membrane stiffness ≥ 0 [N/m], or a table",
+      {"membrane stiffness: force per width for a strain of 1; of model = \"woven\" also "
+       "by directions, as a table",
+       "500 N/m"});
   if (!both) return;
   Weave& weave = fabric.weave;
   both->read_required("warp", fabric.stretch, dimension::stretch, Range::positive,
@@ -56,8 +56,8 @@ void read_stretch(Table& table, Fabric& fabric) {
 
 void read_bend(Table& table, Fabric& fabric) {
   std::optional<Table> both =
-      directions(table, "bend", fabric.bend, dimension::bend,
-                 {"bending rigidity: moment per width for a curvature of 1/m, in N m; of model = \"woven\" "
+      directions(table, "bend", fabric.bend, dimension::bend, "a bending rigidity ≥ 0 [N.m], or a table",
+                 {"bending rigidity: moment per width for a curvature of 1/m; of model = \"woven\" "
                   "also by directions, as a table",
                   "10 uN.m"});
   if (!both) return;

@@ -71,6 +71,7 @@ from ._drape import (
     tube,
     vertex_areas,
     view_html,
+    woven,
     write_obj,
 )
 from .errors import StepError
