@@ -189,3 +189,33 @@ TEST_CASE("a panel is as wide as it is told to be", "[sewing]") {
   CHECK(widths[0] == Approx(0.5));
   CHECK(widths[1] == Approx(0.5));
 }
+
+TEST_CASE("strains of triangles tell what edges hide: compression, and area that is lost", "[woven]") {
+  Assembly all;
+  const TriangleMesh sheet = grid(5, 9, 0.4, 0.8);
+  TriangleMesh rest = sheet;  // laid elsewhere
+  for (Vec3& x : rest.positions) x = Vec3(x.z(), x.x(), 3);
+  all.add({.mesh = sheet, .rest = rest});
+  all.add({.mesh = sheet, .model = ClothModel::woven});
+  std::vector<double> smallest;
+  const auto strained = [&](double along, double across) {
+    VecX x = all.state.x;
+    for (Eigen::Index i = 0; i < x.size(); i += 3) {  // of the first cloth alone, and shown from the side
+      const bool first = i < 3 * sheet.vertex_count();
+      x[i] *= first ? 1 + along : 1;
+      x[i + 1] = first ? 0.6 * (1 + across) * x[i + 2] : 0.0;
+      x[i + 2] *= first ? 0.8 * (1 + across) : 1;
+    }
+    return triangle_strains(all.cloths, x, smallest);
+  };
+  for (const auto& [along, across] : {std::pair{0.02, -0.05}, std::pair{-0.3, 0.1}, std::pair{0.0, -1.0}}) {
+    INFO(along << " " << across);
+    const TriangleStrains s = strained(along, across);
+    CHECK(smallest.size() == 2 * sheet.triangles.size());
+    CHECK(s.least == Approx(std::min(along, across)).margin(1e-7));
+    CHECK(s.first_percent == Approx(std::min(along, across)).margin(1e-7));
+    CHECK(s.largest == Approx(std::max(along, across)).margin(1e-7));
+    CHECK(s.area_kept == Approx(0.5 + 0.5 * (1 + along) * (1 + across)));
+  }
+  CHECK(largest_strain(all.cloths, all.state.x) < 1e-12);
+}

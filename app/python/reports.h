@@ -10,6 +10,7 @@ namespace drape::app::python {
 struct RunStep : StepReport {
   long step;
   double time, kinetic_energy, elastic_energy, gravity_energy, contact_energy, max_speed, max_edge_strain;
+  double min_strain, max_strain, area_kept;
 
   explicit RunStep(const StepRow& row)
       : StepReport(row.report),
@@ -20,7 +21,10 @@ struct RunStep : StepReport {
         gravity_energy(row.gravity_energy),
         contact_energy(row.contact_energy),
         max_speed(row.max_speed),
-        max_edge_strain(row.max_edge_strain) {}
+        max_edge_strain(row.max_edge_strain),
+        min_strain(row.strains.least),
+        max_strain(row.strains.largest),
+        area_kept(row.strains.area_kept) {}
 };
 
 // Raises drape.StepError with the report when the step was not done.

@@ -65,6 +65,7 @@ struct RunRecord {
   double assemble_ms = 0, solve_ms = 0, collide_ms = 0, write_ms = 0;  // of the whole run
   double max_speed = 0, max_edge_strain = 0;                           // at the end [m/s], [-]
   double largest_speed = 0, largest_edge_strain = 0;                   // of the whole run
+  TriangleStrains strains;                                             // at the end
   double max_penetration = 0;                                          // m, of the whole run
   bool settled = false, interrupted = false;
   std::string state_hash;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/base/atomic_file.h"
+#include "solver/assembly/cloth.h"
 #include "solver/integrators/integrator.h"
 
 namespace drape::app {
@@ -17,6 +18,7 @@ struct StepRow {
   double kinetic_energy = 0, elastic_energy = 0, gravity_energy = 0, contact_energy = 0;  // J
   double max_speed = 0;                                                                   // m/s
   double max_edge_strain = 0;
+  TriangleStrains strains;
 };
 
 class StepsWriter {

@@ -122,6 +122,7 @@ const StepRow& Run::step() {
   row_.gravity_energy = simulation_.system->gravity_energy(state.x);
   row_.max_speed = max_speed(state.v);
   row_.max_edge_strain = largest_strain(simulation_.cloths, state.x);
+  row_.strains = triangle_strains(simulation_.cloths, state.x, strain_of_triangles_);
   if (!row_.report.done) {
     note_failure(row_.report.failure);
     return row_;
@@ -174,6 +175,7 @@ void Run::record_step(const StepRow& row) {
   record_.collide_ms += report.collide_ms;
   record_.max_speed = row.max_speed;
   record_.max_edge_strain = row.max_edge_strain;
+  record_.strains = row.strains;
   record_.largest_speed = std::max(record_.largest_speed, row.max_speed);
   record_.largest_edge_strain = std::max(record_.largest_edge_strain, row.max_edge_strain);
   record_.max_penetration = std::max(record_.max_penetration, report.penetration);

@@ -64,7 +64,8 @@ class Run {
   RunRecord record_;
   StepRow row_;
   Clock::time_point start_ = Clock::now();
-  bool framed_ = false;  // there is a frame of the present state
+  std::vector<double> strain_of_triangles_;  // scratch
+  bool framed_ = false;                      // there is a frame of the present state
   bool settled_ = false;
   double last_motion_;         // s
   double settled_since_ = -1;  // s; -1: something moves

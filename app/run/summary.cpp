@@ -10,6 +10,9 @@ std::string hints(const RunRecord& record) {
   if (record.max_edge_strain > 0.1 && record.softs.empty())
     text += "hint: an edge is stretched by " + rounded(100 * record.max_edge_strain, 2) +
             " %, more than woven cloth does: raise stretch, or check the units of the mesh\n";
+  if (record.strains.area_kept < 0.9)
+    text += "hint: the cloth has lost " + rounded(100 * (1 - record.strains.area_kept), 2) +
+            " % of its area: edges do not push in the models of springs; model = \"woven\" keeps it\n";
   if (record.max_penetration > 1e-4)
     text +=
         "hint: a vertex was inside a body by up to " + rounded(1000 * record.max_penetration, 2) + " mm\n";
@@ -45,6 +48,11 @@ std::string summary(const RunRecord& record, const Output& output) {
           rounded(iterations.mean, 3) + " linear iterations a step\n";
   text += "state: " + record.state() + ", largest speed " + rounded(record.max_speed, 2) +
           " m/s, largest edge strain " + rounded(100 * record.max_edge_strain, 2) + " %\n";
+  if (!record.cloths.empty())
+    text += "area kept: " + rounded(100 * record.strains.area_kept, 3) + " %, strain of triangles from " +
+            rounded(100 * record.strains.least, 3) + " % (one in a hundred below " +
+            rounded(100 * record.strains.first_percent, 3) + " %) to " +
+            rounded(100 * record.strains.largest, 3) + " %\n";
   text += hints(record);
   for (const auto& [path, amount] : output.written())
     text += "wrote " + path.string() + (amount.empty() ? "" : " (" + amount + ")") + "\n";

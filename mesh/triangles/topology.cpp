@@ -253,8 +253,8 @@ std::vector<int> welded(const std::vector<Vec3>& positions) {
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](int i, int j) {
     for (int k = 0; k < 3; ++k)  // a weak order: NaN must not break the sorting
-      if (const auto between = std::weak_order(positions[i][k], positions[j][k]); between != 0)
-        return between < 0;
+      if (const auto between = std::weak_order(positions[i][k], positions[j][k]); std::is_neq(between))
+        return std::is_lt(between);
     return i < j;
   });
   for (std::size_t k = 0; k < order.size(); ++k) {

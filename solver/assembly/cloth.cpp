@@ -1,6 +1,8 @@
 #include "solver/assembly/cloth.h"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 namespace drape {
 
@@ -25,6 +27,46 @@ double largest_strain(const std::vector<Cloth>& cloths, const VecX& x) {
     for (const RestEdge& e : cloth.edges)
       largest = std::max(largest, (x.segment<3>(3 * e.j) - x.segment<3>(3 * e.i)).norm() / e.L - 1);
   return largest;
+}
+
+TriangleStrains triangle_strains(const std::vector<Cloth>& cloths, const VecX& x,
+                                 std::vector<double>& smallest) {
+  TriangleStrains all;
+  double area = 0, area_at_rest = 0;
+  smallest.clear();
+  for (const Cloth& cloth : cloths) {
+    if (cloth.soft) continue;
+    for (std::size_t t = 0; t < cloth.mesh.triangles.size(); ++t) {
+      const auto metric = [](const Vec3& a, const Vec3& b, const Vec3& c) {
+        Eigen::Matrix<double, 3, 2> edges;
+        edges << b - a, c - a;
+        return Eigen::Matrix2d(edges.transpose() * edges);
+      };
+      const Triangle &r = cloth.rest.triangles[t], &v = cloth.mesh.triangles[t];
+      const auto rest = [&](std::size_t k) { return cloth.rest.positions[static_cast<std::size_t>(r[k])]; };
+      const auto now = [&](std::size_t k) { return Vec3(x.segment<3>(3 * cloth.embedding.particle(v[k]))); };
+      const Eigen::Matrix2d before = metric(rest(0), rest(1), rest(2)),
+                            after = metric(now(0), now(1), now(2));
+      const double twice = before.determinant();
+      if (!(twice > 1e-18 * before.trace() * before.trace())) continue;  // without area at rest
+      area += 0.5 * std::sqrt(std::max(0.0, after.determinant()));
+      area_at_rest += 0.5 * std::sqrt(twice);
+      // The squares of the factors are the eigenvalues of before^-1 after.
+      const double mean =
+          0.5 * (before(1, 1) * after(0, 0) + before(0, 0) * after(1, 1) - 2 * before(0, 1) * after(0, 1)) /
+          twice;
+      const double off = std::sqrt(std::max(0.0, mean * mean - after.determinant() / twice));
+      smallest.push_back(std::sqrt(std::max(0.0, mean - off)) - 1);
+      all.largest = std::max(all.largest, std::sqrt(mean + off) - 1);
+    }
+  }
+  if (smallest.empty()) return all;
+  const auto hundredth = smallest.begin() + static_cast<std::ptrdiff_t>(smallest.size() / 100);
+  std::nth_element(smallest.begin(), hundredth, smallest.end());
+  all.first_percent = *hundredth;
+  all.least = *std::min_element(smallest.begin(), hundredth + 1);
+  all.area_kept = area / area_at_rest;
+  return all;
 }
 
 std::vector<int> pinned_particles(const PinRule& rule, const Cloth& cloth, const VecX& x) {

@@ -89,6 +89,17 @@ struct Cloth {
 // Largest relative stretch of an edge: max (l - L) / L; 0 when none is stretched.
 double largest_strain(const std::vector<Cloth>& cloths, const VecX& x);
 
+// How the triangles of all cloths are strained. The principal strains of a triangle are the two factors by which
+// its rest shape is stretched, less 1: negative where it is compressed.
+struct TriangleStrains {
+  double least = 0, largest = 0;  // over all triangles
+  double first_percent = 0;       // one triangle in a hundred is compressed further
+  double area_kept = 1;           // area over area at rest
+};
+// `smallest` is scratch: on return it has the smaller principal strain of every triangle, in some order.
+TriangleStrains triangle_strains(const std::vector<Cloth>& cloths, const VecX& x,
+                                 std::vector<double>& smallest);
+
 // The particles that a pin holds: a box holds those inside it, and a choice of vertices all that carry them.
 // Throws InputError when the rule selects nothing.
 std::vector<int> pinned_particles(const PinRule& rule, const Cloth& cloth, const VecX& x);
