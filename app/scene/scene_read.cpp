@@ -178,8 +178,7 @@ std::optional<Vec3> read_warp(Table& table, const ClothEntry& cloth) {
 // A woven cloth has no connections, and a cloth of connections no warp.
 void check_model(const Table& table, const ClothEntry& cloth) {
   const bool woven = cloth.model == "woven";
-  for (const char* key :
-       {"stretch_spring", "bend_spring", "buckling_clamp", "damping", "damping_kind", "neighbour_weighting"})
+  for (const char* key : {"stretch_spring", "bend_spring", "buckling_clamp", "neighbour_weighting"})
     if (woven && table.has(key)) table.fail(key, "is of connections, and model = \"woven\" has none");
   if (woven && has_directions(cloth.fabric) && !cloth.warp)
     table.fail("model",

@@ -52,6 +52,13 @@ void warn_if_heavy(const ClothEntry& entry, Names& messages) {
                      " kg/m^2 is heavier than any cloth: was it meant in g/m^2?");
 }
 
+void tell_of_damping(const Cloth& cloth, Names& messages) {
+  if (cloth.model != ClothModel::woven || cloth.fabric.damping == 0) return;
+  messages.push_back(
+      "note: cloth " + cloth.name +
+      ": damping is of connections, and model = \"woven\" has none; viscosity calms its folds");
+}
+
 void warn_if_limp(const Cloth& cloth, Names& messages) {
   const double curvature = cloth.limp_below;
   if (!(curvature > 2 * limp_curvature(cloth.fabric.bend, cloth.fabric.area_density))) return;
@@ -123,6 +130,7 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
     if (cloth.soft) continue;
     warn_if_long(cloth, simulation.messages);
     warn_if_limp(cloth, simulation.messages);
+    tell_of_damping(cloth, simulation.messages);
   }
   for (const ClothEntry& cloth : scene.cloths) warn_if_heavy(cloth, simulation.messages);
   warn_of_vertices_inside(scene, simulation);

@@ -12,6 +12,11 @@
 namespace drape::app {
 namespace {
 
+[[noreturn]] void refuse(const std::string& text, const std::string& name, const Names& known) {
+  throw InputError("--integrators " + text + ": there is no integrator '" + name + "'; " +
+                   suggestion(name, known));
+}
+
 void read(const std::string& text, const char* option, const Dimension& dimension, double& value,
           Range range = Range::positive) {
   if (text.empty()) return;
@@ -36,9 +41,7 @@ std::vector<std::string> chosen_integrators(const std::string& text) {
   for (std::size_t begin = 0; !text.empty() && begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const std::string name = text.substr(begin, end - begin);
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw InputError("--integrators " + text + ": there is no integrator '" + name + "'; " +
-                       suggestion(name, known));
+    if (std::find(known.begin(), known.end(), name) == known.end()) refuse(text, name, known);
     if (std::find(chosen.begin(), chosen.end(), name) == chosen.end()) chosen.push_back(name);
     begin = end + 1;
   }

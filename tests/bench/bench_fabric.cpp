@@ -77,7 +77,9 @@ int main() {
       for (int cells : {10, 20, 40}) {
         const double length = std::cbrt(gamma * fabric.bend / (fabric.area_density * 9.81));
         const Strip sheet = strip(kind, cells, cells < 40 ? 4 : 8, length);
-        const auto error = [&](bool as_woven) { return 100 * (droop(sheet, as_woven) / expected - 1); };
+        const auto error = [&, wanted = expected](bool as_woven) {
+          return 100 * (droop(sheet, as_woven) / wanted - 1);
+        };
         // Stiff strips of springs lie within the dead zone of their clamp: they hang like chains.
         const double springs = gamma < 10 ? NAN : error(false);
         std::printf("%-26s %8g %6d %10.1f %10.2f\n", name(kind), gamma, cells, springs, error(true));
