@@ -114,8 +114,10 @@ TEST_CASE("the explicit schemes are stable up to their limits on a lattice, to 2
                {0, VecX::Zero(3 * side * side), VecX::Zero(3 * side * side)}};
   lattice.system.add(std::make_unique<PairForce<TensionSpring>>(std::move(elements)));
   lattice.constraints.pin(rim(side));
-  for (int i = 0; i < side * side; ++i)  // barely taut, so that the tension does not stiffen it
-    lattice.rest.x.segment<3>(3 * i) = 1.001 * Vec3(i % side, 0, i / side);
+  for (int i = 0; i < side * side; ++i) {  // barely taut, so that the tension does not stiffen it
+    const int row = i / side, column = i % side;
+    lattice.rest.x.segment<3>(3 * i) = 1.001 * Vec3(column, 0, row);
+  }
   const double omega = std::sqrt(4 * (k + d) / m);
   CHECK(lattice.omega() == Approx(omega).epsilon(0.01));
   lattice.check_limits(omega, 0.02);
@@ -192,12 +194,12 @@ TEST_CASE("an explosion in contact is a failure long before the numbers end", "[
 namespace {
 
 // Steps of a sound motion, none of which may be taken for an explosion.
-void check_sound(const std::string& what, System& system, Constraints& constraints, State state, double h,
-                 const std::function<void(int, State&)>& meddle = {}, int steps = 2000) {
+void check_sound(const std::string& what, System& system, Constraints& constraints, const State& start,
+                 double h, const std::function<void(int, State&)>& meddle = {}, int steps = 2000) {
   for (const std::string& name : integrator_names()) {
     if (!is_explicit(name)) continue;
     Constraints own = constraints;
-    State s = state;
+    State s = start;
     auto stepper = make_integrator(name, system, own, make_linear_solver("mpcg"));
     for (int n = 0; n < steps; ++n) {
       if (meddle) meddle(n, s);

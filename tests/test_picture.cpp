@@ -36,10 +36,11 @@ struct Scene {
   void add(TriangleMesh mesh, bool body, std::vector<double> values = {}) {
     meshes.reserve(8);
     meshes.push_back(std::move(mesh));
-    still.parts.push_back({body, 0, meshes.back().positions, &meshes.back().triangles, nullptr, values});
+    still.parts.push_back(
+        {body, 0, meshes.back().positions, &meshes.back().triangles, nullptr, std::move(values)});
   }
   // Of everything in it.
-  Image draw(const View& view, int width, int height, Look look = {}) const {
+  Image draw(const View& view, int width, int height, const Look& look = {}) const {
     Framing framing(view, {0, 0, double(width), double(height)});
     for (const StillPart& part : still.parts)
       for (const Vec3& p : part.positions) framing.add(p);
