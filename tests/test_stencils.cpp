@@ -204,7 +204,7 @@ TEMPLATE_LIST_TEST_CASE(
     assembled(still, y, b_y);
     assembled(v, still, b_v);
     // c (-K y) and c (-D v) are those of A = c D + c^2 K: at half the c the two parts have other shares.
-    const Eigen::MatrixXd A1 = D2K;
+    const Eigen::MatrixXd& A1 = D2K;
     A.set_to_mass(std::vector<double>(particles, 0.0));
     VecX half = still;
     force.add_linearised(x, still, still, c / 2, Stiffness::tangent, A, half);
