@@ -2,6 +2,7 @@
 // runs along x; its first two columns of vertices, at -h/2 and h/2, hold it, so that its clamp is at x = 0.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <vector>

@@ -175,6 +175,7 @@ TEST_CASE("a woven cloth is read, and refused where its directions are not known
   CHECK(w.shear_time == 0);
   CHECK(w.bend_time == Approx(5e-3));
   CHECK_FALSE(read(woven).cloths[0].warp);
+  CHECK_THROWS_WITH(read(woven + "compression = 0.5\n"), Catch::Contains("give warp = [x, y, z]"));
   CHECK((*read(woven + "rest = \"uv\"\n").cloths[0].warp - Vec3(0, 1, 0)).norm() == 0);
 
   const test::Mistake table[] = {

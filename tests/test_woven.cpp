@@ -223,6 +223,20 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a plate with slivers has no negative stiffness", "[woven]") {
+  for (double height : {1e-2, 1e-3, 2e-4, 1e-5}) {
+    TriangleMesh mesh = grid(5, 5, 0.1, 0.1);
+    mesh.positions[12] = mesh.positions[7] + 0.37 * (mesh.positions[11] - mesh.positions[7]) +
+                         Vec3(0, 0, height * 0.025);  // nearly on an edge across from it
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(mesh.vertex_count(), mesh.vertex_count());
+    for (const PlatePair& p : plate_pairs(mesh, woven_corners(mesh, {}), plate_of(plain())))
+      K(p.i, p.i) += p.k, K(p.j, p.j) += p.k, K(p.i, p.j) -= p.k, K(p.j, p.i) -= p.k;
+    const Eigen::VectorXd e = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues();
+    INFO("height " << height << ": " << e[0] << " .. " << e[e.size() - 1]);
+    CHECK(e[0] > -1e-12 * e[e.size() - 1]);
+  }
+}
+
 TEST_CASE("a woven cantilever comes to the elastica on every mesh, to second order", "[woven][reference]") {
   const auto droop = [](StripMesh kind, int cells, double gamma) {
     const Strip s = strip(kind, cells, cells < 40 ? 4 : 8, std::cbrt(gamma * B / (density * 9.81)));
@@ -327,6 +341,13 @@ TEST_CASE("numbers that make no woven law are refused by name", "[woven]") {
   CHECK_THAT(refused([](Fabric& f) { f.stretch = 0; }), Contains("stretch = 0 N/m"));
   CHECK_THAT(refused([](Fabric& f) { f.buckling_clamp = 3; }), Contains("buckling_clamp"));
   CHECK_THROWS_WITH(woven(mesh, mesh, directed()), Contains("direction"));
+  CHECK_THROWS_WITH(woven(mesh, mesh, directed(), Vec3::Zero()), Contains("[0, 0, 0]"));
+  CHECK_THROWS_WITH(woven(mesh, mesh, directed(), Vec3(NAN, 1, 0)), Contains("finite"));
+  CHECK_THROWS_WITH(woven(mesh, grid(3, 4, 1, 1), plain()), Contains("12 triangles"));
+  Fabric wrinkling = plain();
+  wrinkling.weave.compression = 0.5;  // along the threads, which have to be somewhere
+  CHECK_THROWS_WITH(woven(mesh, mesh, wrinkling), Contains("direction"));
+  CHECK(woven(mesh, mesh, plain()).size() == 2);
   CHECK_THROWS_WITH(woven(mesh, mesh, directed(), Vec3::UnitY()),
                     Contains("triangle 1 is square to the warp"));
 }

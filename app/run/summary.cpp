@@ -1,5 +1,7 @@
 #include "app/run/summary.h"
 
+#include <algorithm>
+
 #include "app/simulation/measure.h"
 
 namespace drape::app {
@@ -10,7 +12,9 @@ std::string hints(const RunRecord& record) {
   if (record.max_edge_strain > 0.1 && record.softs.empty())
     text += "hint: an edge is stretched by " + rounded(100 * record.max_edge_strain, 2) +
             " %, more than woven cloth does: raise stretch, or check the units of the mesh\n";
-  if (record.strains.area_kept < 0.9)
+  const bool springs = std::any_of(record.cloths.begin(), record.cloths.end(),
+                                   [](const ClothCounts& c) { return c.fabric["model"].text() != "woven"; });
+  if (record.strains.area_kept < 0.9 && springs)
     text += "hint: the cloth has lost " + rounded(100 * (1 - record.strains.area_kept), 2) +
             " % of its area: edges do not push in the models of springs; model = \"woven\" keeps it\n";
   if (record.max_penetration > 1e-4)

@@ -105,8 +105,19 @@ void read_fabric(Table& table, Fabric& fabric) {
        {std::pair{"stretch", "stretch_spring"}, std::pair{"bend", "bend_spring"}})
     if (table.has(width) && table.has(spring))
       table.fail(spring, "give either " + std::string(width) + " or " + spring + ", not both");
-  if (table.has("stretch")) fabric.stretch_spring.reset();
-  if (table.has("bend")) fabric.bend_spring.reset();
+  Weave& weave = fabric.weave;
+  if (table.has("stretch")) {  // replaces all of a named fabric's
+    fabric.stretch_spring.reset();
+    weave.stretch_weft.reset();
+    weave.shear.reset();
+    weave.poisson = Weave().poisson;
+  }
+  if (table.has("bend")) {
+    fabric.bend_spring.reset();
+    weave.bend_weft.reset();
+    weave.bend_bias.reset();
+    weave.bend_poisson = Weave().bend_poisson;
+  }
   read_stretch(table, fabric);
   table.read("stretch_spring", fabric.stretch_spring, dimension::spring, Range::not_negative,
              "instead of stretch: the constant of every edge, k_s");
@@ -129,7 +140,7 @@ void read_fabric(Table& table, Fabric& fabric) {
   table.read(
       "compression", fabric.weave.compression, dimension::number, Range::not_negative,
       "of model = \"woven\": the share of the resistance to compression that stays; below 1 the fabric "
-      "wrinkles finer than the mesh");
+      "wrinkles finer than the mesh; from 0 to 1");
   read_viscosity(table, fabric.weave);
   try {
     check(fabric);

@@ -180,9 +180,10 @@ void check_model(const Table& table, const ClothEntry& cloth) {
   const bool woven = cloth.model == "woven";
   for (const char* key : {"stretch_spring", "bend_spring", "buckling_clamp", "neighbour_weighting"})
     if (woven && table.has(key)) table.fail(key, "is of connections, and model = \"woven\" has none");
-  if (woven && has_directions(cloth.fabric) && !cloth.warp)
+  if (woven && needs_warp(cloth.fabric) && !cloth.warp)
     table.fail("model",
-               "the fabric differs along warp and weft; give warp = [x, y, z], the direction of the "
+               "the fabric differs, wrinkles or is viscous along warp and weft; give warp = [x, y, z], the "
+               "direction of the "
                "warp in the rest shape, or rest = \"uv\", whose v it is");
   for (const char* key : {"compression", "viscosity"})
     if (!woven && table.has(key)) table.fail(key, "goes with model = \"woven\"");

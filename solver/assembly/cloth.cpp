@@ -43,8 +43,11 @@ TriangleStrains triangle_strains(const std::vector<Cloth>& cloths, const VecX& x
         return Eigen::Matrix2d(edges.transpose() * edges);
       };
       const Triangle &r = cloth.rest.triangles[t], &v = cloth.mesh.triangles[t];
+      const auto particle = [&](std::size_t k) { return cloth.embedding.particle(v[k]); };
+      if (particle(0) == particle(1) || particle(1) == particle(2) || particle(2) == particle(0))
+        continue;  // sewn shut
       const auto rest = [&](std::size_t k) { return cloth.rest.positions[static_cast<std::size_t>(r[k])]; };
-      const auto now = [&](std::size_t k) { return Vec3(x.segment<3>(3 * cloth.embedding.particle(v[k]))); };
+      const auto now = [&](std::size_t k) { return Vec3(x.segment<3>(3 * particle(k))); };
       const Eigen::Matrix2d before = metric(rest(0), rest(1), rest(2)),
                             after = metric(now(0), now(1), now(2));
       const double twice = before.determinant();
@@ -64,7 +67,7 @@ TriangleStrains triangle_strains(const std::vector<Cloth>& cloths, const VecX& x
   const auto hundredth = smallest.begin() + static_cast<std::ptrdiff_t>(smallest.size() / 100);
   std::nth_element(smallest.begin(), hundredth, smallest.end());
   all.first_percent = *hundredth;
-  all.least = *std::min_element(smallest.begin(), hundredth + 1);
+  all.least = std::min(0.0, *std::min_element(smallest.begin(), hundredth + 1));
   all.area_kept = area / area_at_rest;
   return all;
 }

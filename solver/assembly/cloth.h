@@ -92,7 +92,7 @@ double largest_strain(const std::vector<Cloth>& cloths, const VecX& x);
 // How the triangles of all cloths are strained. The principal strains of a triangle are the two factors by which
 // its rest shape is stretched, less 1: negative where it is compressed.
 struct TriangleStrains {
-  double least = 0, largest = 0;  // over all triangles
+  double least = 0, largest = 0;  // over all triangles; 0 where none is compressed, or none stretched
   double first_percent = 0;       // one triangle in a hundred is compressed further
   double area_kept = 1;           // area over area at rest
 };

@@ -88,9 +88,15 @@ struct Membrane {
     if (stiffness == Stiffness::majorant) whole.compression = 1;
     Second h = material(whole, f, l_u, l_v, 1, 1);
     const double a = per_length(stretch.u, l_u), b = per_length(stretch.v, l_v);
-    const Vec3 normal = f.col(0).cross(f.col(1)).normalized();
     const Vec3 n_u = l_u > 0 ? Vec3(f.col(0) / l_u) : Vec3::Zero(),
                n_v = l_v > 0 ? Vec3(f.col(1) / l_v) : Vec3::Zero();
+    Vec3 normal = f.col(0).cross(f.col(1));
+    if (!normal.isZero(0))
+      normal.normalize();
+    else if (l_u > 0)
+      normal = n_u.unitOrthogonal();  // collapsed onto a line
+    else if (l_v > 0)
+      normal = n_v.unitOrthogonal();
     const Mat3 across = normal * normal.transpose();
     // ((a, tau), (tau, b)) without its negative part: its eigenvalues are middle +- radius.
     const double middle = 0.5 * (a + b), radius = std::hypot(0.5 * (a - b), tau);
@@ -98,11 +104,11 @@ struct Membrane {
     const double mean = 0.5 * (high + low), half = radius > 0 ? 0.5 * (high - low) / radius : 0;
     const Mat3 in_plane = Mat3::Identity() - across;
     const Vec3 t_u = normal.cross(n_u), t_v = normal.cross(n_v);
-    h.uu += (mean + half * 0.5 * (a - b)) * across + std::abs(tau) * in_plane +
+    h.uu += (mean + half * 0.5 * (a - b)) * across + 0.5 * std::abs(tau) * in_plane +
             std::max(a, 0.0) * t_u * t_u.transpose();
-    h.vv += (mean - half * 0.5 * (a - b)) * across + std::abs(tau) * in_plane +
+    h.vv += (mean - half * 0.5 * (a - b)) * across + 0.5 * std::abs(tau) * in_plane +
             std::max(b, 0.0) * t_v * t_v.transpose();
-    h.uv += half * tau * across + tau * in_plane;
+    h.uv += half * tau * across + 0.5 * tau * in_plane;
     return of_corners(h, r);
   }
 

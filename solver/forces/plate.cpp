@@ -84,7 +84,7 @@ class Plate {
     const Corners& p = corners_[static_cast<std::size_t>(t)];
     const Vec2 a = p[1] - p[0], b = p[2] - p[0];
     const double longest = std::max({a.norm(), b.norm(), (b - a).norm()});
-    return std::abs(a.x() * b.y() - a.y() * b.x()) > 1e-9 * longest * longest;
+    return std::abs(a.x() * b.y() - a.y() * b.x()) > 1e-4 * longest * longest;
   }
 
   Apex apex(int t, int a, int b, int c) const {
@@ -226,37 +226,39 @@ class Plate {
     slope.add(hinge.b, -factor * share / over.height);
   }
 
-  // The energy of a triangle is d . S^-1 d / 2, d being how far the slope of its linear function is from the
-  // slope of each edge. In a constant curvature H the moments are m = l n . (D H) n, and d = c : H = S m.
+  // The energy of a triangle of area A is d . Z d / 2, with d how far the inward slope of its linear function is
+  // from that of each edge. A constant curvature H has the moments m = P D H, where row k of P is l n n of edge k,
+  // and H = P^T d / A: so Z = P D P^T / A. The slope of an edge without a hinge is the one of least energy.
   void add_triangle(int t) {
-    Eigen::Matrix3d off,
-        moments;  // c and m of the three edges, over (H_uu, H_vv, 2 H_uv) and (M_uu, M_vv, M_uv)
+    Eigen::Matrix3d P;  // over (M_uu, M_vv, M_uv)
     std::array<int, 3> hinge_of = {-1, -1, -1};
+    double area = 0;
+    std::vector<Eigen::Index> held, open;
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = triangle(t)[k], b = triangle(t)[(k + 1) % 3], c = triangle(t)[(k + 2) % 3];
       for (int h : around_[static_cast<std::size_t>(t)]) {
         const Hinge& hinge = hinges_[static_cast<std::size_t>(h)];
         if (std::minmax(a, b) == std::pair<const int&, const int&>(hinge.a, hinge.b)) hinge_of[k] = h;
       }
-      const Apex over = apex(t, a, b, c);
-      const Vec2 e = (at_rest(t, b) - at_rest(t, a)) / over.l;
-      Vec2 n(-e.y(), e.x());
-      if (n.dot(at_rest(t, c) - at_rest(t, a)) < 0) n = -n;
-      const double beyond = 0.25 * over.l * over.l - over.foot * over.foot;
-      const Eigen::Matrix2d bent = 0.5 * over.height * n * n.transpose() +
-                                   0.5 * over.foot * (n * e.transpose() + e * n.transpose()) -
-                                   0.5 * beyond / over.height * e * e.transpose();
-      off.row(static_cast<Eigen::Index>(k)) << bent(0, 0), bent(1, 1), bent(0, 1);
-      moments.row(static_cast<Eigen::Index>(k)) << n.x() * n.x(), n.y() * n.y(), 2 * n.x() * n.y();
-      moments.row(static_cast<Eigen::Index>(k)) *= over.l;
+      (hinge_of[k] < 0 ? open : held).push_back(static_cast<Eigen::Index>(k));
+      const Vec2 e = at_rest(t, b) - at_rest(t, a);
+      const double l = e.norm();
+      const Vec2 n(-e.y() / l, e.x() / l);
+      area = 0.5 * l * apex(t, a, b, c).height;
+      P.row(static_cast<Eigen::Index>(k)) << l * n.x() * n.x(), l * n.y() * n.y(), 2 * l * n.x() * n.y();
     }
-    const Eigen::Matrix3d S = off * D_.inverse() * moments.inverse();
-    add_energy(t, hinge_of, 0.5 * (S + S.transpose()));
+    if (held.empty()) return;
+    const Eigen::Matrix3d Z = P * D_ * P.transpose() / area;
+    Eigen::MatrixXd stiffness = Z(held, held);
+    if (!open.empty()) {
+      const Eigen::MatrixXd across = Z(held, open);
+      stiffness -= across * Eigen::MatrixXd(Z(open, open)).inverse() * across.transpose();
+    }
+    add_energy(t, hinge_of, stiffness);
   }
 
-  void add_energy(int t, const std::array<int, 3>& hinge_of, const Eigen::Matrix3d& S) {
+  void add_energy(int t, const std::array<int, 3>& hinge_of, const Eigen::MatrixXd& stiffness) {
     std::vector<Functional> all;
-    std::vector<Eigen::Index> held;
     for (std::size_t k = 0; k < 3; ++k) {
       if (hinge_of[k] < 0) continue;
       const auto h = static_cast<std::size_t>(hinge_of[k]);
@@ -265,10 +267,7 @@ class Plate {
       for (double& weight : d.weights) weight *= sign;
       add_inward(t, hinges_[h], 1, d);
       all.push_back(std::move(d));
-      held.push_back(static_cast<Eigen::Index>(k));
     }
-    if (held.empty()) return;
-    const Eigen::MatrixXd stiffness = Eigen::MatrixXd(S(held, held)).inverse();
     Functional vertices;
     for (const Functional& d : all)
       for (int v : d.vertices) vertices.add(v, 0);

@@ -9,8 +9,9 @@
 // the corners it has one slope at the middle of each edge, the same in both triangles. The slope is no unknown
 // here: it is what a quadratic function through the vertices around the edge has there. As every choice of the
 // slope gives at least the energy of Morley's element, and this one gives just that energy wherever x is
-// quadratic, constant curvature costs what it should in every direction and is in equilibrium, on every mesh;
-// and no bending is free. At a border no moment is transmitted: the slope there is the one of least energy.
+// quadratic, constant curvature costs what it should in every direction and is in equilibrium away from borders;
+// and no bending is free. (Where three rings of triangles have too few vertices for a quadratic function, as in a
+// strip of one row, the slope is that between the two triangles.) At a border no moment is transmitted: the slope there is the one of least energy.
 // D [N m], k [N/m].
 #pragma once
 
@@ -35,7 +36,8 @@ struct PlatePair {
 using Corners = std::array<Eigen::Vector2d, 3>;  // of a triangle at rest, (u, v) [m]
 
 // corners[t] are those of triangle t of the mesh, vertex by vertex; each triangle may have an origin of its
-// own. Sorted by (i, j). Triangles of no area and edges of more than two triangles bend freely.
+// own. Sorted by (i, j). Edges of more than two triangles and of slivers (height below 1e-4 of the longest edge)
+// bend freely.
 std::vector<PlatePair> plate_pairs(const TriangleMesh& mesh, const std::vector<Corners>& corners,
                                    const PlateStiffness& stiffness);
 

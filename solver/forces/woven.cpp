@@ -1,6 +1,7 @@
 #include "solver/forces/woven.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -63,7 +64,14 @@ bool has_directions(const Fabric& fabric) {
   return w.stretch_weft || w.shear || w.bend_weft || w.bend_bias;
 }
 
+bool needs_warp(const Fabric& fabric) {
+  const Weave& w = fabric.weave;
+  return has_directions(fabric) || w.compression != 1 || w.stretch_time != w.shear_time;
+}
+
 std::vector<Corners> woven_corners(const TriangleMesh& rest, const std::optional<Vec3>& warp) {
+  if (warp && !(warp->allFinite() && warp->norm() > 0))
+    throw InputError("warp: a direction is finite and not [0, 0, 0]");
   std::vector<Corners> all;
   all.reserve(rest.triangles.size());
   for (const Triangle& t : rest.triangles) {
@@ -83,13 +91,19 @@ std::vector<Corners> woven_corners(const TriangleMesh& rest, const std::optional
 std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const TriangleMesh& rest,
                                           const Fabric& fabric, const std::optional<Vec3>& warp, int first) {
   check(fabric);
+  if (rest.triangles.size() != mesh.triangles.size())
+    throw InputError("the rest shape has " + std::to_string(rest.triangles.size()) +
+                     " triangles and the mesh " + std::to_string(mesh.triangles.size()) +
+                     "; triangle k of the one is triangle k of the other");
   if (fabric.stretch_spring || fabric.bend_spring || fabric.buckling_clamp || fabric.neighbour_weighting)
     throw InputError(
         "stretch_spring, bend_spring, buckling_clamp and neighbour_weighting are of connections, and a woven "
         "cloth has none; give stretch and bend");
-  if (has_directions(fabric) && !warp)
+  if (needs_warp(fabric) && !warp)
     throw InputError(
-        "the fabric differs along warp and weft, and where the warp runs is not known; give its direction");
+        "the fabric differs along warp and weft, or wrinkles or is viscous along them, and where the warp "
+        "runs "
+        "is not known; give its direction");
   const std::vector<Corners> corners = woven_corners(rest, warp);
   std::vector<std::unique_ptr<Force>> forces;
   if (fabric.stretch > 0) {

@@ -1,9 +1,9 @@
 // A woven fabric: a membrane of triangles of constant strain (solver/forces/membrane.h) and a plate without a
 // clamp (solver/forces/plate.h). Y, G, B and Poisson's ratios come out as they are given on any mesh, along warp,
-// weft and between.
+// weft and between. B is that of a strip so wide that it does not curve across as well.
 //
-// The warp runs along a direction of the rest shape, laid into the plane of every triangle. Where the fabric is
-// the same along warp and weft, any direction will do and none has to be given. The rest shape may be cut where
+// The warp runs along a direction of the rest shape, laid into the plane of every triangle. Where the law is the
+// same in all directions, none has to be given. The rest shape may be cut where
 // the cloth is sewn, as in solver/forces/noh_jung.h. It is flat: a fold of a rest shape in space is bent cloth.
 #pragma once
 
@@ -17,12 +17,14 @@
 
 namespace drape {
 
-// Both throw InputError, which names the field, where the numbers make no law.
+// Of a fabric that check() takes. plate_of throws InputError where bend_bias is too small.
 Membrane::Common membrane_of(const Fabric& fabric);
 PlateStiffness plate_of(const Fabric& fabric);
 
 // True when the fabric differs along warp and weft, so that it has to be known which is which.
 bool has_directions(const Fabric& fabric);
+// True when the law depends on where the warp runs: also where wrinkles or viscosity follow the threads.
+bool needs_warp(const Fabric& fabric);
 
 // The corners of every triangle of the rest shape in its own plane, u along the warp [m]. Throws InputError
 // when a triangle is square to the direction `warp`.
