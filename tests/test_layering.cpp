@@ -126,6 +126,20 @@ TEST_CASE("an installed header needs the standard library, Eigen and other insta
   CHECK(looked_at > 50);
 }
 
+TEST_CASE("the program uses of the library what any other program can use", "[layering]") {
+  std::set<std::string> public_headers;
+  for (const std::string& room : rooms) public_headers.merge(installed(room));
+  int looked_at = 0;
+  for (const auto& [file, path] : includes("app")) {
+    const std::string target = path.substr(0, path.find('/'));
+    if (target == "app" || level(target) >= rooms.size()) continue;
+    ++looked_at;
+    INFO(file << " includes " << path);
+    CHECK(public_headers.contains(path));
+  }
+  CHECK(looked_at > 100);
+}
+
 TEST_CASE("Python is known in app/python only", "[layering]") {
   int bindings = 0;
   for (const std::string& room : rooms)

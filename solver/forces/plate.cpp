@@ -36,9 +36,10 @@ struct Apex {
       height;  // m: the edge, and of the corner its foot from the middle of the edge and its height
 };
 
-class Plate {
+class MorleyPlate {
  public:
-  Plate(const TriangleMesh& mesh, const std::vector<Corners>& corners, const PlateStiffness& stiffness)
+  MorleyPlate(const TriangleMesh& mesh, const std::vector<RestCorners>& corners,
+              const PlateStiffness& stiffness)
       : mesh_(mesh), corners_(corners), hinges_(hinges(mesh)), around_(mesh.triangles.size()) {
     D_ << stiffness.warp, stiffness.cross, 0, stiffness.cross, stiffness.weft, 0, 0, 0, stiffness.twist;
     find_neighbours();
@@ -81,7 +82,7 @@ class Plate {
   }
 
   bool bends(int t) const {
-    const Corners& p = corners_[static_cast<std::size_t>(t)];
+    const RestCorners& p = corners_[static_cast<std::size_t>(t)];
     const Vec2 a = p[1] - p[0], b = p[2] - p[0];
     const double longest = std::max({a.norm(), b.norm(), (b - a).norm()});
     return std::abs(a.x() * b.y() - a.y() * b.x()) > 1e-4 * longest * longest;
@@ -289,7 +290,7 @@ class Plate {
   }
 
   const TriangleMesh& mesh_;
-  const std::vector<Corners>& corners_;
+  const std::vector<RestCorners>& corners_;
   std::vector<Hinge> hinges_;
   std::vector<std::vector<int>> around_;  // triangle -> its hinges
   std::vector<Functional> slopes_;        // of the hinges
@@ -299,9 +300,9 @@ class Plate {
 
 }  // namespace
 
-std::vector<PlatePair> plate_pairs(const TriangleMesh& mesh, const std::vector<Corners>& corners,
+std::vector<PlatePair> plate_pairs(const TriangleMesh& mesh, const std::vector<RestCorners>& corners,
                                    const PlateStiffness& stiffness) {
-  return Plate(mesh, corners, stiffness).pairs();
+  return MorleyPlate(mesh, corners, stiffness).pairs();
 }
 
 }  // namespace drape

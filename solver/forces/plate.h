@@ -33,12 +33,12 @@ struct PlatePair {
   double k;  // N/m; also negative
 };
 
-using Corners = std::array<Eigen::Vector2d, 3>;  // of a triangle at rest, (u, v) [m]
+using RestCorners = std::array<Eigen::Vector2d, 3>;  // of a triangle at rest, (u, v) [m]
 
 // corners[t] are those of triangle t of the mesh, vertex by vertex; each triangle may have an origin of its
 // own. Sorted by (i, j). Edges of more than two triangles and of slivers (height below 1e-4 of the longest edge)
 // bend freely.
-std::vector<PlatePair> plate_pairs(const TriangleMesh& mesh, const std::vector<Corners>& corners,
+std::vector<PlatePair> plate_pairs(const TriangleMesh& mesh, const std::vector<RestCorners>& corners,
                                    const PlateStiffness& stiffness);
 
 }  // namespace drape

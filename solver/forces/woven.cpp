@@ -14,7 +14,7 @@ namespace drape {
 namespace {
 
 // The rest data of triangle t; its area is 0 where the corners are on one line.
-Membrane::Rest rest_of(const Corners& corners) {
+Membrane::Rest rest_of(const RestCorners& corners) {
   Eigen::Matrix2d edges;  // from corner 0 to 1 and to 2, in (u, v)
   edges << corners[1] - corners[0], corners[2] - corners[0];
   const double twice = edges.determinant();
@@ -69,10 +69,10 @@ bool needs_warp(const Fabric& fabric) {
   return has_directions(fabric) || w.compression != 1 || w.stretch_time != w.shear_time;
 }
 
-std::vector<Corners> woven_corners(const TriangleMesh& rest, const std::optional<Vec3>& warp) {
+std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::optional<Vec3>& warp) {
   if (warp && !(warp->allFinite() && warp->norm() > 0))
     throw InputError("warp: a direction is finite and not [0, 0, 0]");
-  std::vector<Corners> all;
+  std::vector<RestCorners> all;
   all.reserve(rest.triangles.size());
   for (const Triangle& t : rest.triangles) {
     const auto at = [&](std::size_t k) { return rest.positions[static_cast<std::size_t>(t[k])]; };
@@ -104,7 +104,7 @@ std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const Triang
         "the fabric differs along warp and weft, or wrinkles or is viscous along them, and where the warp "
         "runs "
         "is not known; give its direction");
-  const std::vector<Corners> corners = woven_corners(rest, warp);
+  const std::vector<RestCorners> corners = woven_corners(rest, warp);
   std::vector<std::unique_ptr<Force>> forces;
   if (fabric.stretch > 0) {
     std::vector<StencilForce<Membrane>::Element> triangles;

@@ -28,7 +28,7 @@ bool needs_warp(const Fabric& fabric);
 
 // The corners of every triangle of the rest shape in its own plane, u along the warp [m]. Throws InputError
 // when a triangle is square to the direction `warp`.
-std::vector<Corners> woven_corners(const TriangleMesh& rest, const std::optional<Vec3>& warp);
+std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::optional<Vec3>& warp);
 
 // Vertex 0 is the particle `first_particle` of the system. Triangles without area give no force. Throws
 // InputError when the fabric has directions and `warp` is missing.
