@@ -6,6 +6,7 @@
 #include "app/base/toml_file.h"
 #include "app/scene/fabrics.h"
 #include "app/scene/scene.h"
+#include "solver/forces/woven.h"
 #include "tests/mistakes.h"
 
 using namespace drape;
@@ -195,6 +196,23 @@ TEST_CASE("a woven cloth is read, and refused where its directions are not known
       {woven + "viscosity = 3\n", "scene.toml:4:", "expected a table"},
   };
   test::check_mistakes(table, [](const std::string& text) { return read(text); });
+}
+
+TEST_CASE("stretch and bend replace all directions of a named fabric", "[scene][woven]") {
+  for (const bool table : {false, true}) {
+    Fabric fabric;
+    fabric.weave = {
+        .stretch_weft = 3, .shear = 4, .poisson = 0.1, .bend_weft = 5, .bend_bias = 6, .bend_poisson = 0.2};
+    const Node node = parse_toml(
+        table ? "stretch = { warp = 7 }\nbend = { warp = 8 }\n" : "stretch = 7\nbend = 8\n", "fabric.toml");
+    Table keys(node, "the fabric");
+    read_fabric(keys, fabric);
+    CHECK(fabric.stretch == 7);
+    CHECK(fabric.bend == 8);
+    CHECK_FALSE(has_directions(fabric));
+    CHECK(fabric.weave.poisson == Weave().poisson);
+    CHECK(fabric.weave.bend_poisson == Weave().bend_poisson);
+  }
 }
 
 TEST_CASE("settings change a scene before it is read", "[scene]") {

@@ -12,7 +12,7 @@ namespace drape {
 inline void require(bool good, const char* field, double value, const char* unit, const char* what) {
   if (good && std::isfinite(value)) return;
   std::ostringstream message;
-  message << field << " = " << value << " " << unit << ": " << what;
+  message << field << " = " << value << (*unit ? " " : "") << unit << ": " << what;
   throw InputError(message.str());
 }
 

@@ -3,12 +3,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include "mesh/base/errors.h"
 #include "mesh/triangles/topology.h"
 #include "solver/forces/plate_pair.h"
-#include "solver/forces/require.h"
 
 namespace drape {
 namespace {
@@ -52,10 +52,13 @@ PlateStiffness plate_of(const Fabric& fabric) {
   // Bent about the direction between them, it takes (D_11 + D_22 + 2 D_12) / 4 + D_66.
   const double twist = weave.bend_bias ? *weave.bend_bias - 0.25 * (warp + weft + 2 * cross)
                                        : 0.5 * (1 - weave.bend_poisson) * mean;
-  if (weave.bend_bias)
-    require(twist > 0, "bend_bias", *weave.bend_bias, "N.m",
-            "between warp and weft a fabric bends no easier than (bend + bend_weft) / 4, and that times "
-            "1 + bend_poisson where they are equal");
+  if (weave.bend_bias && !(twist > 0)) {
+    std::ostringstream message;
+    message << "bend_bias = " << *weave.bend_bias
+            << " N.m: with this bend, bend_weft and bend_poisson it is greater than "
+            << 0.25 * (warp + weft + 2 * cross) << " N.m";
+    throw InputError(message.str());
+  }
   return {warp, weft, cross, twist};
 }
 
