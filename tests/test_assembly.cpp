@@ -215,6 +215,7 @@ TEST_CASE("strains of triangles tell what edges hide: compression, and area that
     CHECK(s.least == Approx(std::min(along, across)).margin(1e-7));
     CHECK(s.first_percent == Approx(std::min(along, across)).margin(1e-7));
     CHECK(s.largest == Approx(std::max(along, across)).margin(1e-7));
+    CHECK(s.area_least == Approx(std::min(1.0, (1 + along) * (1 + across))).margin(1e-12));
     CHECK(s.area_kept == Approx(0.5 + 0.5 * (1 + along) * (1 + across)));
   }
   CHECK(largest_strain(all.cloths, all.state.x) < 1e-12);

@@ -17,13 +17,37 @@ namespace {
 const std::vector<std::string> rooms = {"mesh", "constraints", "solver", "app"};
 
 // From the bottom up: a room may include those before it.
-const std::vector<std::string> inner_rooms = {
-    "mesh/base",     "mesh/triangles", "mesh/obj",           "mesh/pattern",    "mesh/distance",
-    "mesh/lattice",  "mesh/level_set", "constraints",        "solver/matrix",   "solver/forces",
-    "solver/linear", "solver/system",  "solver/integrators", "solver/assembly", "solver/stability",
-    "solver",        "app/base",       "app/pattern",        "app/scene",       "app/simulation",
-    "app/recording", "app/run",        "app/export",         "app/picture",     "app/view",
-    "app/compare",   "app/stability",  "app/python",         "app/commands",    "app"};
+const std::vector<std::string> inner_rooms = {"mesh/base",
+                                              "mesh/triangles",
+                                              "mesh/obj",
+                                              "mesh/pattern",
+                                              "mesh/distance",
+                                              "mesh/lattice",
+                                              "mesh/level_set",
+                                              "constraints",
+                                              "solver/matrix",
+                                              "solver/forces",
+                                              "solver/linear",
+                                              "solver/system",
+                                              "solver/integrators",
+                                              "solver/assembly",
+                                              "solver/stability",
+                                              "solver",
+                                              "app/base",
+                                              "app/pattern",
+                                              "app/scene",
+                                              "app/simulation",
+                                              "app/recording",
+                                              "app/run",
+                                              "app/export",
+                                              "app/picture",
+                                              "app/view",
+                                              "app/compare",
+                                              "app/textile",
+                                              "app/stability",
+                                              "app/python",
+                                              "app/commands",
+                                              "app"};
 
 std::size_t place(const std::vector<std::string>& list, const std::string& room) {
   return static_cast<std::size_t>(std::find(list.begin(), list.end(), room) - list.begin());
@@ -90,8 +114,9 @@ TEST_CASE("no inner room includes one above it", "[layering]") {
 
 TEST_CASE("only Eigen shows in headers; every other library is in one source file", "[layering]") {
   const std::vector<std::string> libraries = {
-      "embree3", "cholmod", "toml",   "CLI",   "nlohmann", "png.h", "ft2build", "udunits2", "tiny_obj_loader",
-      "kinsol",  "cvode",   "arkode", "csv.h", "boost",    "svgpp", "pugixml",  "zlib.h"};
+      "embree3",       "cholmod",         "toml",    "CLI",   "nlohmann", "png.h", "ft2build",
+      "udunits2",      "tiny_obj_loader", "kinsol",  "cvode", "arkode",   "csv.h", "boost/math",
+      "boost/numeric", "svgpp",           "pugixml", "zlib.h"};
   std::map<std::string, std::vector<std::string>> users;
   for (const std::string& room : rooms)
     for (const auto& [file, path] : includes(room))

@@ -17,6 +17,7 @@
 #include "app/picture/picture.h"
 #include "app/run/drop.h"
 #include "app/stability/stability.h"
+#include "app/textile/test_fabric.h"
 #include "app/view/view.h"
 #include "mesh/base/errors.h"
 
@@ -199,6 +200,30 @@ void add_stability(CLI::App& app, int& exit_code) {
   });
 }
 
+void add_test_fabric(CLI::App& app, int& exit_code) {
+  CLI::App* const command = app.add_subcommand(
+      "test-fabric", "makes the tests of a textile laboratory with simulated specimens of a fabric");
+  struct Words {
+    TestFabricWords words;
+    std::string out;
+    bool quiet = false;
+  };
+  auto words = std::make_shared<Words>();
+  TestFabricWords& w = words->words;
+  const auto option = [&](const char* name, std::string& value, const char* type, const char* help) {
+    command->add_option(name, value, help)->type_name(type);
+  };
+  command->add_option("FABRIC", w.fabric, "see 'drape list'")->required();
+  option("--mesh", w.mesh, "LENGTH,...", "longest edge of the meshes (10 mm,5 mm)");
+  option("--tests", w.tests, "NAME,...", "of cantilever, tensile, shear, drape (all)");
+  option("--model", w.model, "NAME", "woven or noh-jung (woven)");
+  option("--repeats", w.repeats, "N", "how many specimens are draped on each mesh (3)");
+  option("--specimen", w.specimen, "LENGTH", "diameter of the draped disc; the plate has 18 cm (30 cm)");
+  option("--out", words->out, "DIR", "output folder (out/test-fabric/FABRIC)");
+  command->add_flag("--quiet", words->quiet, "nothing but errors");
+  command->callback([=, &exit_code] { exit_code = test_fabric(words->words, words->out, words->quiet); });
+}
+
 void add_level_set(CLI::App& app, int& exit_code) {
   CLI::App* const command =
       app.add_subcommand("level-set", "makes a grid of the distances to a closed mesh, a .vdb file");
@@ -339,6 +364,7 @@ int parse_and_run(int argc, char** argv) {
   add_drop(app, label, exit_code);
   add_compare(app, exit_code);
   add_stability(app, exit_code);
+  add_test_fabric(app, exit_code);
   add_level_set(app, exit_code);
   add_triangulate(app, exit_code);
   add_view(app, exit_code);

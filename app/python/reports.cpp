@@ -78,8 +78,12 @@ void add_reports_of_steps(py::module_& m) {
       .def_readonly("gravity_energy", &RunStep::gravity_energy, "J, zero at the origin")
       .def_readonly("max_speed", &RunStep::max_speed, "m/s, of a particle")
       .def_readonly("max_edge_strain", &RunStep::max_edge_strain, "l / L - 1 of the most stretched edge")
-      .def_readonly("min_strain", &RunStep::min_strain, "the least principal strain of a triangle")
-      .def_readonly("max_strain", &RunStep::max_strain, "the largest principal strain of a triangle")
+      .def_readonly("strain_min", &RunStep::strain_min, "the least principal strain of a triangle")
+      .def_readonly("strain_min_1pct", &RunStep::strain_min_1pct,
+                    "one triangle in a hundred is compressed further")
+      .def_readonly("strain_max", &RunStep::strain_max, "the largest principal strain of a triangle")
+      .def_readonly("area_min", &RunStep::area_min,
+                    "the least share of its area at rest that a triangle has kept")
       .def_readonly("area_kept", &RunStep::area_kept, "area of the cloths over that at rest")
       .def("__repr__", [](const RunStep& r) {
         return "RunStep(" + std::to_string(r.step) + ", time=" + rounded(r.time, 6) + " s, " + text(r) + ")";

@@ -10,7 +10,7 @@ namespace drape::app::python {
 struct RunStep : StepReport {
   long step;
   double time, kinetic_energy, elastic_energy, gravity_energy, contact_energy, max_speed, max_edge_strain;
-  double min_strain, max_strain, area_kept;
+  double strain_min, strain_min_1pct, strain_max, area_min, area_kept;
 
   explicit RunStep(const StepRow& row)
       : StepReport(row.report),
@@ -22,8 +22,10 @@ struct RunStep : StepReport {
         contact_energy(row.contact_energy),
         max_speed(row.max_speed),
         max_edge_strain(row.max_edge_strain),
-        min_strain(row.strains.least),
-        max_strain(row.strains.largest),
+        strain_min(row.strains.least),
+        strain_min_1pct(row.strains.first_percent),
+        strain_max(row.strains.largest),
+        area_min(row.strains.area_least),
         area_kept(row.strains.area_kept) {}
 };
 

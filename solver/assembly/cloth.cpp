@@ -52,8 +52,11 @@ TriangleStrains triangle_strains(const std::vector<Cloth>& cloths, const VecX& x
                             after = metric(now(0), now(1), now(2));
       const double twice = before.determinant();
       if (!(twice > 1e-18 * before.trace() * before.trace())) continue;  // without area at rest
-      area += 0.5 * std::sqrt(std::max(0.0, after.determinant()));
-      area_at_rest += 0.5 * std::sqrt(twice);
+      const double area_now = 0.5 * std::sqrt(std::max(0.0, after.determinant())),
+                   area_then = 0.5 * std::sqrt(twice);
+      area += area_now;
+      area_at_rest += area_then;
+      all.area_least = std::min(all.area_least, area_now / area_then);
       // The squares of the factors are the eigenvalues of before^-1 after.
       const double mean =
           0.5 * (before(1, 1) * after(0, 0) + before(0, 0) * after(1, 1) - 2 * before(0, 1) * after(0, 1)) /

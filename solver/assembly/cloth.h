@@ -94,7 +94,8 @@ double largest_strain(const std::vector<Cloth>& cloths, const VecX& x);
 struct TriangleStrains {
   double least = 0, largest = 0;  // over all triangles; 0 where none is compressed, or none stretched
   double first_percent = 0;       // one triangle in a hundred is compressed further
-  double area_kept = 1;           // area over area at rest
+  double area_least = 1;          // the least share of its area at rest that a triangle has kept
+  double area_kept = 1;           // area of all over area at rest
 };
 // `smallest` is scratch: on return it has the smaller principal strain of every triangle, in some order.
 TriangleStrains triangle_strains(const std::vector<Cloth>& cloths, const VecX& x,
