@@ -33,6 +33,7 @@ inline constexpr Dimension spring{"N/m", "a spring constant", "200 N/m"};
 inline constexpr Dimension bend{"N.m", "a bending rigidity", "10 uN.m"};
 inline constexpr Dimension bend_spring{"N.m^2", "a bending stiffness of a connection", "1e-7 N.m^2"};
 inline constexpr Dimension damping{"N.s/m", "a damping", "0.01 N.s/m"};
+inline constexpr Dimension share{"1", "a share", "45 %"};
 inline constexpr Dimension number{"1", "a number", "0.3"};
 }  // namespace dimension
 

@@ -104,7 +104,9 @@ void add_drop(CLI::App& app, const std::string& label, int& exit_code) {
                    "an OBJ file, where it stands, or a shape just under the cloth: " + onto_examples())
       ->type_name("BODY");
   command->add_flag("--floor", words->options.floor, "a plane under the body, or 0.5 m under the cloth");
-  command->add_option("--fabric", words->options.fabric, "see 'drape list' (cotton-poplin)")
+  command
+      ->add_option("--fabric", words->options.fabric,
+                   "see 'drape list' (cotton-poplin), or a fabric file (.toml)")
       ->type_name("NAME");
   command->add_option("--scale", words->scale, "of both meshes, such as 0.01 for files in cm")
       ->type_name("X");

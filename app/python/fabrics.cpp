@@ -127,7 +127,21 @@ void add_fabric(py::module_& m) {
       .def_readonly("name", &NamedFabric::name)
       .def_readonly("description", &NamedFabric::description)
       .def_readonly("source", &NamedFabric::source)
+      .def_readonly("measured", &NamedFabric::measured, "keys that were measured")
+      .def_readonly("converted", &NamedFabric::converted, "keys that follow from what was measured")
       .def_readonly("assumed", &NamedFabric::assumed, "keys that nobody measured")
+      .def_property_readonly(
+          "measured_drape_coefficient",
+          [](const NamedFabric& named) {
+            return named.measured_drape ? Given(named.measured_drape->coefficient) : Given();
+          },
+          "from 0 to 1, of a drape test of the fabric; None: not known")
+      .def_property_readonly(
+          "measured_drape_nodes",
+          [](const NamedFabric& named) {
+            return named.measured_drape ? named.measured_drape->nodes : Given();
+          },
+          "folds that were counted in it; None: not known")
       .def_property_readonly("fabric", [](const NamedFabric& named) { return Fabric(named.fabric); })
       .def("__repr__", [](const NamedFabric& named) {
         return "NamedFabric('" + named.name + "', " + text(named.fabric) + ")";
@@ -135,7 +149,7 @@ void add_fabric(py::module_& m) {
   m.def("fabric_names", &fabric_names, "The names that load_fabric knows, sorted.");
   m.def(
       "load_fabric", [](const std::string& name) { return load_fabric(name); }, py::arg("name"),
-      "A named fabric. ValueError when there is none of that name.");
+      "A named fabric, or a fabric file: a path that ends in .toml. ValueError when there is none.");
   m.def("_set_data_folder", &set_data_folder, py::arg("folder"),
         "Where the package keeps its named fabrics.");
 }

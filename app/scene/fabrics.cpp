@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <filesystem>
+#include <map>
 
 #include "mesh/base/errors.h"
 
@@ -13,9 +13,7 @@ namespace fs = std::filesystem;
 
 fs::path data_folder;  // that was set
 
-// The first of the candidate data folders that has fabrics.
-fs::path fabric_folder() {
-  if (const char* chosen = std::getenv("DRAPE_DATA"); chosen && *chosen) return fs::path(chosen) / "fabrics";
+fs::path built_in_fabrics() {
   if (!data_folder.empty()) return data_folder / "fabrics";
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
@@ -26,64 +24,41 @@ fs::path fabric_folder() {
   return fs::path(DRAPE_DATA_DIR) / "fabrics";
 }
 
-// A number, the same in all directions, or a table of directions. Null: the number was read, or nothing.
-std::optional<Table> directions(Table& table, const std::string& key, double& value,
-                                const Dimension& dimension, const char* kind, const About& about) {
-  const Node* const node = table.take(key, kind, about);
-  if (node && node->kind == Node::Kind::table) return table.inner(key);
-  table.read(key, value, dimension, Range::not_negative, about);
-  return {};
+// Name and file of every fabric; of two that have the same name the one that goes before.
+std::map<std::string, fs::path> named_files() {
+  std::map<std::string, fs::path> files;
+  const auto add = [&](const fs::path& folder) {
+    std::error_code error;
+    for (fs::directory_iterator file(folder, error), end; !error && file != end; file.increment(error))
+      if (file->path().extension() == ".toml") files.emplace(file->path().stem().string(), file->path());
+  };
+  if (const char* chosen = std::getenv("DRAPE_DATA"); chosen && *chosen) add(fs::path(chosen) / "fabrics");
+  add(built_in_fabrics());
+  return files;
 }
 
-void read_stretch(Table& table, Fabric& fabric) {
-  std::optional<Table> both = directions(
-      table, "stretch", fabric.stretch, dimension::stretch, "a membrane stiffness ≥ 0 [N/m], or a table",
-      {"membrane stiffness: force per width for a strain of 1; of model = \"woven\" also "
-       "by directions, as a table",
-       "500 N/m"});
-  if (!both) return;
-  Weave& weave = fabric.weave;
-  both->read_required("warp", fabric.stretch, dimension::stretch, Range::positive,
-                      "of a strip pulled along the warp");
-  both->read("weft", weave.stretch_weft, dimension::stretch, Range::positive,
-             {"of a strip pulled along the weft", "as along the warp"});
-  both->read("shear", weave.shear, dimension::stretch, Range::positive,
-             {"force per width for a shear of 1 rad", "sqrt(warp weft) / (2 (1 + poisson))"});
-  both->read("poisson", weave.poisson, dimension::number, Range::any,
-             "geometric mean of the Poisson's ratios of warp and weft");
-  both->finish();
+fs::path file_of(const std::string& name, const fs::path& folder) {
+  if (is_fabric_file(name)) return (folder / name).lexically_normal();
+  const std::map<std::string, fs::path> files = named_files();
+  if (const auto found = files.find(name); found != files.end()) return found->second;
+  throw InputError("there is no fabric '" + name + "'; " + suggestion(name, fabric_names()));
 }
 
-void read_bend(Table& table, Fabric& fabric) {
-  std::optional<Table> both =
-      directions(table, "bend", fabric.bend, dimension::bend, "a bending rigidity ≥ 0 [N.m], or a table",
-                 {"bending rigidity: moment per width for a curvature of 1/m; of model = \"woven\" "
-                  "also by directions, as a table",
-                  "10 uN.m"});
-  if (!both) return;
-  Weave& weave = fabric.weave;
-  both->read_required("warp", fabric.bend, dimension::bend, Range::positive, "of a strip cut along the warp");
-  both->read("weft", weave.bend_weft, dimension::bend, Range::positive,
-             {"of a strip cut along the weft", "as along the warp"});
-  both->read("bias", weave.bend_bias, dimension::bend, Range::positive,
-             {"of a strip cut at 45 degrees", "as of a fabric with poisson, and equal along warp and weft"});
-  both->read("poisson", weave.bend_poisson, dimension::number, Range::any, "Poisson's ratio of bending");
-  both->finish();
-}
-
-void read_viscosity(Table& table, Weave& weave) {
-  const Node* const node =
-      table.take("viscosity", "a table", "of model = \"woven\": how long strains resist being changed");
-  if (!node) return;
+std::optional<MeasuredDrape> read_measured_drape(Table& table) {
+  const About about("what a drape test of the fabric gave");
+  const Node* const node = table.take("measured_drape", "a table", about);
+  if (!node) return {};
   if (node->kind != Node::Kind::table)
-    table.fail("viscosity",
-               "expected a table such as { stretch = \"1 ms\", shear = \"1 ms\", bend = \"5 ms\" }");
-  Table times = table.inner("viscosity");
-  times.read("stretch", weave.stretch_time, dimension::time, Range::not_negative,
-             "viscosity over stiffness, of stretch");
-  times.read("shear", weave.shear_time, dimension::time, Range::not_negative, "of shear");
-  times.read("bend", weave.bend_time, dimension::time, Range::not_negative, "of bending");
-  times.finish();
+    table.fail("measured_drape", "expected a table such as { coefficient = \"45 %\", nodes = 6 }");
+  Table test = table.inner("measured_drape");
+  MeasuredDrape measured;
+  test.read_required("coefficient", measured.coefficient, dimension::share, Range::not_negative,
+                     "the drape coefficient: the part of the ring round the plate that the shadow covers");
+  if (measured.coefficient > 1)
+    test.fail("coefficient", "a drape coefficient is at most 1; write 45 % as \"45 %\" or 0.45");
+  test.read("nodes", measured.nodes, dimension::number, Range::not_negative, "how many folds were counted");
+  test.finish();
+  return measured;
 }
 
 }  // namespace
@@ -92,78 +67,31 @@ void set_data_folder(const fs::path& folder) { data_folder = folder; }
 
 Names fabric_names() {
   Names names;
-  std::error_code error;
-  for (fs::directory_iterator file(fabric_folder(), error), end; !error && file != end; file.increment(error))
-    if (file->path().extension() == ".toml") names.push_back(file->path().stem().string());
-  std::sort(names.begin(), names.end());
+  for (const auto& [name, file] : named_files()) names.push_back(name);
   return names;
 }
 
-void read_fabric(Table& table, Fabric& fabric) {
-  table.read("area_density", fabric.area_density, dimension::area_density, Range::positive, "mass per area");
-  for (const auto& [width, spring] :
-       {std::pair{"stretch", "stretch_spring"}, std::pair{"bend", "bend_spring"}})
-    if (table.has(width) && table.has(spring))
-      table.fail(spring, "give either " + std::string(width) + " or " + spring + ", not both");
-  Weave& weave = fabric.weave;
-  if (table.has("stretch")) {  // replaces all of a named fabric's
-    fabric.stretch_spring.reset();
-    weave.stretch_weft.reset();
-    weave.shear.reset();
-    weave.poisson = Weave().poisson;
-  }
-  if (table.has("bend")) {
-    fabric.bend_spring.reset();
-    weave.bend_weft.reset();
-    weave.bend_bias.reset();
-    weave.bend_poisson = Weave().bend_poisson;
-  }
-  read_stretch(table, fabric);
-  table.read("stretch_spring", fabric.stretch_spring, dimension::spring, Range::not_negative,
-             "instead of stretch: the constant of every edge, k_s");
-  read_bend(table, fabric);
-  table.read("bend_spring", fabric.bend_spring, dimension::bend_spring, Range::not_negative,
-             "instead of bend: the stiffness of every diagonal, k_b");
-  table.read(
-      "buckling_clamp", fabric.buckling_clamp, dimension::spring, Range::not_negative,
-      {"c_b of every diagonal: how steeply its force sets in; a soft one makes the cloth limp where it is "
-       "hardly bent",
-       "chosen"});
-  table.read("damping", fabric.damping, dimension::damping, Range::not_negative, "of every connection");
-  std::string kind = fabric.damping_kind == DampingKind::axial ? "axial" : "relative";
-  table.read("damping_kind", kind, Names{"relative", "axial"},
-             "relative: of every difference of velocity of two neighbours; axial: of what goes along their "
-             "connection");
-  fabric.damping_kind = kind == "axial" ? DampingKind::axial : DampingKind::relative;
-  table.read("neighbour_weighting", fabric.neighbour_weighting,
-             "forces at a vertex times the largest number of neighbours over its own: Noh & Jung, eq. 1-3");
-  table.read(
-      "compression", fabric.weave.compression, dimension::number, Range::not_negative,
-      "of model = \"woven\": the share of the resistance to compression that stays; below 1 the fabric "
-      "wrinkles finer than the mesh; from 0 to 1");
-  read_viscosity(table, fabric.weave);
-  try {
-    check(fabric);
-  } catch (const InputError& error) {
-    throw InputError(table.where() + ": " + error.what());
-  }
-}
+bool is_fabric_file(const std::string& name) { return fs::path(name).extension() == ".toml"; }
 
-NamedFabric load_fabric(const std::string& name, KeyNotes* notes) {
-  const Names known = fabric_names();
-  if (std::find(known.begin(), known.end(), name) == known.end())
-    throw InputError("there is no fabric '" + name + "'; " + suggestion(name, known));
-  const Node root = read_toml(fabric_folder() / (name + ".toml"));
+NamedFabric read_fabric_file(const Node& root, const std::string& name, KeyNotes* notes) {
   Table table(root, "the fabric", notes);
   NamedFabric named;
   named.name = name;
   table.read("description", named.description, "fibre and weave, for `drape list`");
   table.read("source", named.source, "where the numbers are from");
+  table.read("measured", named.measured, "keys whose values were measured, as \"bend\" or \"bend.warp\"");
+  table.read("converted", named.converted,
+             "keys whose values follow from what was measured, by a formula or in other units");
   table.read("assumed", named.assumed, "keys whose values nobody measured");
+  named.measured_drape = read_measured_drape(table);
   table.require("area_density");
   read_fabric(table, named.fabric);
   table.finish();
   return named;
+}
+
+NamedFabric load_fabric(const std::string& name, const fs::path& folder) {
+  return read_fabric_file(read_toml(file_of(name, folder)), name);
 }
 
 }  // namespace drape::app

@@ -1,28 +1,46 @@
-// Named fabrics: data/fabrics/NAME.toml. Each file names its source and says which values were assumed.
-// The data folder is the first of these: $DRAPE_DATA, the folder given to set_data_folder(), ../share/drape
-// beside the program if it has fabrics, the data folder of the source tree that the program was built from.
+// Fabrics of files. A named fabric is fabrics/NAME.toml of a data folder; a fabric of one's own is any other
+// file that ends in .toml. Each file names its source and says of its numbers which were measured, converted
+// and assumed.
+//
+// Data folders: $DRAPE_DATA when it is set, whose fabrics go before those of the same name in the built-in
+// folder. That is the first of these: the folder given to set_data_folder(), ../share/drape beside the program
+// if it has fabrics, the data folder of the source tree that the program was built from.
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
-#include "app/base/table.h"
-#include "solver/forces/fabric.h"
+#include "app/scene/fabric_read.h"
 
 namespace drape::app {
 
+// What a drape tester of Cusick's kind found. It is shown beside what a simulation gives, and changes nothing.
+struct MeasuredDrape {
+  double coefficient = 0;            // from 0 to 1
+  std::optional<double> nodes = {};  // how many folds; a mean of several tests may be no whole number
+};
+
 struct NamedFabric {
-  std::string name;
+  std::string name;  // as it was asked for: "cotton-broad", "my.toml"
   std::string description, source;
-  Names assumed;  // keys with values that nobody measured
+  // Of the numbers of the file, as "area_density" or "bend.warp"; "bend" is all of a table.
+  Names measured, converted;  // from what was measured, by a formula or into other units
+  Names assumed;              // nobody measured these
+  std::optional<MeasuredDrape> measured_drape;
   Fabric fabric;
 };
 
 void set_data_folder(const std::filesystem::path& folder);
 
-Names fabric_names();                                                         // sorted
-NamedFabric load_fabric(const std::string& name, KeyNotes* notes = nullptr);  // throws InputError
+Names fabric_names();                          // of the data folders, sorted
+bool is_fabric_file(const std::string& name);  // "my.toml" is a file, "cotton-broad" a name
 
-// Reads into `fabric` those fabric keys that the table has; the other values stay.
-void read_fabric(Table& table, Fabric& fabric);
+// `name` is one of fabric_names(), or a file, which is looked for from `folder`. Throws InputError, which names
+// file and line.
+NamedFabric load_fabric(const std::string& name, const std::filesystem::path& folder = {});
+
+// The same, with the file as data. notes: receives what is said of the keys; may be null.
+NamedFabric read_fabric_file(const Node& root, const std::string& name, KeyNotes* notes = nullptr);
 
 }  // namespace drape::app

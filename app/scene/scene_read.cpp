@@ -191,6 +191,17 @@ void check_model(const Table& table, const ClothEntry& cloth) {
     table.fail("model", "a fabric that differs along warp and weft needs model = \"woven\"");
 }
 
+void read_fabric_name(Table& table, const fs::path& folder, std::string& name) {
+  const About about(
+      "its values hold where the keys below say nothing; or a fabric file (.toml), looked for from the "
+      "scene's folder");
+  const Node* const given = table.find("fabric");
+  if (!given || !is_fabric_file(given->text)) return table.read_part("fabric", name, fabric_names(), about);
+  table.read("fabric", name, about);
+  if (!fs::exists(folder / name))
+    table.fail("fabric", "there is no file " + (folder / name).lexically_normal().string());
+}
+
 ClothEntry read_cloth(Table& table, const fs::path& folder) {
   ClothEntry cloth;
   cloth.where = table.where();
@@ -222,9 +233,8 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
   cloth.warp = read_warp(table, cloth);
   if (!cloth.seams.empty() && cloth.model == "choi-ko")
     table.fail("model", "a cloth with seams is no regular grid; expected \"noh-jung\" or \"woven\"");
-  table.read_part("fabric", cloth.fabric_name, fabric_names(),
-                  "its values hold where the keys below say nothing");
-  if (!cloth.fabric_name.empty()) cloth.fabric = load_fabric(cloth.fabric_name).fabric;
+  read_fabric_name(table, folder, cloth.fabric_name);
+  if (!cloth.fabric_name.empty()) cloth.fabric = load_fabric(cloth.fabric_name, folder).fabric;
   read_fabric(table, cloth.fabric);
   check_model(table, cloth);
   for (Table& pin : table.tables("pins", pins_about)) cloth.pins.push_back(read_pin(pin, folder));

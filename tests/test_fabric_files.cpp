@@ -1,0 +1,86 @@
+// Fabric files: where they are looked for, what they say of themselves, and how their mistakes are told.
+#include <catch2/catch.hpp>
+#include <string>
+
+#include "app/base/toml_file.h"
+#include "app/scene/fabrics.h"
+#include "tests/mistakes.h"
+#include "tests/workshop.h"
+
+using namespace drape;
+using namespace drape::test;
+using app::NamedFabric;
+using Catch::Contains;
+using Catch::StartsWith;
+
+namespace {
+
+const std::string plain =
+    "area_density = \"200 g/m^2\"\nbend = \"30 uN.m\"\n";  // two lines: the next one is line 3
+
+double bend_of_run(const Workshop& shop, const std::string& words, const std::string& before = "") {
+  const Outcome run = shop.drape(words + " --duration 0.02 --out o --quiet", before);
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  return shop.json("o/run.json")["cloths"][0]["fabric"]["bend"].get<double>();
+}
+
+}  // namespace
+
+TEST_CASE("a fabric file is found beside its scene, and from the folder in which drop is run", "[scene]") {
+  const Workshop shop;
+  std::filesystem::create_directories(shop.path / "scenes/mine");
+  shop.write("scenes/mine/wool.toml", plain);
+  shop.write("scenes/s.toml", "[[cloth]]\nmesh = \"../sheet.obj\"\nfabric = \"mine/wool.toml\"\n");
+  CHECK(bend_of_run(shop, "simulate scenes/s.toml") == Approx(30e-6));
+  CHECK(bend_of_run(shop, "drop sheet.obj --fabric scenes/mine/wool.toml") == Approx(30e-6));
+  const Outcome away = shop.drape("check scenes/s.toml", "mv scenes/mine mine &&");
+  CHECK(away.exit_code == 2);
+  CHECK_THAT(
+      away.err,
+      Contains("scenes/s.toml:3: fabric = \"mine/wool.toml\": there is no file scenes/mine/wool.toml"));
+  CHECK_THAT(shop.drape("drop sheet.obj --fabric none.toml").err,
+             StartsWith("error: --fabric: fabric = \"none.toml\": there is no file none.toml"));
+}
+
+TEST_CASE("$DRAPE_DATA adds fabrics to the built-in ones, and its own go before", "[scene]") {
+  const Workshop shop;
+  std::filesystem::create_directories(shop.path / "more/fabrics");
+  shop.write("more/fabrics/felt.toml", "description = \"of mine\"\n" + plain);
+  shop.write("more/fabrics/cotton-broad.toml", plain);
+  const std::string data = "DRAPE_DATA=more";
+  const Outcome listed = shop.drape("list fabrics", data);
+  REQUIRE(listed.exit_code == 0);
+  for (const char* name : {"felt", "of mine", "cotton-poplin", "polyester-twill"})
+    CHECK_THAT(listed.out, Contains(name));
+  CHECK(bend_of_run(shop, "drop sheet.obj --fabric felt", data) == Approx(30e-6));
+  CHECK(bend_of_run(shop, "drop sheet.obj --fabric cotton-broad", data) == Approx(30e-6));
+  CHECK(bend_of_run(shop, "drop sheet.obj --fabric cotton-poplin", data) == Approx(8e-6));
+  CHECK(bend_of_run(shop, "drop sheet.obj --fabric cotton-broad") == Approx(11.5718e-6));
+  CHECK(shop.drape("list fabrics", "DRAPE_DATA=none").exit_code == 0);
+}
+
+TEST_CASE("a mistake in a fabric file is told with its file and line", "[scene]") {
+  const Folder folder;
+  const std::string file = (folder.path / "f.toml").string();
+  const auto read = [&](const std::string& text) {
+    folder.write("f.toml", text);
+    return app::load_fabric("f.toml", folder.path);
+  };
+  const Mistake table[] = {
+      {"bend = 1e-5\n", file + ":1:", "'area_density' is missing"},
+      {plain + "bent = 3\n", file + ":3:", "unknown key 'bent' in the fabric; did you mean 'bend'?"},
+      {plain + "stretch = \"3 m\"\n", file + ":3:", "expected a membrane stiffness"},
+      {plain + "assumed = \"bend\"\n", file + ":3:", "expected a list"},
+      {plain + "measured_drape = 3\n", file + ":3:", "{ coefficient = \"45 %\", nodes = 6 }"},
+      {plain + "measured_drape = { nodes = 3 }\n", file + ":3:", "'coefficient' is missing"},
+      {plain + "measured_drape = { coefficient = 45 }\n", file + ":3:", "at most 1"},
+      {plain + "measured_drape = { coefficient = \"45 m\" }\n", file + ":3:", "expected a share"},
+  };
+  check_mistakes(table, read);
+  const NamedFabric named = read(plain + "measured_drape = { coefficient = \"45 %\", nodes = 6.5 }\n");
+  REQUIRE(named.measured_drape);
+  CHECK(named.measured_drape->coefficient == Approx(0.45));
+  CHECK(named.measured_drape->nodes == 6.5);
+  CHECK_FALSE(read(plain).measured_drape);
+}
