@@ -9,6 +9,7 @@
 #include "mesh/obj/obj.h"
 #include "solver/forces/buckling_spring.h"
 #include "solver/forces/choi_ko.h"
+#include "solver/forces/noh_jung.h"
 #include "solver/system/system.h"
 
 using namespace drape;
@@ -245,4 +246,21 @@ TEST_CASE("a rest shape of its own decides lengths and masses", "[choi-ko]") {
   cut.positions.push_back(Vec3(9, 9, 9));
   cut.triangles[0][0] = 16;
   CHECK_THROWS_WITH(choi_ko_connections(mesh, cut, {}), Contains("several places"));
+}
+
+TEST_CASE("a model of springs takes the means of warp and weft", "[choi-ko][fabric]") {
+  const TriangleMesh mesh = sheet(6, 6, 0.04, 0.05);
+  const Fabric directed{.area_density = 0.1,
+                        .stretch = 600,
+                        .bend = 2e-6,
+                        .weave = {.stretch_weft = 400, .shear = 9, .bend_weft = 6e-6, .bend_bias = 7e-6}},
+      mean{.area_density = 0.1, .stretch = 500, .bend = 4e-6};
+  for (const auto& connections : {noh_jung_connections, choi_ko_connections}) {
+    const Connections one = connections(mesh, mesh, directed), other = connections(mesh, mesh, mean);
+    REQUIRE(one.bend.size() == other.bend.size());
+    for (std::size_t k = 0; k < one.bend.size(); ++k) CHECK(one.bend[k].k_b == other.bend[k].k_b);
+    REQUIRE(one.stretch.size() == other.stretch.size());
+    for (std::size_t k = 0; k < one.stretch.size(); ++k) CHECK(one.stretch[k].k == other.stretch[k].k);
+    CHECK(limp_below(one, directed) == limp_below(other, mean));
+  }
 }

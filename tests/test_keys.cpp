@@ -106,7 +106,8 @@ TEST_CASE("every key that the readers' code names is listed", "[keys]") {
   std::set<std::string> listed = keys_of(scene_keys());
   listed.merge(keys_of(fabric_keys()));
   listed.merge(keys_of(pattern_keys()));
-  const std::regex read(R"re([.](?:read|read_required|read_part|take|tables|require)\(\s*"([a-z_]+)")re");
+  const std::regex read(
+      R"re((?:[.](?:read|read_required|read_part|take|tables|require)\(|read_directions\(\w+,)\s*"([A-Za-z0-9_]+)")re");
   int found = 0;
   for (const auto& file :
        std::filesystem::recursive_directory_iterator(std::filesystem::path(test::source_dir()) / "app")) {

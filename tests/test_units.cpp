@@ -71,6 +71,16 @@ TEST_CASE("quantities are read in SI units", "[units]") {
       {"1e-7 N.m^2", dimension::bend_spring, 1e-7},
       {"0.01 N.s/m", dimension::damping, 0.01},
       {"30 %", dimension::number, 0.3},
+      {"0.118 gf.cm^2/cm", dimension::sheet_bend, 1.1571847e-5},
+      {"0.124 gf.cm/cm", dimension::sheet_moment, 1.2160246e-3},
+      {"1 gf/(cm.deg)", dimension::sheet_shear, 56.18797},
+      {"1 gf/(cm deg)", dimension::sheet_shear, 56.18797},
+      {"1 gf/cm/degree", dimension::sheet_shear, 56.18797},
+      {"1 gf/cm/\xC2\xB0", dimension::sheet_shear, 56.18797},
+      {"40 N/(m.rad)", dimension::sheet_shear, 40},
+      {"2.1 gf/cm", dimension::sheet_force, 2.0593965},
+      {"3.5 %", dimension::sheet_extension, 0.035},
+      {"21 mm", dimension::sheet_length, 0.021},
   };
   for (const Good& row : table) {
     INFO(row.text);
@@ -88,6 +98,13 @@ TEST_CASE("other quantities are refused with the reason", "[units]") {
       {"90 deg", dimension::angular_rate, "expected a rate of turning such as \"90 deg/s\""},
       {"1 Hz", dimension::angular_rate, "'Hz' names no angle: write rpm, deg/s or rad/s"},  // or 2 pi rad/s?
       {"1 1/s", dimension::angular_rate, "names no angle"},
+      {"0.8", dimension::sheet_shear, "has no unit; expected a shear stiffness with its unit"},
+      {"0.8 gf/cm", dimension::sheet_shear, "'gf/cm' is not per angle: write gf/(cm.deg)"},
+      {"0.8 gf/cm.deg", dimension::sheet_shear, "is not per angle"},  // as udunits reads it: times an angle
+      {"40 N/m", dimension::sheet_shear, "is not per angle"},
+      {"3.5", dimension::sheet_extension,
+       "has no unit; expected an extension with its unit such as \"3.5 %\""},
+      {"3.5 mm", dimension::sheet_extension, "expected an extension"},
       {"5 kg.m", dimension::moment_of_inertia, "expected a moment of inertia"},
       {"5 kg", dimension::area_density, "expected a mass per area"},
       {"", dimension::time, "does not begin with a number"},

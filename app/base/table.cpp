@@ -66,6 +66,8 @@ double quantity(const Node& node, const Dimension& dimension, Range range) {
     value = parse_quantity(node.text, dimension);
   } else if (!is_number(node)) {
     throw InputError(expected(dimension));
+  } else if (dimension.needs_unit) {
+    throw InputError("has no unit; " + expected(dimension));
   }
   if (!std::isfinite(value)) throw InputError("is not a finite number; " + expected(dimension));
   const std::string noun(dimension.noun);

@@ -119,7 +119,10 @@ std::string written(const Node& node) {
       text = "[" + text + "]";
       break;
     case Node::Kind::table:
-      return "{...}";
+      for (const auto& [key, member] : node.members)
+        text += (text.empty() ? " " : ", ") + key + " = " + written(member);
+      text = "{" + text + " }";
+      break;
   }
   return text.size() <= 60 ? text : text.substr(0, 56) + " ...";
 }

@@ -84,11 +84,30 @@ bool same_kind(const ut_unit* a, const ut_unit* b) {
   return ratio && ut_is_dimensionless(ratio.get()) && ut_are_convertible(a, b);
 }
 
+constexpr std::string_view angles[] = {"degrees", "degree", "deg",  "\xC2\xB0", "radians",   "radian",
+                                       "rad",     "rpm",    "turn", "rotation", "revolution"};
+
 // An angle has no dimension, so that udunits takes 1 Hz for 1 rad/s; whoever writes it may mean a turn.
 bool names_an_angle(std::string_view unit) {
-  constexpr std::string_view angles[] = {"rad", "deg", "\xC2\xB0", "rpm", "turn", "rotation", "revolution"};
   return std::any_of(std::begin(angles), std::end(angles),
                      [&](std::string_view angle) { return unit.find(angle) != unit.npos; });
+}
+
+// Whether the unit is the wanted one per angle: seconds, which have a dimension, stand in for the angle.
+bool is_per_angle(std::string unit, std::string_view wanted) {
+  for (const std::string_view angle : angles)
+    for (std::size_t at = unit.find(angle); at != unit.npos; at = unit.find(angle))
+      unit.replace(at, angle.size(), "s");
+  const Unit given = parse_unit(unit), per_second = parse_unit("(" + std::string(wanted) + ")/s");
+  return given && same_kind(given.get(), per_second.get());
+}
+
+void check_angle(std::string_view unit, const Dimension& dimension) {
+  const std::string quoted = "'" + std::string(unit) + "'";
+  if (dimension.angle == Angle::in_it && !names_an_angle(unit))
+    throw InputError(quoted + " names no angle: write rpm, deg/s or rad/s");
+  if (dimension.angle == Angle::divides_it && !is_per_angle(std::string(unit), dimension.unit))
+    throw InputError(quoted + " is not per angle: write gf/(cm.deg) or N/(m.rad)");
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -114,13 +133,15 @@ double parse_quantity(std::string_view text, const Dimension& dimension) {
     throw InputError("is not a finite number; " + expected(dimension));
 
   const std::string_view unit_text = trimmed(text.substr(static_cast<std::size_t>(end - text.data())));
-  if (unit_text.empty()) return value;
+  if (unit_text.empty()) {
+    if (dimension.needs_unit) throw InputError("has no unit; " + expected(dimension));
+    return value;
+  }
   const Unit unit = parse_unit(unit_text);
   if (!unit) throw InputError("'" + std::string(unit_text) + "' is not a unit; " + expected(dimension));
   const Unit wanted(ut_parse(unit_system(), std::string(dimension.unit).c_str(), UT_UTF8));
   if (!same_kind(unit.get(), wanted.get())) throw InputError(expected(dimension));
-  if (dimension.unit == dimension::angular_rate.unit && !names_an_angle(unit_text))
-    throw InputError("'" + std::string(unit_text) + "' names no angle: write rpm, deg/s or rad/s");
+  check_angle(unit_text, dimension);
 
   cv_converter* const converter = ut_get_converter(unit.get(), wanted.get());
   if (!converter) throw InputError(expected(dimension));

@@ -9,10 +9,20 @@
 
 namespace drape::app {
 
+// udunits takes an angle for a plain number, so that these are asked for by name.
+enum class Angle {
+  any,        // the unit may name one
+  in_it,      // the unit names one: deg/s, not Hz
+  divides_it  // the unit is per angle: gf/(cm.deg), neither gf/cm nor gf/cm.deg
+};
+
 struct Dimension {
   std::string_view unit;     // SI unit
   std::string_view noun;     // "a bending rigidity"
   std::string_view example;  // "10 uN.m"
+  Angle angle = Angle::any;
+  // Whether a number alone is refused: it may be meant in the unit that a laboratory's sheet prints.
+  bool needs_unit = false;
 };
 
 namespace dimension {
@@ -22,7 +32,7 @@ inline constexpr Dimension rate{"1/s", "a rate", "25 Hz"};
 inline constexpr Dimension speed{"m/s", "a speed", "1 mm/s"};
 inline constexpr Dimension acceleration{"m/s^2", "an acceleration", "9.81 m/s^2"};
 inline constexpr Dimension angle{"rad", "an angle", "90 deg"};
-inline constexpr Dimension angular_rate{"rad/s", "a rate of turning", "90 deg/s"};  // or rpm
+inline constexpr Dimension angular_rate{"rad/s", "a rate of turning", "90 deg/s", Angle::in_it};  // or rpm
 inline constexpr Dimension mass{"kg", "a mass", "500 g"};
 inline constexpr Dimension moment_of_inertia{"kg.m^2", "a moment of inertia", "2e-3 kg.m^2"};
 inline constexpr Dimension density{"kg/m^3", "a density", "300 kg/m^3"};
@@ -35,6 +45,18 @@ inline constexpr Dimension bend_spring{"N.m^2", "a bending stiffness of a connec
 inline constexpr Dimension damping{"N.s/m", "a damping", "0.01 N.s/m"};
 inline constexpr Dimension share{"1", "a share", "45 %"};
 inline constexpr Dimension number{"1", "a number", "0.3"};
+
+// As laboratories print them (app/scene/laboratory.h).
+inline constexpr Dimension sheet_bend{"N.m", "a bending rigidity with its unit", "0.118 gf.cm^2/cm",
+                                      Angle::any, true};
+inline constexpr Dimension sheet_moment{"N", "a hysteresis of bending with its unit", "0.12 gf.cm/cm",
+                                        Angle::any, true};
+inline constexpr Dimension sheet_shear{"N/m", "a shear stiffness with its unit", "0.8 gf/(cm.deg)",
+                                       Angle::divides_it, true};
+inline constexpr Dimension sheet_force{"N/m", "a force per width with its unit", "2.1 gf/cm", Angle::any,
+                                       true};
+inline constexpr Dimension sheet_extension{"1", "an extension with its unit", "3.5 %", Angle::any, true};
+inline constexpr Dimension sheet_length{"m", "a length with its unit", "21 mm", Angle::any, true};
 }  // namespace dimension
 
 // The quantity in SI units. Throws InputError "expected a bending rigidity such as "10 uN.m""; when the text

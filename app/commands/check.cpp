@@ -4,6 +4,7 @@
 
 #include "app/base/toml_file.h"
 #include "app/pattern/pattern_read.h"
+#include "app/scene/fabric_words.h"
 #include "app/scene/load_mesh.h"
 #include "app/scene/obstacle_read.h"
 #include "app/simulation/motion_extent.h"
@@ -51,14 +52,16 @@ void check_mesh(const std::filesystem::path& file) {
   for (const std::string& message : messages) std::printf("%s\n", one_line(message).c_str());
 }
 
+void print_lines(const FabricRecord& record) {
+  for (const std::string& line : lines_of(record)) std::printf("  %s\n", one_line(line).c_str());
+}
+
 void print_cloth(const ClothEntry& entry, const Cloth& cloth) {
-  const Fabric& f = entry.fabric;
   print_report("cloth " + cloth.name, cloth.report);
-  std::printf("  %s kg/m^2, stretch %s, bend %s\n", rounded(f.area_density, 4).c_str(),
-              f.stretch_spring ? (rounded(*f.stretch_spring, 4) + " N/m each edge").c_str()
-                               : (rounded(f.stretch, 4) + " N/m").c_str(),
-              f.bend_spring ? (rounded(*f.bend_spring, 4) + " N.m^2 each diagonal").c_str()
-                            : (rounded(f.bend, 4) + " N.m").c_str());
+  std::printf(
+      "  %s\n",
+      (cloth.model == ClothModel::woven ? in_words(entry.fabric) : mean_in_words(entry.fabric)).c_str());
+  print_lines(entry.fabric_record);
 }
 
 void print_seams(const Cloth& cloth, const VecX& x) {
@@ -154,14 +157,30 @@ void check_scene(const std::filesystem::path& file) {
   for (const std::string& message : simulation.messages) std::printf("%s\n", one_line(message).c_str());
 }
 
+void check_fabric(const std::filesystem::path& file) {
+  const NamedFabric named = load_fabric(file.string());
+  std::printf("%s\n  %s\n", one_line(file.string() + ": " + named.description).c_str(),
+              in_words(named.fabric).c_str());
+  print_lines(named.record);
+  if (const auto& drape = named.measured_drape)
+    std::printf("  a drape test gave %s %%%s\n", rounded(100 * drape->coefficient, 4).c_str(),
+                drape->nodes ? (", " + rounded(*drape->nodes, 3) + " nodes").c_str() : "");
+  for (const auto& [what, names] :
+       {std::pair{"measured", &named.measured}, std::pair{"converted", &named.converted},
+        std::pair{"assumed", &named.assumed}, std::pair{"not said whether measured", &named.unmarked}})
+    if (!names->empty()) std::printf("  %s: %s\n", what, one_line(listed(*names)).c_str());
+}
+
 }  // namespace
 
 int check_file(const std::filesystem::path& file) {
-  if (file.extension() == ".toml" && !read_toml(file).members.contains("panel")) {
+  const Node root = file.extension() == ".toml" ? read_toml(file) : Node();
+  if (root.members.contains("area_density"))
+    check_fabric(file);
+  else if (file.extension() == ".toml" && !root.members.contains("panel"))
     check_scene(file);
-  } else {
+  else
     check_mesh(file);
-  }
   return 0;
 }
 

@@ -7,7 +7,7 @@
 #include "app/base/table.h"
 #include "app/commands/check.h"
 #include "app/run/run.h"
-#include "app/scene/fabrics.h"
+#include "app/scene/fabric_words.h"
 #include "app/scene/level_set_cache.h"
 #include "app/scene/load_mesh.h"
 #include "app/scene/shape_table.h"
@@ -47,9 +47,7 @@ std::vector<Part> fabric_parts() {
   std::vector<Part> parts;
   for (const std::string& name : fabric_names()) {
     const NamedFabric named = load_fabric(name);
-    std::string text = rounded(1000 * named.fabric.area_density, 4) + " g/m^2, " +
-                       rounded(named.fabric.stretch, 4) + " N/m, " + rounded(1e6 * named.fabric.bend, 4) +
-                       " uN.m; " + named.description;
+    std::string text = in_words(named.fabric) + "; " + named.description;
     if (!named.assumed.empty()) text += " (assumed: " + listed(named.assumed) + ")";
     parts.push_back({name, one_line(text)});
   }
@@ -80,7 +78,7 @@ std::vector<Part> force_parts() {
 }
 
 std::vector<Kind> kinds() {
-  return {{"fabrics", " (area density, stretch, bending)", fabric_parts()},
+  return {{"fabrics", " (warp / weft)", fabric_parts()},
           {"shapes", "", shape_parts()},
           {"forces", "", force_parts()},
           {"integrators", "", parts_of(integrators())},

@@ -32,6 +32,11 @@ stretch   = { warp = 500 }
 bend      = { warp = 1e-5 }
 viscosity = {}
 
+[[cloth]]
+mesh = "laboratory.obj"
+kes  = {}
+fast = {}
+
 [[soft]]
 particles = [2, 2, 2]
 spacing   = 0.1

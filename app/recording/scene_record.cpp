@@ -149,18 +149,22 @@ Json weave_json(const ClothEntry& entry) {
 
 Json fabric_json(const ClothEntry& entry) {
   const Fabric& f = entry.fabric;
+  const bool woven = entry.model == "woven";
+  Json::Members given;
+  for (const auto& [quantity, text] : entry.fabric_record.given) given.emplace_back(quantity, text);
   return Json::Members{{"name", optional_json(entry.fabric_name)},
                        {"model", entry.model},
                        {"area_density", f.area_density},
-                       {"stretch", f.stretch_spring ? Json() : Json(f.stretch)},
+                       {"stretch", f.stretch_spring ? Json() : Json(woven ? f.stretch : mean_stretch(f))},
                        {"stretch_spring", optional_json(f.stretch_spring)},
-                       {"bend", f.bend_spring ? Json() : Json(f.bend)},
+                       {"bend", f.bend_spring ? Json() : Json(woven ? f.bend : mean_bend(f))},
                        {"bend_spring", optional_json(f.bend_spring)},
                        {"buckling_clamp", optional_json(f.buckling_clamp)},
                        {"damping", f.damping},
                        {"damping_kind", name_of(f.damping_kind)},
                        {"neighbour_weighting", f.neighbour_weighting},
-                       {"weave", entry.model == "woven" ? weave_json(entry) : Json()}};
+                       {"weave", woven ? weave_json(entry) : Json()},
+                       {"given", std::move(given)}};
 }
 
 Json material_json(const SoftMaterial& m) {

@@ -1,5 +1,7 @@
 #include "app/scene/fabric_read.h"
 
+#include <cmath>
+
 #include "mesh/base/errors.h"
 
 namespace drape::app {
@@ -14,13 +16,18 @@ std::optional<Table> directions(Table& table, const std::string& key, double& va
   return {};
 }
 
+void check_ratio(const Table& table, double poisson) {
+  if (!(std::abs(poisson) < 1)) table.fail("poisson", "Poisson's ratio is between -1 and 1");
+}
+
 void read_stretch(Table& table, Fabric& fabric) {
-  std::optional<Table> both = directions(
-      table, "stretch", fabric.stretch, dimension::stretch, "a membrane stiffness ≥ 0 [N/m], or a table",
-      {"membrane stiffness: force per width for a strain of 1; of model = \"woven\" also "
-       "by directions, as a table",
-       "500 N/m"});
+  std::optional<Table> both = directions(table, "stretch", fabric.stretch, dimension::stretch,
+                                         "a membrane stiffness ≥ 0 [N/m], or a table",
+                                         {"membrane stiffness: force per width for a strain of 1; by "
+                                          "directions as a table, of which springs take the mean",
+                                          "500 N/m"});
   if (!both) return;
+  refuse_misplaced(*both, "stretch");
   Weave& weave = fabric.weave;
   both->read_required("warp", fabric.stretch, dimension::stretch, Range::positive,
                       "of a strip pulled along the warp");
@@ -30,16 +37,18 @@ void read_stretch(Table& table, Fabric& fabric) {
              {"force per width for a shear of 1 rad", "sqrt(warp weft) / (2 (1 + poisson))"});
   both->read("poisson", weave.poisson, dimension::number, Range::any,
              "geometric mean of the Poisson's ratios of warp and weft");
+  check_ratio(*both, weave.poisson);
   both->finish();
 }
 
 void read_bend(Table& table, Fabric& fabric) {
   std::optional<Table> both =
       directions(table, "bend", fabric.bend, dimension::bend, "a bending rigidity ≥ 0 [N.m], or a table",
-                 {"bending rigidity: moment per width for a curvature of 1/m; of model = \"woven\" "
-                  "also by directions, as a table",
+                 {"bending rigidity: moment per width for a curvature of 1/m; by directions as a table, of "
+                  "which springs take the mean",
                   "10 uN.m"});
   if (!both) return;
+  refuse_misplaced(*both, "bend");
   Weave& weave = fabric.weave;
   both->read_required("warp", fabric.bend, dimension::bend, Range::positive, "of a strip cut along the warp");
   both->read("weft", weave.bend_weft, dimension::bend, Range::positive,
@@ -47,6 +56,7 @@ void read_bend(Table& table, Fabric& fabric) {
   both->read("bias", weave.bend_bias, dimension::bend, Range::positive,
              {"of a strip cut at 45 degrees", "as of a fabric with poisson, and equal along warp and weft"});
   both->read("poisson", weave.bend_poisson, dimension::number, Range::any, "Poisson's ratio of bending");
+  check_ratio(*both, weave.bend_poisson);
   both->finish();
 }
 
@@ -67,12 +77,8 @@ void read_viscosity(Table& table, Weave& weave) {
 
 }  // namespace
 
-void read_fabric(Table& table, Fabric& fabric) {
+void read_fabric(Table& table, Fabric& fabric, FabricRecord& record) {
   table.read("area_density", fabric.area_density, dimension::area_density, Range::positive, "mass per area");
-  for (const auto& [width, spring] :
-       {std::pair{"stretch", "stretch_spring"}, std::pair{"bend", "bend_spring"}})
-    if (table.has(width) && table.has(spring))
-      table.fail(spring, "give either " + std::string(width) + " or " + spring + ", not both");
   Weave& weave = fabric.weave;
   if (table.has("stretch")) {  // replaces all of a named fabric's
     fabric.stretch_spring.reset();
@@ -92,6 +98,7 @@ void read_fabric(Table& table, Fabric& fabric) {
   read_bend(table, fabric);
   table.read("bend_spring", fabric.bend_spring, dimension::bend_spring, Range::not_negative,
              "instead of bend: the stiffness of every diagonal, k_b");
+  read_laboratory(table, fabric, record);
   table.read(
       "buckling_clamp", fabric.buckling_clamp, dimension::spring, Range::not_negative,
       {"c_b of every diagonal: how steeply its force sets in; a soft one makes the cloth limp where it is "
@@ -109,6 +116,8 @@ void read_fabric(Table& table, Fabric& fabric) {
       "compression", fabric.weave.compression, dimension::number, Range::not_negative,
       "of model = \"woven\": the share of the resistance to compression that stays; below 1 the fabric "
       "wrinkles finer than the mesh; from 0 to 1");
+  if (table.has("compression") && fabric.weave.compression > 1)
+    table.fail("compression", "the share of the resistance to compression is from 0 to 1");
   read_viscosity(table, fabric.weave);
   try {
     check(fabric);

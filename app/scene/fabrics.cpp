@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <map>
 
 #include "mesh/base/errors.h"
@@ -61,6 +62,44 @@ std::optional<MeasuredDrape> read_measured_drape(Table& table) {
   return measured;
 }
 
+// "bend.warp" and the like: the numbers of a fabric file.
+void add_numbers(const Node& node, const std::string& path, Names& numbers) {
+  if (node.kind != Node::Kind::table) return numbers.push_back(path);
+  for (const auto& [key, member] : node.members) add_numbers(member, path + "." + key, numbers);
+}
+
+Names numbers_of(const Node& root) {
+  Names numbers;
+  for (const auto& [key, member] : root.members) {
+    const Names words = {"description", "source",       "measured",           "converted",
+                         "assumed",     "damping_kind", "neighbour_weighting"};
+    if (std::find(words.begin(), words.end(), key) == words.end()) add_numbers(member, key, numbers);
+  }
+  return numbers;
+}
+
+// Every number that the three lists name is there, and is named once.
+void check_marks(const Table& table, const Node& root, NamedFabric& named) {
+  named.unmarked = numbers_of(root);
+  Names marked;
+  for (const auto& [list, names] :
+       {std::pair{"measured", &named.measured}, std::pair{"converted", &named.converted},
+        std::pair{"assumed", &named.assumed}})
+    for (const std::string& name : *names) {
+      const auto is_of = [&](const std::string& number) {
+        return number == name || number.starts_with(name + ".");
+      };
+      if (std::any_of(marked.begin(), marked.end(), is_of))
+        table.fail(list, name + " stands in two of the lists measured, converted and assumed");
+      const Names numbers = numbers_of(root);
+      if (std::none_of(numbers.begin(), numbers.end(), is_of))
+        table.fail(list, "the file does not give " + name + "; it gives " + listed(numbers));
+      std::copy_if(named.unmarked.begin(), named.unmarked.end(), std::back_inserter(marked), is_of);
+      named.unmarked.erase(std::remove_if(named.unmarked.begin(), named.unmarked.end(), is_of),
+                           named.unmarked.end());
+    }
+}
+
 }  // namespace
 
 void set_data_folder(const fs::path& folder) { data_folder = folder; }
@@ -85,8 +124,9 @@ NamedFabric read_fabric_file(const Node& root, const std::string& name, KeyNotes
   table.read("assumed", named.assumed, "keys whose values nobody measured");
   named.measured_drape = read_measured_drape(table);
   table.require("area_density");
-  read_fabric(table, named.fabric);
+  read_fabric(table, named.fabric, named.record);
   table.finish();
+  check_marks(table, root, named);
   return named;
 }
 

@@ -27,8 +27,10 @@ struct NamedFabric {
   // Of the numbers of the file, as "area_density" or "bend.warp"; "bend" is all of a table.
   Names measured, converted;  // from what was measured, by a formula or into other units
   Names assumed;              // nobody measured these
+  Names unmarked;             // the file says of these numbers none of the three
   std::optional<MeasuredDrape> measured_drape;
   Fabric fabric;
+  FabricRecord record;
 };
 
 void set_data_folder(const std::filesystem::path& folder);

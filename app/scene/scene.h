@@ -10,6 +10,7 @@
 #include "app/base/key_notes.h"
 #include "app/base/settings.h"
 #include "app/base/words.h"
+#include "app/scene/laboratory.h"
 #include "constraints/constraints.h"
 #include "mesh/pattern/pattern.h"
 #include "solver/forces/fabric.h"
@@ -75,6 +76,7 @@ struct ClothEntry {
   std::optional<Vec3> warp;  // direction in the rest shape, of model = "woven"
   std::string fabric_name;   // empty when the scene names none
   Fabric fabric;
+  FabricRecord fabric_record;
   std::vector<PinEntry> pins;
   std::string where;
 };

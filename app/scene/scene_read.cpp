@@ -178,8 +178,16 @@ std::optional<Vec3> read_warp(Table& table, const ClothEntry& cloth) {
 // A woven cloth has no connections, and a cloth of connections no warp.
 void check_model(const Table& table, const ClothEntry& cloth) {
   const bool woven = cloth.model == "woven";
-  for (const char* key : {"stretch_spring", "bend_spring", "buckling_clamp", "neighbour_weighting"})
-    if (woven && table.has(key)) table.fail(key, "is of connections, and model = \"woven\" has none");
+  const Fabric& f = cloth.fabric;
+  for (const auto& [key, given] : {std::pair{"stretch_spring", f.stretch_spring.has_value()},
+                                   std::pair{"bend_spring", f.bend_spring.has_value()},
+                                   std::pair{"buckling_clamp", f.buckling_clamp.has_value()},
+                                   std::pair{"neighbour_weighting", f.neighbour_weighting}}) {
+    if (!woven || !given) continue;
+    const std::string what = "is of connections, and model = \"woven\" has none";
+    if (table.has(key)) table.fail(key, what);
+    table.fail("fabric", std::string("its ") + key + " " + what);
+  }
   if (woven && needs_warp(cloth.fabric) && !cloth.warp)
     table.fail("model",
                "the fabric differs, wrinkles or is viscous along warp and weft; give warp = [x, y, z], the "
@@ -187,8 +195,6 @@ void check_model(const Table& table, const ClothEntry& cloth) {
                "warp in the rest shape, or rest = \"uv\", whose v it is");
   for (const char* key : {"compression", "viscosity"})
     if (!woven && table.has(key)) table.fail(key, "goes with model = \"woven\"");
-  if (!woven && has_directions(cloth.fabric))
-    table.fail("model", "a fabric that differs along warp and weft needs model = \"woven\"");
 }
 
 void read_fabric_name(Table& table, const fs::path& folder, std::string& name) {
@@ -234,8 +240,12 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
   if (!cloth.seams.empty() && cloth.model == "choi-ko")
     table.fail("model", "a cloth with seams is no regular grid; expected \"noh-jung\" or \"woven\"");
   read_fabric_name(table, folder, cloth.fabric_name);
-  if (!cloth.fabric_name.empty()) cloth.fabric = load_fabric(cloth.fabric_name, folder).fabric;
-  read_fabric(table, cloth.fabric);
+  if (!cloth.fabric_name.empty()) {
+    const NamedFabric named = load_fabric(cloth.fabric_name, folder);
+    cloth.fabric = named.fabric;
+    cloth.fabric_record = named.record;
+  }
+  read_fabric(table, cloth.fabric, cloth.fabric_record);
   check_model(table, cloth);
   for (Table& pin : table.tables("pins", pins_about)) cloth.pins.push_back(read_pin(pin, folder));
   table.finish();
@@ -293,6 +303,7 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path
   std::vector<Table> cloths = table.tables("cloth", "each a cloth"),
                      softs = table.tables("soft", "each a soft body, a lattice of springs"),
                      obstacles = table.tables("obstacle", "each a body that the cloth meets");
+  refuse_misplaced(table, "scene");
   table.finish();  // before anything is missed: it may be there with its name mistyped
   if (simulation.size() > 1) table.fail("simulation", "there may be only one");
   scene.simulation = read_simulation(simulation.empty() ? nullptr : simulation.data());

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "app/scene/fabric_words.h"
 #include "app/simulation/schedule.h"
 #include "solver/forces/choi_ko.h"
 
@@ -59,9 +60,19 @@ void tell_of_damping(const Cloth& cloth, Names& messages) {
       ": damping is of connections, and model = \"woven\" has none; viscosity calms its folds");
 }
 
+// Springs are the same in all directions.
+void tell_of_directions(const ClothEntry& entry, Names& messages) {
+  const Weave& w = entry.fabric.weave;
+  const std::string rest = beyond_springs(entry.fabric);
+  if (entry.model == "woven" || (!w.stretch_weft && !w.bend_weft && rest.empty())) return;
+  messages.push_back("note: cloth " + entry.name + ": model = \"" + entry.model + "\" takes of its fabric " +
+                     mean_in_words(entry.fabric) + ": the mean of warp and weft" +
+                     (rest.empty() ? "" : ", and leaves out " + rest));
+}
+
 void warn_if_limp(const Cloth& cloth, Names& messages) {
   const double curvature = cloth.limp_below;
-  if (!(curvature > 2 * limp_curvature(cloth.fabric.bend, cloth.fabric.area_density))) return;
+  if (!(curvature > 2 * limp_curvature(mean_bend(cloth.fabric), cloth.fabric.area_density))) return;
   messages.push_back("warning: cloth " + cloth.name +
                      ": the buckling clamp makes it limp below a curvature of " + rounded(curvature, 2) +
                      " 1/m (a radius of " + rounded(100 / curvature, 2) +
@@ -132,7 +143,10 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
     warn_if_limp(cloth, simulation.messages);
     tell_of_damping(cloth, simulation.messages);
   }
-  for (const ClothEntry& cloth : scene.cloths) warn_if_heavy(cloth, simulation.messages);
+  for (const ClothEntry& cloth : scene.cloths) {
+    warn_if_heavy(cloth, simulation.messages);
+    tell_of_directions(cloth, simulation.messages);
+  }
   warn_of_vertices_inside(scene, simulation);
   warn_if_coarse(scene, simulation);
   warn_of_restitution(scene, simulation.messages);

@@ -127,7 +127,7 @@ Cloth& Assembly::add(ClothPart part) {
   const int first = cloth.first_particle;
   for (const Triangle& t : cloth.mesh.triangles)
     faces_.push_back({{first + t[0], first + t[1], first + t[2]},
-                      cloth.fabric.stretch_spring.value_or(cloth.fabric.stretch)});
+                      cloth.fabric.stretch_spring.value_or(mean_stretch(cloth.fabric))});
   const std::vector<Vec3> positions = cloth.mesh.positions;
   return take(std::move(cloth), positions, masses);
 }

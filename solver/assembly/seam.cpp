@@ -63,7 +63,7 @@ OpenSeam open_seam(const SeamPlan& plan, const Fabric& fabric, const TriangleMes
   // A seam that will be merged is as stiff as the cloth while it closes; one that is kept for good is held
   // much harder.
   constexpr double kept = 1000;
-  const double cloth = std::max(fabric.stretch_spring.value_or(fabric.stretch), 1e-3);
+  const double cloth = std::max(fabric.stretch_spring.value_or(mean_stretch(fabric)), 1e-3);
   seam.stiffness = plan.stiffness.value_or(seam.merge ? cloth : kept * cloth);
   return seam;
 }

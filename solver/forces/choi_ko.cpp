@@ -66,7 +66,7 @@ class RestGrid {
 
 std::vector<StretchConnection> stretch_connections(const RestGrid& rest, const Fabric& fabric) {
   std::map<std::pair<int, int>, double> k;
-  const double Y = fabric.stretch;
+  const double Y = mean_stretch(fabric);
   for (std::size_t n = 0; n < rest.grid.quads.size(); ++n) {
     const QuadGrid::Quad& q = rest.grid.quads[n];
     const auto [a, b] = rest.cell(static_cast<int>(n));
@@ -101,9 +101,9 @@ void add_bends(const RestGrid& rest, const Fabric& fabric, bool diagonal, std::v
     const double width = diagonal ? a * b / std::sqrt(d2) : 0.5 * b;
     const double share = diagonal ? d2 * d2 / (6 * a * a * b * b) : std::max(0.0, 1 - a * a / (3 * b * b));
     const double unit = per_rigidity(width, h1, h2, L);
-    const double k_b = fabric.bend_spring.value_or(fabric.bend * share * unit);
+    const double k_b = fabric.bend_spring.value_or(mean_bend(fabric) * share * unit);
     const double clamp_k2 = 96 * k_b / (L * h1 * h2 * (h1 + h2) * (h1 + h2));
-    const double B = share > 0 ? k_b / (unit * share) : fabric.bend;
+    const double B = share > 0 ? k_b / (unit * share) : mean_bend(fabric);
     if (!out.empty() && out.back().i == s.a && out.back().j == s.c) {  // the other side of the row
       BendConnection& whole = out.back();
       whole.B = fabric.bend_spring ? 1 / (1 / whole.B + 1 / B) : B;

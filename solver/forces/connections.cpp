@@ -14,7 +14,7 @@ namespace {
 double clamp_of(const BendConnection& bend, const Fabric& fabric) {
   if (fabric.buckling_clamp) return *fabric.buckling_clamp;
   const double kappa = limp_curvature(bend.B, fabric.area_density),
-               k_s = fabric.stretch_spring.value_or(fabric.stretch);
+               k_s = fabric.stretch_spring.value_or(mean_stretch(fabric));
   return std::clamp(bend.clamp_k2 / (kappa * kappa), k_s, stiffest_clamp * k_s);
 }
 

@@ -27,6 +27,8 @@ void check(const Weave& w) {
     require(value >= 0, field, value, "s", "a time is not negative");
 }
 
+double mean(double warp, const std::optional<double>& weft) { return weft ? 0.5 * (warp + *weft) : warp; }
+
 }  // namespace
 
 void check(const Fabric& f) {
@@ -49,6 +51,9 @@ void check(const Fabric& f) {
   require(f.bend > 0 || !(f.weave.bend_weft || f.weave.bend_bias), "bend", f.bend, "N.m",
           "with bend_weft or bend_bias it is greater than zero");
 }
+
+double mean_stretch(const Fabric& f) { return mean(f.stretch, f.weave.stretch_weft); }
+double mean_bend(const Fabric& f) { return mean(f.bend, f.weave.bend_weft); }
 
 std::vector<double> mass_of_areas(std::vector<double> areas, const TriangleMesh& mesh, double area_density) {
   std::vector<char> used(areas.size(), 0);

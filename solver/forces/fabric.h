@@ -12,7 +12,8 @@
 namespace drape {
 
 // What the woven model (solver/forces/woven.h) knows besides. Unset: as of a fabric that is the same in all
-// directions. The stiffnesses of Fabric are then those along the warp.
+// directions. The stiffnesses of Fabric are then those along the warp. Models of springs take the means of warp and
+// weft, and nothing else of this.
 struct Weave {
   std::optional<double> stretch_weft = {}, shear = {};  // N/m, Y along the weft, and G
   double poisson = 0.3;                                 // geometric mean of the two Poisson's ratios
@@ -34,6 +35,10 @@ struct Fabric {
   bool neighbour_weighting = false;  // Noh & Jung eq. 1-3
   Weave weave = {};
 };
+
+// The arithmetic means of warp and weft: what a model takes that is the same in all directions.
+double mean_stretch(const Fabric& fabric);  // N/m
+double mean_bend(const Fabric& fabric);     // N m
 
 // Throws InputError, which names the field, when a value is negative, not finite, or zero where it may not
 // be.

@@ -57,6 +57,7 @@ std::vector<StretchConnection> stretch_connections(const TriangleMesh& mesh, con
                                                    const Fabric& fabric) {
   std::vector<StretchConnection> out;
   const std::vector<RestSide> sides = rest_sides(mesh, rest);
+  const double Y = mean_stretch(fabric);
   out.reserve(sides.size());
   for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
     int triangles = 0;  // of the edge, over all its lengths
@@ -64,7 +65,7 @@ std::vector<StretchConnection> stretch_connections(const TriangleMesh& mesh, con
       triangles += sides[last].count;
     for (std::size_t k = first; k < last; ++k) {
       const RestSide& s = sides[k];
-      double stiffness = s.l == 0 ? fabric.stretch : fabric.stretch * s.area / (s.l * s.l);
+      double stiffness = s.l == 0 ? Y : Y * s.area / (s.l * s.l);
       if (fabric.stretch_spring) stiffness = *fabric.stretch_spring * s.count / triangles;
       out.push_back({s.a, s.b, s.l, stiffness});
     }
@@ -113,6 +114,7 @@ RestHinge rest_hinge(const TriangleMesh& mesh, const TriangleMesh& rest, const H
 std::vector<BendConnection> bend_connections(const TriangleMesh& mesh, const TriangleMesh& rest,
                                              const Fabric& fabric) {
   std::vector<BendConnection> out;
+  const double B = mean_bend(fabric);
   for (const Hinge& hinge : hinges(mesh)) {
     auto [l, L, h1, h2] = rest_hinge(mesh, rest, hinge);
     if (l == 0 || L == 0) continue;
@@ -121,7 +123,7 @@ std::vector<BendConnection> bend_connections(const TriangleMesh& mesh, const Tri
     h1 = std::max(h1, 0.2 * l);
     h2 = std::max(h2, 0.2 * l);
     const double per_rigidity = l * L * L * L / (6 * h1 * h2 * (h1 + h2));
-    const double k_b = fabric.bend_spring.value_or(fabric.bend * per_rigidity);
+    const double k_b = fabric.bend_spring.value_or(B * per_rigidity);
     const double clamp_k2 = 96 * k_b / (L * h1 * h2 * (h1 + h2) * (h1 + h2));
     if (!out.empty() && out.back().i == hinge.c && out.back().j == hinge.d) {
       if (!fabric.bend_spring) out.back().k_b += k_b;

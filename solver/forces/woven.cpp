@@ -45,21 +45,24 @@ Membrane::Common membrane_of(const Fabric& fabric) {
           .shear_time = weave.shear_time};
 }
 
+// Bent about the direction between warp and weft, a plate takes (D_11 + D_22 + 2 D_12) / 4 + D_66.
+double least_bend_bias(const Fabric& fabric) {
+  const double warp = fabric.bend, weft = fabric.weave.bend_weft.value_or(warp);
+  return 0.25 * (warp + weft + 2 * fabric.weave.bend_poisson * std::sqrt(warp * weft));
+}
+
 PlateStiffness plate_of(const Fabric& fabric) {
   const Weave& weave = fabric.weave;
   const double warp = fabric.bend, weft = weave.bend_weft.value_or(warp), mean = std::sqrt(warp * weft),
-               cross = weave.bend_poisson * mean;
-  // Bent about the direction between them, it takes (D_11 + D_22 + 2 D_12) / 4 + D_66.
-  const double twist = weave.bend_bias ? *weave.bend_bias - 0.25 * (warp + weft + 2 * cross)
-                                       : 0.5 * (1 - weave.bend_poisson) * mean;
+               least = least_bend_bias(fabric);
+  const double twist = weave.bend_bias ? *weave.bend_bias - least : 0.5 * (1 - weave.bend_poisson) * mean;
   if (weave.bend_bias && !(twist > 0)) {
     std::ostringstream message;
     message << "bend_bias = " << *weave.bend_bias
-            << " N.m: with this bend, bend_weft and bend_poisson it is greater than "
-            << 0.25 * (warp + weft + 2 * cross) << " N.m";
+            << " N.m: with this bend, bend_weft and bend_poisson it is greater than " << least << " N.m";
     throw InputError(message.str());
   }
-  return {warp, weft, cross, twist};
+  return {warp, weft, weave.bend_poisson * mean, twist};
 }
 
 bool has_directions(const Fabric& fabric) {

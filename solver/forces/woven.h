@@ -20,6 +20,7 @@ namespace drape {
 // Of a fabric that check() takes. plate_of throws InputError where bend_bias is too small.
 Membrane::Common membrane_of(const Fabric& fabric);
 PlateStiffness plate_of(const Fabric& fabric);
+double least_bend_bias(const Fabric& fabric);  // N m; bend_bias is greater
 
 // True when the fabric differs along warp and weft, so that it has to be known which is which.
 bool has_directions(const Fabric& fabric);

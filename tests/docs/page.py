@@ -8,6 +8,7 @@ What is said of a block stands in HTML comments right above its fence, which no 
     <!-- output -->              a text block: what the sh block before it printed; ... stands for anything
     <!-- output: numbers may differ -->
     <!-- pattern -->             a toml block that is a sewing pattern and no scene
+    <!-- fabric -->              a toml block that is a fabric file and no scene
     <!-- not run: REASON -->
 A part that a command made, between its table's ends:
     <!-- made by: COMMAND --> ... <!-- end -->
@@ -16,7 +17,7 @@ import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
-words = {"before", "shorter", "file", "exit", "output", "pattern", "not run"}
+words = {"before", "shorter", "file", "exit", "output", "pattern", "fabric", "not run"}
 
 
 class Mistake(Exception):

@@ -122,6 +122,10 @@ class Runner:
             (self.folder / name).write_text(text, encoding="utf-8")
             self.run(block, ["drape", "triangulate", name, "-o", name + ".obj", "--quiet"], "drape triangulate")
             return
+        if "fabric" in block.said:
+            (self.folder / name).write_text(text, encoding="utf-8")
+            self.run(block, ["drape", "check", name], "drape check")
+            return
         if "[[cloth]]" not in text and "[[soft]]" not in text:
             if "[" not in text.lstrip()[:1]:
                 self.fail(block, "a part of a scene begins with the name of its table")
