@@ -15,6 +15,7 @@
 #include "mesh/triangles/mesh_frames.h"
 #include "mesh/triangles/topology.h"
 #include "solver/assembly/assembly.h"
+#include "solver/assembly/imperfection.h"
 #include "solver/forces/choi_ko.h"
 #include "solver/forces/noh_jung.h"
 #include "solver/forces/pair_force.h"

@@ -17,6 +17,7 @@ Json cloths_json(const std::vector<ClothCounts>& cloths) {
                                  {"edges", c.edges},
                                  {"diagonals", c.diagonals},
                                  {"fabric", c.fabric},
+                                 {"imperfection", c.imperfection},
                                  {"pins", c.pins},
                                  {"seams", c.seams}});
   return list;

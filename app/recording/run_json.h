@@ -16,6 +16,7 @@ struct ClothCounts {
   std::string name;
   int particles = 0, triangles = 0, edges = 0, diagonals = 0;
   Json fabric = {}, pins = {}, seams = {};  // app/recording/scene_record.h
+  double imperfection = 0;                  // m
 };
 
 struct SoftCounts {

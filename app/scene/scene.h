@@ -73,8 +73,9 @@ struct ClothEntry {
   std::vector<PanelEntry> panels;
   std::vector<SeamEntry> seams;
   std::string model = "noh-jung";
-  std::optional<Vec3> warp;  // direction in the rest shape, of model = "woven"
-  std::string fabric_name;   // empty when the scene names none
+  std::optional<Vec3> warp;            // direction in the rest shape, of model = "woven"
+  std::optional<double> imperfection;  // m, how far the start is off the mesh; unset: by the model
+  std::string fabric_name;             // empty when the scene names none
   Fabric fabric;
   FabricRecord fabric_record;
   std::vector<PinEntry> pins;

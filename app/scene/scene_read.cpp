@@ -237,6 +237,11 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
       "noh-jung: springs, of any mesh; choi-ko: springs, of a regular grid of quads (holes and tubes are "
       "welcome); woven: a membrane and a plate, of any mesh");
   cloth.warp = read_warp(table, cloth);
+  table.read(
+      "imperfection", cloth.imperfection, dimension::length, Range::not_negative,
+      {"how far the start is off its own surface, in gentle waves: a cloth that is exactly flat and is "
+       "pushed in its plane would stay in it",
+       "1 um with model = \"woven\", else 0"});
   if (!cloth.seams.empty() && cloth.model == "choi-ko")
     table.fail("model", "a cloth with seams is no regular grid; expected \"noh-jung\" or \"woven\"");
   read_fabric_name(table, folder, cloth.fabric_name);

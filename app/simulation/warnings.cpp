@@ -22,12 +22,13 @@ void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
   for (const Cloth& cloth : simulation.cloths) {
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       int inside = 0, deepest = -1;
-      double deepest_depth = negligible;
+      const double least = negligible + cloth.imperfection;
+      double deepest_depth = least;
       for (int i = cloth.first_particle; i < cloth.end_particle; ++i) {
         const auto particle = static_cast<std::size_t>(i);
-        if (!(depth[particle] > negligible) || simulation.system->masses()[particle] == 0) continue;
+        if (!(depth[particle] > least) || simulation.system->masses()[particle] == 0) continue;
         const double d = -bodies[k].distance(simulation.state.x.segment<3>(3 * i));
-        if (!(d > negligible)) continue;
+        if (!(d > least)) continue;
         ++inside;
         if (d > deepest_depth) deepest = i, deepest_depth = d;
       }

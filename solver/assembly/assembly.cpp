@@ -1,12 +1,14 @@
 #include "solver/assembly/assembly.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
 #include "mesh/base/errors.h"
 #include "mesh/lattice/solid.h"
 #include "mesh/triangles/topology.h"
+#include "solver/assembly/imperfection.h"
 #include "solver/forces/choi_ko.h"
 #include "solver/forces/face_contact_force.h"
 #include "solver/forces/noh_jung.h"
@@ -75,6 +77,23 @@ void check_rest(const Cloth& cloth) {
                    "; triangle k of the one is triangle k of the other");
 }
 
+double imperfection_of(const Cloth& cloth, const std::optional<double>& given) {
+  const double amplitude = given.value_or(cloth.model == ClothModel::woven ? woven_imperfection : 0);
+  if (!(amplitude >= 0) || !std::isfinite(amplitude))
+    throw InputError(cloth.name + ": imperfection = " + std::to_string(amplitude) +
+                     " m: it is finite and not negative");
+  return amplitude;
+}
+
+// Where the cloth starts: off its mesh by its imperfection.
+std::vector<Vec3> start_of(const Cloth& cloth) {
+  std::vector<Vec3> positions = cloth.mesh.positions;
+  if (cloth.imperfection == 0) return positions;
+  const std::vector<Vec3> moved = imperfection(cloth.mesh, cloth.rest, cloth.imperfection);
+  for (std::size_t v = 0; v < positions.size(); ++v) positions[v] += moved[v];
+  return positions;
+}
+
 void place(const Pose& pose, const std::string& name, std::vector<Vec3>& positions) {
   for (Vec3& x : positions) {
     x = pose.to_world(x);
@@ -116,6 +135,7 @@ Cloth& Assembly::add(ClothPart part) {
   cloth.fabric = part.fabric;
   cloth.model = part.model;
   cloth.warp = part.warp;
+  cloth.imperfection = imperfection_of(cloth, part.imperfection);
   for (OpenSeam& seam : open_seams(part.seams, cloth.fabric, cloth.mesh, cloth.rest))
     cloth.seams.push_back({std::move(seam), nullptr});
   cloth.first_particle = state.particles();
@@ -128,7 +148,7 @@ Cloth& Assembly::add(ClothPart part) {
   for (const Triangle& t : cloth.mesh.triangles)
     faces_.push_back({{first + t[0], first + t[1], first + t[2]},
                       cloth.fabric.stretch_spring.value_or(mean_stretch(cloth.fabric))});
-  const std::vector<Vec3> positions = cloth.mesh.positions;
+  const std::vector<Vec3> positions = start_of(cloth);
   return take(std::move(cloth), positions, masses);
 }
 

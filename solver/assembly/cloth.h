@@ -33,6 +33,9 @@ struct ClothPart {
   Fabric fabric = {};
   ClothModel model = ClothModel::noh_jung;
   std::optional<Vec3> warp = {};  // direction in the rest shape, of a woven cloth
+  // How far the start is off `mesh` [m] (solver/assembly/imperfection.h). Unset: woven_imperfection of a woven
+  // cloth, 0 of the others.
+  std::optional<double> imperfection = {};
   std::vector<SeamPlan> seams = {};
   std::optional<MeshReport> report = {};  // what examine() says of the mesh; unset: examine() is called
 };
@@ -70,6 +73,7 @@ struct Cloth {
   Fabric fabric;  // of a cloth
   ClothModel model = ClothModel::noh_jung;
   std::optional<Vec3> warp;  // direction in the rest shape
+  double imperfection = 0;   // m, how far the start is off `mesh`
   double limp_below = 0;     // curvature [1/m] below which the cloth is limp (solver/forces/connections.h)
 
   std::optional<LatticeCounts> soft;       // set: this is a soft body and no cloth
