@@ -1,8 +1,74 @@
 // What every integrator keeps, and what it loses as its scheme does: spin, momentum, energy, rest.
+#include "solver/forces/woven.h"
 #include "tests/integrators.h"
 
 using namespace drape;
 using namespace drape::test;
+
+namespace {
+
+constexpr std::array models = {"noh-jung", "choi-ko", "woven"};
+
+// A sheet of cells x cells squares, 0.5 m wide, hung horizontally by two corners.
+struct StiffSheet {
+  TriangleMesh mesh;
+  System system;
+  Constraints constraints;
+  State state;
+
+  StiffSheet(std::string_view model, double stretch, int cells)
+      : mesh(squares(cells)),
+        system(model == "choi-ko" ? choi_ko_mass(mesh, mesh, 0.15) : lumped_mass(mesh, 0.15)),
+        state(at_rest(mesh)) {
+    const Fabric fabric{.area_density = 0.15, .stretch = stretch, .bend = 1e-5};
+    if (model == "woven")
+      system.add(woven(mesh, mesh, fabric));
+    else
+      system.add(model == "choi-ko" ? choi_ko(mesh, fabric) : noh_jung(mesh, fabric));
+    system.add(Gravity{});
+    constraints.pin({0, cells});
+  }
+  // What the sheet gives when it goes from where it starts to where it hangs.
+  double swing() const { return 0.15 * 0.5 * 0.5 * 9.81 * 0.25; }  // J
+
+ private:
+  static TriangleMesh squares(int cells) {
+    std::string text;
+    for (int j = 0; j <= cells; ++j)
+      for (int i = 0; i <= cells; ++i)
+        text += "v " + std::to_string(0.5 * i / cells) + " 0 " + std::to_string(0.5 * j / cells) + "\n";
+    for (int j = 0; j < cells; ++j)
+      for (int i = 1; i <= cells; ++i) {
+        const int v = j * (cells + 1) + i, below = v + cells + 1;
+        text += "f";
+        for (int corner : {v, below, below + 1, v + 1}) text += " " + std::to_string(corner);
+        text += "\n";
+      }
+    return parse_obj(text, "squares.obj");
+  }
+};
+
+struct EnergyGain {
+  double above_start = 0, in_a_step = 0;  // the most, in swings of the sheet
+};
+
+EnergyGain energy_gain(StiffSheet sheet, std::string_view name, double h, const StepOptions& options = {}) {
+  auto stepper =
+      make_integrator(name, sheet.system, sheet.constraints, make_linear_solver("mpcg+block-ic0"), options);
+  const double start = sheet.system.total_energy(sheet.state);
+  double before = start;
+  EnergyGain most;
+  while (sheet.state.time < 5 - 0.5 * h) {
+    REQUIRE(stepper->advance(sheet.state, h).done);
+    const double now = sheet.system.total_energy(sheet.state);
+    most.above_start = std::max(most.above_start, (now - start) / sheet.swing());
+    most.in_a_step = std::max(most.in_a_step, (now - before) / sheet.swing());
+    before = now;
+  }
+  return most;
+}
+
+}  // namespace
 
 TEST_CASE("a rotor loses spin as its scheme does, and momentum stays", "[integrators]") {
   // Two masses on a stiff spring turn at 5 rad/s for 1 s, with h = 0.01 s (explicit methods: 0.001 s) and the
@@ -60,6 +126,41 @@ TEST_CASE("the implicit schemes make no energy", "[integrators]") {
     INFO(name << ": " << (most - start) / fall << ", " << (sheet.energy() - start) / fall);
     CHECK(most - start < 1e-3 * fall);
     CHECK(sheet.energy() - start < -0.1 * fall);
+  }
+}
+
+TEST_CASE("a stiff sheet that swings never has more energy than at its start, however it is solved",
+          "[integrators]") {
+  struct Case {
+    int newton_iterations;
+    double h;  // s
+  };
+  for (const char* model : models) {
+    for (const double stretch : {500.0, 5000.0}) {
+      for (const Case c : {Case{1, 0.01}, Case{3, 0.01}, Case{1, 0.003}}) {
+        if (c.h < 0.01 && stretch < 5000) continue;
+        const StepOptions options{.newton_iterations = c.newton_iterations};
+        INFO(model << ", " << stretch << " N/m, " << c.newton_iterations << " iterations, " << c.h << " s");
+        if (c.newton_iterations == 1)
+          CHECK(energy_gain({model, stretch, 8}, "implicit-euler", c.h, options).above_start < 1e-3);
+        const EnergyGain bdf2 = energy_gain({model, stretch, 8}, "bdf2", c.h, options);
+        CHECK(bdf2.above_start < 1e-3);
+        CHECK(bdf2.in_a_step < 2e-3);
+      }
+    }
+  }
+}
+
+TEST_CASE("a stiff sheet that swings has no more energy than at its start by inner steps, as they are set",
+          "[integrators]") {
+  for (const std::string& name : integrator_names()) {
+    if (order_of(name) != 0) continue;
+    for (const char* model : {"noh-jung", "woven"}) {
+      const EnergyGain gain = energy_gain({model, 500, 3}, name, 0.01);
+      INFO(name << ", " << model << ": " << gain.above_start << " of the swing");
+      CHECK(gain.above_start < 5e-3);
+      CHECK(gain.in_a_step < 2e-3);
+    }
   }
 }
 

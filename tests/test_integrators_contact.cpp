@@ -180,8 +180,8 @@ TEST_CASE("contact is of first order in the time step, whatever the integrator",
       constraints.add(Obstacle{.shape = Plane{}, .friction = mu, .margin = 0.001});
       State state{0, VecX(Vec3(0, 0.001 + 0.5 * g * landing * landing, 0)), VecX(Vec3(speed, 0, 0))};
       StepOptions options = precise();
-      options.relative_tolerance = options.absolute_tolerance_position = options.absolute_tolerance_velocity =
-          1e-10;
+      options.relative_tolerance = 1e-10;
+      options.absolute_tolerance_position = options.absolute_tolerance_velocity = 1e-10;
       auto stepper =
           make_integrator(name, system, constraints, make_linear_solver("mpcg"), method.options(options));
       const int whole = static_cast<int>(end / h);

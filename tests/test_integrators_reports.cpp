@@ -100,8 +100,8 @@ TEST_CASE("a step whose linear solves fail is not done, and the state stays", "[
     Counted counted;
     counted.fails = [] { return true; };
     StepOptions options;  // with inner steps so short that they need no solve, the end is not reached
-    options.relative_tolerance = options.absolute_tolerance_position = options.absolute_tolerance_velocity =
-        1e-8;
+    options.relative_tolerance = 1e-8;
+    options.absolute_tolerance_position = options.absolute_tolerance_velocity = 1e-8;
     options.max_inner_steps = 500;
     auto stepper = make_integrator(name, sheet.system, sheet.constraints,
                                    std::make_unique<Counting>("eigen-ldlt", counted), options);

@@ -41,14 +41,15 @@ void read_step(Table& table, StepOptions& step) {
   table.read("max_contact_solves", step.max_contact_solves, 1,
              "how often a step is solved again because a contact changed");
   table.read("max_halvings", step.max_halvings, 0, "how often a step that fails is halved");
-  table.read(
-      "relative_tolerance", step.relative_tolerance, dimension::number, Range::positive,
-      "of `cvode-` and `arkode-`: the error of an inner step, relative to coordinates and velocities: a "
-      "cloth far from the origin is followed less closely");
+  table.read("relative_tolerance", step.relative_tolerance, dimension::number, Range::positive,
+             "of `cvode-` and `arkode-`: the error of a velocity in an inner step, relative to the speed");
   table.read("absolute_tolerance_position", step.absolute_tolerance_position, dimension::length,
-             Range::positive, "added to it for coordinates");
+             Range::positive,
+             {"the error of a coordinate in an inner step",
+              "a hundredth of what the weight of a vertex stretches the cloth around it"});
   table.read("absolute_tolerance_velocity", step.absolute_tolerance_velocity, dimension::speed,
-             Range::positive, "added to it for velocities");
+             Range::positive,
+             {"added to the error of a velocity", "as for a coordinate, at the stiffest vibration"});
   table.read("max_inner_steps", step.max_inner_steps, 1, "of these, in one step; more is a failure");
 }
 

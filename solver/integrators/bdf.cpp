@@ -111,9 +111,10 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
     ContactSolve solve(*this, state, newton.stiffness(), contacts, report);
     if (!settle_contacts(contacts, options_.max_contact_solves, solve, report) || !good(linear_))
       return fail(report, "linear solve: " + std::string(drape::name(linear_.reason)));
-    newton.took(descend(contacts, newton.first()), report);  // v += dv, as far as Phi falls      [NW06, 3.1]
-    p_.x = k().x_bar + k().c * p_.v;                         // x = x_bar + c v
+    const bool full = descend(contacts, newton.first());  // v += dv, as far as Phi falls         [NW06, 3.1]
+    p_.x = k().x_bar + k().c * p_.v;                      // x = x_bar + c v
     if (!p_.x.allFinite()) return fail(report, "the new positions are not finite numbers");
+    newton.took(full, falls_back() && merit_.makes_energy(state, p_, contacts.work()), report);
   }
   if (k().order_2() && merit_.makes_energy(state, p_, contacts.work())) {
     ++report.rescues;

@@ -8,7 +8,9 @@
 // of first order only.
 // The iteration is Newton's for the minimum of the incremental potential; solver/integrators/merit.h keeps it
 // from overshooting. Contacts are settled within each of its solves (solver/integrators/contact_loop.h).
-// A step of order 2 that made energy is taken again by order 1 (and counted in rescues).
+// A step of order 2 that made energy is taken again by order 1 (and counted in rescues). Such a step goes on
+// with Newton's iteration until it makes none: one solve bounds the energy of a motion that the scheme itself
+// damps, but not that of one which order 2 has kept alive.
 // x [m], v [m/s], M [kg], f [N], h [s].
 #pragma once
 
@@ -48,6 +50,7 @@ class Bdf final : public Integrator {
   bool fail(StepReport& report, const std::string& what);
 
   const StepCoefficients& k() const { return history_.coefficients(); }
+  bool falls_back() const { return history_.order() == 2 && !k().order_2(); }  // a step of order 1 in "bdf2"
   const std::vector<ContactFriction>& friction(ContactStep& contacts);
   void add_friction(const std::vector<ContactFriction>& friction);
 

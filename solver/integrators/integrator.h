@@ -29,11 +29,12 @@ struct StepOptions {
   int max_rescues = 20;  // further Newton iterations when a full one would raise the incremental potential
   int max_halvings = 6;  // how often a failed step may be halved before it is given up
   // For the integrators with inner steps (cvode-, arkode-): the error of an inner step may be
-  // relative_tolerance times |x| or |v|, plus the absolute tolerance.
+  // absolute_tolerance_position in x, and absolute_tolerance_velocity plus relative_tolerance times |v| in v.
+  // Unset: what suits the stiffness and mass of each particle (solver/integrators/sundials_ode.cpp).
   double relative_tolerance = 1e-4;
-  double absolute_tolerance_position = 1e-5;  // m
-  double absolute_tolerance_velocity = 1e-3;  // m/s
-  int max_inner_steps = 5000;                 // most inner steps in a step; more is a failure
+  std::optional<double> absolute_tolerance_position = {};  // m
+  std::optional<double> absolute_tolerance_velocity = {};  // m/s
+  int max_inner_steps = 5000;                              // most inner steps in a step; more is a failure
 };
 
 // Why and where a step failed.

@@ -1,6 +1,13 @@
 // "cvode-bdf", "cvode-adams", "arkode-erk", "arkode-dirk": SUNDIALS solves dx/dt = v, dv/dt = S M^-1 f(x, v)
 // with inner steps of its own choice inside each h, so that the error of every inner step is below
-//   relative_tolerance |y| + absolute_tolerance_position [m], absolute_tolerance_velocity [m/s].
+//   e_x  in x,   e_v + relative_tolerance |v|  in v,    for each particle
+//   e_x = share g / w^2,   e_v = share g / w,   w^2 = |K_ii| / m_i,   unless they are given
+// so e_x is a share of the length by which the weight of the particle stretches what holds it, and e_v is
+// that at its stiffest vibration. (A share of |x| would depend on where the origin is, and lets the particles
+// of a stiff cloth vibrate.)
+// The methods of CVODE are kept to order 2, because those of higher order make energy of vibrations that
+// nothing damps, at any tolerance that is not far below the vibrations themselves.
+//                                                                             [Hairer & Wanner 1996, V.1]
 // The implicit methods ask for (I - g J) (dx, dv) = (rx, rv) in Newton's iteration; that is our system,
 //   (M + g D + g^2 K) dv = M rv - g K rx,   dx = rx + g dv,
 // with the positive semidefinite K: Newton's iteration may need more rounds with it, but it ends at the same
@@ -24,11 +31,15 @@ namespace drape::internal {
 namespace {
 
 constexpr std::array<IntegratorInfo, 4> methods = {{
-    {"cvode-bdf", "SUNDIALS CVODE, BDF 1 to 5, inner steps to a tolerance"},
-    {"cvode-adams", "SUNDIALS CVODE, Adams 1 to 12, for soft cloth"},
+    {"cvode-bdf", "SUNDIALS CVODE, BDF 1 and 2, inner steps to a tolerance"},
+    {"cvode-adams", "SUNDIALS CVODE, Adams 1 and 2, for soft cloth"},
     {"arkode-erk", "SUNDIALS ARKODE, explicit Runge-Kutta of order 4, for soft cloth"},
     {"arkode-dirk", "SUNDIALS ARKODE, diagonally implicit Runge-Kutta of order 4"},
 }};
+
+constexpr int most_order = 2;  // of the methods of CVODE
+// Of the tolerances, also where there is no gravity.
+constexpr double tolerance_share = 0.01, tolerance_gravity = 9.81;  // -, m/s^2
 
 class SundialsOde final : public Integrator {
  public:
@@ -44,9 +55,15 @@ class SundialsOde final : public Integrator {
   static int derivative_of(double, N_Vector y, N_Vector dy, void* self) {
     return static_cast<SundialsOde*>(self)->derivative(y, dy);
   }
+  static int weights_of(N_Vector y, N_Vector weights, void* self) {
+    static_cast<SundialsOde*>(self)->weigh(y, weights);
+    return 0;
+  }
   int derivative(N_Vector y, N_Vector dy);
-  void make_cvode(N_Vector y, N_Vector tolerance);
-  void make_arkode(N_Vector y, N_Vector tolerance);
+  void weigh(N_Vector y, N_Vector weights) const;
+  void choose_tolerances(const State& state);
+  void make_cvode(N_Vector y);
+  void make_arkode(N_Vector y);
   void take_up(const State& state);
   int run(double until);
   int run(double until, bool one_step);
@@ -69,6 +86,7 @@ class SundialsOde final : public Integrator {
   bool going_ = false;                          // SUNDIALS stands at the end of the last step
   Filter held_;                                 // what was held in the last step
   long steps_ = 0, rounds_ = 0, rejected_ = 0;  // counts of SUNDIALS up to the last step
+  VecX tolerances_;                             // e_x and e_v, as y
   VecX y_, y_before_, x_, v_, a_, f_, b_, dv_;  // y = (x, v)
 };
 
@@ -83,40 +101,38 @@ SundialsOde::SundialsOde(std::string_view name, System& system, Constraints& con
       newton_(system, std::move(solver)) {
   const Eigen::Index n = 3 * system.particles();
   y_.setZero(2 * n);
-  VecX tolerances(2 * n);
-  tolerances.head(n).setConstant(options.absolute_tolerance_position);
-  tolerances.tail(n).setConstant(options.absolute_tolerance_velocity);
-  const sundials::View y(y_, context_), tolerance(tolerances, context_);
+  tolerances_.setOnes(2 * n);
+  const sundials::View y(y_, context_);
   if (implicit_)
     linear_ = sundials::our_solver<SundialsOde, SUNLINEARSOLVER_MATRIX_EMBEDDED>(*this, context_);
   if (cvode_)
-    make_cvode(y, tolerance);
+    make_cvode(y);
   else
-    make_arkode(y, tolerance);
+    make_arkode(y);
 }
 
-void SundialsOde::make_cvode(N_Vector y, N_Vector tolerance) {
+void SundialsOde::make_cvode(N_Vector y) {
   memory_ = CVodeCreate(implicit_ ? CV_BDF : CV_ADAMS, context_);
   CVodeSetErrHandlerFn(memory_, sundials::say_nothing, nullptr);
   CVodeInit(memory_, derivative_of, 0, y);
   CVodeSetUserData(memory_, this);
-  CVodeSVtolerances(memory_, options_.relative_tolerance, tolerance);
+  CVodeWFtolerances(memory_, weights_of);
   CVodeSetMaxNumSteps(memory_, options_.max_inner_steps);
+  CVodeSetMaxOrd(memory_, most_order);
   if (implicit_) {
     CVodeSetLinearSolver(memory_, linear_, nullptr);
-    CVodeSetStabLimDet(memory_, SUNTRUE);  // orders above 2 are not stable on undamped vibrations
   } else {
     fixed_point_ = SUNNonlinSol_FixedPoint(y, 0, context_);
     CVodeSetNonlinearSolver(memory_, fixed_point_);
   }
 }
 
-void SundialsOde::make_arkode(N_Vector y, N_Vector tolerance) {
+void SundialsOde::make_arkode(N_Vector y) {
   memory_ =
       ARKStepCreate(implicit_ ? nullptr : derivative_of, implicit_ ? derivative_of : nullptr, 0, y, context_);
   ARKStepSetErrHandlerFn(memory_, sundials::say_nothing, nullptr);
   ARKStepSetUserData(memory_, this);
-  ARKStepSVtolerances(memory_, options_.relative_tolerance, tolerance);
+  ARKStepWFtolerances(memory_, weights_of);
   ARKStepSetMaxNumSteps(memory_, options_.max_inner_steps);
   ARKStepSetOrder(memory_, 4);
   if (implicit_) ARKStepSetLinearSolver(memory_, linear_, nullptr);
@@ -140,6 +156,7 @@ StepReport SundialsOde::advance(State& state, double h) {
     const Stopwatch watch(step_ms);
     const Eigen::Index n = state.x.size();
     motion_.begin(state, h, report_);
+    if (newton_.follow_system()) choose_tolerances(state);
     take_up(state);
     const int flag = run(time_ + h);
     count();
@@ -160,6 +177,37 @@ StepReport SundialsOde::advance(State& state, double h) {
   }
   report_.step_ms = step_ms;
   return report_;
+}
+
+// The tolerances e_x and e_v of each particle. A particle that nothing holds gets the widest ones.
+void SundialsOde::choose_tolerances(const State& state) {
+  constexpr double widest_x = 1e-5, widest_v = 1e-3, least = 1e-12;  // m, m/s, and both
+  constexpr double stretched = tolerance_share * tolerance_gravity;
+  const Eigen::Index n = state.x.size();
+  a_.setZero(n);
+  b_.setZero(n);
+  const std::vector<double> no_masses(system_.masses().size(), 0.0);
+  newton_.assemble({state.x, a_, a_, 1, Stiffness::majorant}, no_masses, b_);  // of damping and stiffness
+  const BlockMatrix& K = newton_.matrix();
+  for (int i = 0; i < system_.particles(); ++i) {
+    const double stiffness = K.at(K.pattern().diagonal(K.pattern().row_of()[i])).norm();
+    const double w2 = stiffness / std::max(system_.masses()[i], 1e-300), w = std::sqrt(w2);
+    const double e_x = w > 0 ? std::clamp(stretched / w2, least, widest_x) : widest_x;
+    const double e_v = w > 0 ? std::clamp(stretched / w, least, widest_v) : widest_v;
+    tolerances_.segment<3>(3 * i).setConstant(options_.absolute_tolerance_position.value_or(e_x));
+    tolerances_.segment<3>(n + 3 * i).setConstant(options_.absolute_tolerance_velocity.value_or(e_v));
+  }
+}
+
+void SundialsOde::weigh(N_Vector y, N_Vector weights) const {
+  const Eigen::Index n = y_.size() / 2;
+  const auto from = sundials::numbers(y);
+  auto to = sundials::numbers(weights);
+  to.head(n) = tolerances_.head(n).cwiseInverse();
+  for (Eigen::Index i = n; i < 2 * n; i += 3) {
+    const double error = tolerances_[i] + options_.relative_tolerance * from.segment<3>(i).norm();
+    to.segment<3>(i).setConstant(1 / error);
+  }
 }
 
 // Goes on from where SUNDIALS stands when the state is there and the same is held; otherwise starts anew.
@@ -271,7 +319,6 @@ int SundialsOde::solve_linear(N_Vector d, N_Vector r) {
     x_ = sundials::numbers(y).head(n);
     v_ = sundials::numbers(y).tail(n);
     b_.setZero(n);
-    newton_.follow_system();
     newton_.assemble({x_, v_, rx, g, Stiffness::tangent}, system_.masses(), b_);  // g (f - K rx)
     f_.setZero(n);
     for (const auto& force : system_.forces()) force->add_force(x_, v_, f_);
