@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "app/scene/laboratory.h"
 #include "app/textile/elastica.h"
 #include "app/textile/virtual_tests.h"
-#include "app/scene/fabrics.h"
 #include "mesh/triangles/topology.h"
 #include "tests/folder.h"
 #include "tests/tables.h"
@@ -17,7 +17,7 @@ using namespace drape::test;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846, standard_gravity = 9.80665;
+constexpr double pi = 3.14159265358979323846;
 
 double area_of(const TriangleMesh& mesh) {
   double area = 0;

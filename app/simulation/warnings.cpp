@@ -1,5 +1,6 @@
 #include "app/simulation/warnings.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/scene/fabric_words.h"
@@ -71,13 +72,30 @@ void tell_of_directions(const ClothEntry& entry, Names& messages) {
                      (rest.empty() ? "" : ", and leaves out " + rest));
 }
 
+// Folds are some three bending lengths wide. An edge as long as one bending length cannot follow them: measured with
+// `drape test-fabric` on meshes of one bending length and of half of it.
+void warn_if_coarse_for_folds(const Cloth& cloth, Names& messages) {
+  const Fabric& fabric = cloth.fabric;
+  const double bend = std::min(fabric.bend, fabric.weave.bend_weft.value_or(fabric.bend)),
+               c = std::cbrt(bend / (9.81 * fabric.area_density));
+  if (cloth.model != ClothModel::woven || cloth.report.median_edge <= c) return;
+  messages.push_back(
+      "warning: cloth " + cloth.name + ": its edges (median " + rounded(1000 * cloth.report.median_edge, 2) +
+      " mm) are longer than the bending length of the fabric, " + rounded(1000 * c, 2) +
+      " mm: folds come out too stiff; subdivide the mesh" +
+      (fabric.weave.compression > 0.1 ? ", or set compression = 0.1, so that it wrinkles finer than the mesh"
+                                      : ""));
+}
+
 void warn_if_limp(const Cloth& cloth, Names& messages) {
   const double curvature = cloth.limp_below;
   if (!(curvature > 2 * limp_curvature(mean_bend(cloth.fabric), cloth.fabric.area_density))) return;
   messages.push_back("warning: cloth " + cloth.name +
                      ": the buckling clamp makes it limp below a curvature of " + rounded(curvature, 2) +
                      " 1/m (a radius of " + rounded(100 / curvature, 2) +
-                     " cm): gentler folds have no bending stiffness; raise buckling_clamp, or leave it out");
+                     " cm): gentler folds have no bending stiffness; " +
+                     (cloth.fabric.buckling_clamp ? "raise buckling_clamp, or leave it out"
+                                                  : "model = \"woven\" has no clamp"));
 }
 
 void warn_if_long(const Cloth& cloth, Names& messages) {
@@ -142,6 +160,7 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
     if (cloth.soft) continue;
     warn_if_long(cloth, simulation.messages);
     warn_if_limp(cloth, simulation.messages);
+    warn_if_coarse_for_folds(cloth, simulation.messages);
     tell_of_damping(cloth, simulation.messages);
   }
   for (const ClothEntry& cloth : scene.cloths) {

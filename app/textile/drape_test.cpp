@@ -5,13 +5,13 @@
 #include <random>
 
 #include "app/base/interrupt.h"
+#include "app/scene/laboratory.h"
 #include "app/textile/virtual_tests.h"
 
 namespace drape::app {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double standard_gravity = 9.80665;  // m/s^2
 constexpr double pi = 3.14159265358979323846;
 
 // Numbers from 0 to 1, the same with every standard library.

@@ -94,13 +94,21 @@ Values run(const Plan& plan, const std::string& test, double edge, Pictures& pic
   });
 }
 
-void add(FabricTable& table, const std::string& test, const Values& values) {
+std::optional<double> measured(const NamedFabric& fabric, const std::string& quantity) {
+  if (!fabric.measured_drape) return {};
+  if (quantity == "drape coefficient") return fabric.measured_drape->coefficient;
+  return quantity == "nodes" ? fabric.measured_drape->nodes : std::nullopt;
+}
+
+void add(FabricTable& table, const NamedFabric& fabric, const std::string& test, const Values& values) {
   for (const Value& value : values) {
     const auto same = std::find_if(table.rows.begin(), table.rows.end(), [&](const FabricRow& row) {
       return row.test == test && row.value.quantity == value.quantity;
     });
     FabricRow& row =
-        same != table.rows.end() ? *same : table.rows.emplace_back(FabricRow{test, value, {}, {}});
+        same != table.rows.end()
+            ? *same
+            : table.rows.emplace_back(FabricRow{test, value, measured(fabric, value.quantity), {}});
     row.found.push_back(value.found);
   }
 }
@@ -109,8 +117,9 @@ void add(FabricTable& table, const std::string& test, const Values& values) {
 
 int test_fabric(const TestFabricWords& words, const std::filesystem::path& out, bool quiet) {
   const Plan plan = plan_of(words);
-  const std::filesystem::path folder =
-      out.empty() ? std::filesystem::path("out") / "test-fabric" / plan.fabric.name : out;
+  const std::filesystem::path folder = out.empty() ? std::filesystem::path("out") / "test-fabric" /
+                                                         std::filesystem::path(plan.fabric.name).stem()
+                                                   : out;
   make_output_folder(folder, {"test-fabric.json"});
   catch_interrupts();
   FabricTable table{plan.fabric.name, plan.model_name, plan.edges, {}};
@@ -118,7 +127,7 @@ int test_fabric(const TestFabricWords& words, const std::filesystem::path& out, 
   for (const std::string& test : plan.tests)
     for (double edge : plan.edges) {
       if (!quiet) std::fprintf(stderr, "%s, mesh of %s mm\n", test.c_str(), rounded(1000 * edge, 3).c_str());
-      add(table, test, run(plan, test, edge, pictures));
+      add(table, plan.fabric, test, run(plan, test, edge, pictures));
       if (interrupted()) {
         if (!quiet) std::fprintf(stderr, "interrupted: nothing is written\n");
         return 130;

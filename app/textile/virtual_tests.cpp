@@ -5,13 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "app/scene/laboratory.h"
 #include "app/textile/elastica.h"
 #include "solver/forces/woven.h"
 
 namespace drape::app {
 namespace {
 
-constexpr double g = 9.80665;  // m/s^2, standard gravity
 constexpr double pi = 3.14159265358979323846;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr Unit mm{"mm", "m", 1e-3}, micro_newton_metre{"uN.m", "N.m", 1e-6},
@@ -24,22 +24,24 @@ struct Direction {
 constexpr std::array directions = {Direction{"warp", 0}, Direction{"weft", pi / 2},
                                    Direction{"bias", pi / 4}};
 
-// What the parameters say of a strip that is cut at this angle to the warp. Springs know no directions.
+// What the parameters say of a strip that is cut at this angle to the warp. Springs take means.
 double bend_asked(const Fabric& fabric, ClothModel model, double angle) {
-  if (model != ClothModel::woven) return fabric.bend;
+  if (model != ClothModel::woven) return mean_bend(fabric);
   const PlateStiffness D = plate_of(fabric);
   const double c = std::pow(std::cos(angle), 2), s = std::pow(std::sin(angle), 2);
   return D.warp * c * c + D.weft * s * s + (2 * D.cross + 4 * D.twist) * c * s;
 }
 
 double stretch_asked(const Fabric& fabric, ClothModel model, double angle) {
-  if (model != ClothModel::woven) return fabric.stretch;
+  if (model != ClothModel::woven) return mean_stretch(fabric);
   const Membrane::Common m = membrane_of(fabric);
   const double c = std::pow(std::cos(angle), 2), s = std::pow(std::sin(angle), 2);
   return 1 / (c * c / m.warp + s * s / m.weft + c * s * (1 / m.shear - 2 * m.cross / (m.warp * m.weft)));
 }
 
-double bending_length(double B, double area_density) { return std::cbrt(B / (area_density * g)); }
+double bending_length(double B, double area_density) {
+  return std::cbrt(B / (area_density * standard_gravity));
+}
 
 // The bending length that a strip shows, or NaN.
 double shown_bending_length(const Cut& cut, double edge, double expected) {
@@ -47,7 +49,7 @@ double shown_bending_length(const Cut& cut, double edge, double expected) {
   for (int round = 0; round < 5; ++round) {
     const double width = std::max(0.025, 4 * edge);
     const Specimen strip = overhanging_strip(length, width, edge);
-    Rig rig(strip, cut, {0, -g, 0}, [](const Vec3& x) { return x; });
+    Rig rig(strip, cut, {0, -standard_gravity, 0}, [](const Vec3& x) { return x; });
     if (!rig.settle(0.1 * std::sqrt(length), 1e-6, 8000)) return nan;
     Vec3 tip = Vec3::Zero();
     int at_tip = 0;
@@ -105,7 +107,7 @@ Values cantilever_test(const Fabric& fabric, ClothModel model, double edge) {
     values.push_back({std::string("bending rigidity, ") + direction.name,
                       micro_newton_metre,
                       B,
-                      {fabric.area_density * g * c * c * c}});
+                      {fabric.area_density * standard_gravity * c * c * c}});
   }
   return values;
 }
