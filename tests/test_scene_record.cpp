@@ -115,6 +115,27 @@ void check_scene(const JsonValue& json) {
 
 }  // namespace
 
+TEST_CASE("the words of a woven cloth name all of its weave", "[recording]") {
+  const Folder folder;
+  const TriangleMesh sheet = grid(3, 3, 0.4, 0.4);
+  write_obj(folder.path / "sheet.obj", sheet, sheet.positions);
+  folder.write(
+      "s.toml",
+      "[simulation]\nduration = 0.01\n[[cloth]]\nmesh = \"sheet.obj\"\nmodel = \"woven\"\nwarp = [0, 0, 1]\n"
+      "stretch = { warp = 500, weft = 400, shear = 40, poisson = 0.2 }\n"
+      "bend = { warp = 3e-6, weft = 2e-6, poisson = 0.1 }\ncompression = 0.5\n"
+      "viscosity = { stretch = 0.001, shear = 0.002, bend = 0.003 }\n");
+  REQUIRE(folder.drape("simulate s.toml --out o --quiet").exit_code == 0);
+  std::string words;
+  for (const SceneFact& fact : scene_facts(parse_json(content(folder.path / "o/run.json"), "run.json")))
+    if (fact.name == "Fabric of sheet") words = fact.value;
+  for (const char* part :
+       {"woven", "stretch 500 N/m", "weft 400 N/m", "shear 40 N/m", "bend of the weft 2e-06 N m",
+        "Poisson's ratio 0.2", "of bending 0.1", "compression 0.5", "viscosity of stretch 0.001 s",
+        "of shear 0.002 s", "of bending 0.003 s", "warp along 0, 0, 1"})
+    CHECK_THAT(words, Contains(part));
+}
+
 TEST_CASE("run.json has what was run, after defaults, fabrics and settings", "[recording]") {
   const Bench bench;
   const Outcome run = bench.drape("simulate s.toml --out o --quiet --duration 0.04" + changes);

@@ -99,7 +99,7 @@ Node Node::of_table(std::string where) {
   return node;
 }
 
-std::string written(const Node& node) {
+std::string toml_text(const Node& node) {
   std::string text;
   switch (node.kind) {
     case Node::Kind::boolean:
@@ -109,21 +109,22 @@ std::string written(const Node& node) {
     case Node::Kind::number:
       return shortest(node.number);
     case Node::Kind::text:
-      text = "\"" + one_line(node.text) + "\"";
-      break;
+      for (const char c : one_line(node.text))
+        text += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+      return "\"" + text + "\"";
     case Node::Kind::array:
-      for (const Node& item : node.items) {
-        text += (text.empty() ? "" : ", ") + written(item);
-        if (text.size() > 60) break;
-      }
-      text = "[" + text + "]";
-      break;
+      for (const Node& item : node.items) text += (text.empty() ? "" : ", ") + toml_text(item);
+      return "[" + text + "]";
     case Node::Kind::table:
       for (const auto& [key, member] : node.members)
-        text += (text.empty() ? " " : ", ") + key + " = " + written(member);
-      text = "{" + text + " }";
-      break;
+        text += (text.empty() ? " " : ", ") + key + " = " + toml_text(member);
+      return "{" + text + " }";
   }
+  return text;
+}
+
+std::string written(const Node& node) {
+  const std::string text = toml_text(node);
   return text.size() <= 60 ? text : text.substr(0, 56) + " ...";
 }
 

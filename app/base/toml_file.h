@@ -29,7 +29,8 @@ struct Node {
   static Node of_table(std::string where);
 };
 
-std::string written(const Node& node);  // as it stands in TOML, shortened when it is long
+std::string toml_text(const Node& node);  // as it stands in TOML, in one line
+std::string written(const Node& node);    // the same for a message, shortened when it is long
 
 // Both throw InputError "scene.toml:3: is not TOML: ...".
 Node read_toml(const std::filesystem::path& path);

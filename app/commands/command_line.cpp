@@ -10,6 +10,7 @@
 #include "app/base/words.h"
 #include "app/commands/check.h"
 #include "app/commands/commands.h"
+#include "app/commands/fit.h"
 #include "app/commands/keys.h"
 #include "app/commands/triangulate_command.h"
 #include "app/compare/compare.h"
@@ -312,6 +313,18 @@ void add_export(CLI::App& app, int& exit_code) {
   command->callback([=, &exit_code] { exit_code = export_folder(*words); });
 }
 
+void add_fit(CLI::App& app, int& exit_code) {
+  CLI::App* const command = app.add_subcommand(
+      "fit", "makes the parameters of a fabric from what a laboratory measured, by direct formulas");
+  auto words = std::make_shared<FitWords>();
+  command->add_option("FABRIC", words->out, "the fabric file to write, .toml (printed)");
+  command->add_option("--from", words->from, "a fabric file with bending_length, kes, fast and so on")
+      ->type_name("FILE")
+      ->required();
+  command->add_flag("--force", words->force, "replace a file that is there");
+  command->callback([=, &exit_code] { exit_code = fit(*words); });
+}
+
 void add_check_and_list(CLI::App& app, int& exit_code) {
   CLI::App* const check =
       app.add_subcommand("check", "validates a scene or a fabric file, or examines a mesh; changes nothing");
@@ -372,6 +385,7 @@ int parse_and_run(int argc, char** argv) {
   add_view(app, exit_code);
   add_picture(app, exit_code);
   add_export(app, exit_code);
+  add_fit(app, exit_code);
   add_check_and_list(app, exit_code);
   add_keys(app, exit_code);
   if (argc > 1 && argv[1][0] != '-') check_command(app, argv[1]);

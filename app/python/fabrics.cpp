@@ -44,7 +44,26 @@ std::string text(const Fabric& fabric) {
                                : ", stretch=" + rounded(fabric.stretch, 6) + " N/m";
   all += fabric.bend_spring ? ", bend_spring=" + rounded(*fabric.bend_spring, 6) + " N m^2"
                             : ", bend=" + rounded(fabric.bend, 6) + " N m";
-  return all + ", damping=" + rounded(fabric.damping, 6) + " N s/m)";
+  all += ", damping=" + rounded(fabric.damping, 6) + " N s/m";
+  // What differs from a fabric that is the same in all directions.
+  const Weave &w = fabric.weave, usual;
+  const auto given = [&](const char* name, const Given& value, const char* unit) {
+    if (value) all += std::string(", ") + name + "=" + rounded(*value, 6) + unit;
+  };
+  const auto other = [&](const char* name, double value, double otherwise, const char* unit) {
+    if (value != otherwise) given(name, value, unit);
+  };
+  given("stretch_weft", w.stretch_weft, " N/m");
+  given("shear", w.shear, " N/m");
+  other("poisson", w.poisson, usual.poisson, "");
+  other("compression", w.compression, usual.compression, "");
+  given("bend_weft", w.bend_weft, " N m");
+  given("bend_bias", w.bend_bias, " N m");
+  other("bend_poisson", w.bend_poisson, usual.bend_poisson, "");
+  other("stretch_time", w.stretch_time, 0, " s");
+  other("shear_time", w.shear_time, 0, " s");
+  other("bend_time", w.bend_time, 0, " s");
+  return all + ")";
 }
 
 void add_fabric(py::module_& m) {

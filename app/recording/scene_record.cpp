@@ -60,7 +60,16 @@ std::string fabric_words(const Json& fabric) {
   words.number("shear ", weave["shear"], " N/m");
   words.number("bend of the weft ", weave["bend_weft"], " N m");
   words.number("of the bias ", weave["bend_bias"], " N m");
+  words.number("Poisson's ratio ", weave["poisson"], "");
+  words.number("of bending ", weave["bend_poisson"], "");
   words.number("compression ", weave["compression"], "");
+  words.number("viscosity of stretch ", weave["stretch_time"], " s");
+  words.number("of shear ", weave["shear_time"], " s");
+  words.number("of bending ", weave["bend_time"], " s");
+  if (!weave["warp"].items().empty()) {
+    const auto at = [&](std::size_t k) { return rounded(weave["warp"].items()[k].number(NAN), 4); };
+    words.add("warp along " + at(0) + ", " + at(1) + ", " + at(2));
+  }
   return words.text();
 }
 

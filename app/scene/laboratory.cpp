@@ -65,7 +65,7 @@ std::string one_of(const Table& table, const char* what, const Names& keys) {
 
 void note_given(const Table& table, const std::string& quantity, const std::string& key,
                 FabricRecord& record) {
-  if (!key.empty()) record.given[quantity] = key + " = " + written(*at(table, key));
+  if (!key.empty()) record.given[quantity] = key + " = " + toml_text(*at(table, key));
 }
 
 Directions each(const Directions& from, double (*f)(double, double), double with) {
@@ -253,7 +253,7 @@ void read_laboratory(Table& table, Fabric& fabric, FabricRecord& record) {
   if (!stretch.empty()) record.given.erase("shear");
   note_given(table, "stretch", stretch, record);
   if (stretch == "fast.E5" && at(table, "fast.E20"))
-    record.given["stretch"] += ", fast.E20 = " + written(*at(table, "fast.E20"));
+    record.given["stretch"] += ", fast.E20 = " + toml_text(*at(table, "fast.E20"));
   if (shear != "stretch.shear") note_given(table, "shear", shear, record);
   note_given(table, "bend", bend, record);
 }

@@ -47,9 +47,9 @@ void check(const Fabric& f) {
   require(f.damping >= 0, "damping", f.damping, "N.s/m", "a damping coefficient is not negative");
   check(f.weave);
   require(f.stretch > 0 || !(f.weave.stretch_weft || f.weave.shear), "stretch", f.stretch, "N/m",
-          "with stretch_weft or shear it is greater than zero");
+          "with a stiffness along the weft or of shear it is greater than zero");
   require(f.bend > 0 || !(f.weave.bend_weft || f.weave.bend_bias), "bend", f.bend, "N.m",
-          "with bend_weft or bend_bias it is greater than zero");
+          "with a rigidity along the weft or in the bias it is greater than zero");
 }
 
 double mean_stretch(const Fabric& f) { return mean(f.stretch, f.weave.stretch_weft); }

@@ -172,6 +172,15 @@ class Refusals(Workshop):
         named = drape.load_fabric("cotton-poplin")
         self.assertGreater(named.fabric.area_density, 0.05)
         self.assertTrue(named.source)
+        twill = drape.load_fabric("polyester-twill")
+        self.assertAlmostEqual(twill.measured_drape_coefficient, 0.223)
+        self.assertIsNone(twill.measured_drape_nodes)
+        self.assertIn("bend", twill.converted)
+        self.assertIn("area_density", twill.measured)
+        self.assertIn("shear=41 N/m, bend_weft=6.1e-07 N m", repr(twill))
+        self.assertNotIn("weft", repr(named))
+        (self.folder / "mine.toml").write_text('area_density = 0.1\nbending_length = "2 cm"\n')
+        self.assertAlmostEqual(drape.load_fabric(str(self.folder / "mine.toml")).fabric.bend, 9.80665 * 0.1 * 8e-6)
         with self.assertRaisesRegex(ValueError, "did you mean 'cotton-poplin'"):
             drape.load_fabric("cotton-popline")
         with self.assertRaisesRegex(ValueError, "bend"):

@@ -1,0 +1,198 @@
+#include "app/commands/fit.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "app/base/atomic_file.h"
+#include "app/scene/fabric_words.h"
+#include "mesh/base/errors.h"
+
+namespace drape::app {
+namespace {
+
+constexpr int digits = 6;
+
+// The formula of a key of a laboratory.
+std::string formula(const std::string& key) {
+  if (key == "bending_length" || key == "fast.C") return "B = g area_density c^3, g = 9.80665 m/s^2";
+  if (key == "overhang") return "B = g area_density (overhang / 2)^3, g = 9.80665 m/s^2";
+  if (key == "kes.EMT") return "the secant 490.3325 N/m / EMT";
+  if (key == "fast.E5") return "the secant 4.903325 N/m / E5";
+  if (key == "fast.E20") return "the secant 19.6133 N/m / E20";
+  if (key == "fast.E100") return "the secant 98.0665 N/m / E100";
+  if (key == "fast.EB5") return "G = 4.903325 N/m / (4 EB5)";
+  return {};
+}
+
+// Writes the file: a line for each parameter with what it is from, then the lists of what was measured.
+class FabricFile {
+ public:
+  FabricFile(const Node& root, const NamedFabric& named) : root_(root), named_(named) {}
+
+  std::string text(const std::string& from) {
+    text_ = "# Made by `drape fit` from " + one_line(from) + ".\n";
+    for (const char* key : {"description", "source"})
+      if (root_.members.contains(key)) keep(key);
+    const Fabric& f = named_.fabric;
+    line("area_density", quantity(1000 * f.area_density, "g/m^2"));
+    add_stretch();
+    add_bend();
+    for (const char* key : {"buckling_clamp", "damping", "damping_kind", "neighbour_weighting", "compression",
+                            "viscosity", "measured_drape"})
+      if (root_.members.contains(key)) keep(key);
+    add_hysteresis();
+    text_ += "\n";
+    for (const auto& [list, names] : {std::pair{"measured", &measured_}, std::pair{"converted", &converted_},
+                                      std::pair{"assumed", &assumed_}}) {
+      text_ += std::string(list) + " = [";
+      for (const std::string& name : *names) text_ += (&name == names->data() ? "\"" : ", \"") + name + "\"";
+      text_ += "]\n";
+    }
+    return text_;
+  }
+
+ private:
+  static std::string quantity(double value, const char* unit) {
+    return "\"" + rounded(value, digits) + " " + unit + "\"";
+  }
+
+  // The list that the number at `from` ("kes.B", "" when nothing gave it) and what follows from it stand in. A number
+  // that the file says nothing of counts as measured.
+  Names& list_of(const std::string& from, bool by_formula) {
+    const auto in = [&](const Names& names) {
+      return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+        return name == from || from.starts_with(name + ".") || name.starts_with(from + ".");
+      });
+    };
+    if (from.empty() || in(named_.assumed)) return assumed_;
+    return by_formula || in(named_.converted) ? converted_ : measured_;
+  }
+
+  // "kes.B" of "kes.B = \"0.1 gf.cm^2/cm\"".
+  std::string key_of(const std::string& parameter) const {
+    const auto given = named_.record.given.find(parameter);
+    return given == named_.record.given.end() ? "" : given->second.substr(0, given->second.find(" = "));
+  }
+
+  // The comment of a parameter.
+  std::string comment(const std::string& parameter) const {
+    const std::string key = key_of(parameter);
+    if (key.empty()) return "nobody gave it: the program's default";
+    const std::string& given = named_.record.given.at(parameter);
+    const bool slope = given.find(", fast.E20 = ") != given.npos;
+    const std::string by = slope ? "the slope 14.709975 N/m / (E20 - E5)" : formula(key);
+    return (by.empty() ? "given as " : by + ", ") + given;
+  }
+
+  void mark(const std::string& number, const std::string& parameter) {
+    const std::string key = key_of(parameter);
+    list_of(key, key != parameter).push_back(number);
+  }
+
+  void line(const std::string& parameter, const std::string& value) {
+    text_ += parameter + " = " + value + "  # " + comment(parameter) + "\n";
+    mark(parameter, parameter);
+  }
+
+  void add_stretch() {
+    const Fabric& f = named_.fabric;
+    const Weave& w = f.weave;
+    if (f.stretch_spring) return keep("stretch_spring");
+    const bool has_ratio = w.poisson != Weave().poisson;
+    if (!w.stretch_weft && !w.shear && !has_ratio) return line("stretch", quantity(f.stretch, "N/m"));
+    std::string members = "warp = " + quantity(f.stretch, "N/m"), why = comment("stretch");
+    mark("stretch.warp", "stretch");
+    if (w.stretch_weft) {
+      members += ", weft = " + quantity(*w.stretch_weft, "N/m");
+      mark("stretch.weft", "stretch");
+    }
+    if (w.shear) {
+      const bool own = named_.record.given.contains("shear");
+      members += ", shear = " + quantity(*w.shear, "N/m");
+      mark("stretch.shear", own ? "shear" : "stretch");
+      if (own) why += "; " + comment("shear");
+    }
+    if (has_ratio) {
+      members += ", poisson = " + rounded(w.poisson, digits);
+      mark("stretch.poisson", "stretch");
+    }
+    text_ += "stretch = { " + members + " }  # " + why + "\n";
+  }
+
+  void add_bend() {
+    const Fabric& f = named_.fabric;
+    const Weave& w = f.weave;
+    if (f.bend_spring) return keep("bend_spring");
+    const bool has_ratio = w.bend_poisson != Weave().bend_poisson;
+    if (!w.bend_weft && !w.bend_bias && !has_ratio) return line("bend", quantity(1e6 * f.bend, "uN.m"));
+    std::string members = "warp = " + quantity(1e6 * f.bend, "uN.m");
+    mark("bend.warp", "bend");
+    for (const auto& [key, value] : {std::pair{"weft", w.bend_weft}, std::pair{"bias", w.bend_bias}}) {
+      if (!value) continue;
+      members += std::string(", ") + key + " = " + quantity(1e6 * *value, "uN.m");
+      mark(std::string("bend.") + key, "bend");
+    }
+    if (has_ratio) {
+      members += ", poisson = " + rounded(w.bend_poisson, digits);
+      mark("bend.poisson", "bend");
+    }
+    text_ += "bend = { " + members + " }  # " + comment("bend") + "\n";
+  }
+
+  // As the file has it.
+  void keep(const std::string& key) {
+    text_ += key + " = " + toml_text(root_.members.at(key)) + "\n";
+    const Names words = {"description", "source", "damping_kind", "neighbour_weighting"};
+    if (std::find(words.begin(), words.end(), key) == words.end()) list_of(key, false).push_back(key);
+  }
+
+  void add_hysteresis() {
+    const auto kes = root_.members.find("kes");
+    if (kes == root_.members.end()) return;
+    std::string members;
+    for (const char* key : {"2HB", "2HG"}) {
+      const auto width = kes->second.members.find(key);
+      if (width == kes->second.members.end()) continue;
+      members += (members.empty() ? "" : ", ") + std::string(key) + " = " + toml_text(width->second);
+      list_of(std::string("kes.") + key, false).push_back(std::string("kes.") + key);
+    }
+    if (!members.empty()) text_ += "kes = { " + members + " }  # no model has friction inside the fabric\n";
+  }
+
+  const Node& root_;
+  const NamedFabric& named_;
+  Names measured_, converted_, assumed_;
+  std::string text_;
+};
+
+void check_output(const FitWords& words) {
+  const std::filesystem::path out(words.out);
+  if (!is_fabric_file(words.out)) throw InputError(words.out + ": expected a name that ends in .toml");
+  std::error_code error;
+  if (std::filesystem::equivalent(out, words.from, error))
+    throw InputError(words.out + ": is the file that is read; give the new one another name");
+  if (!words.force && std::filesystem::exists(out))
+    throw InputError(words.out + ": is there already; --force replaces it");
+}
+
+}  // namespace
+
+int fit(const FitWords& words) {
+  if (!words.out.empty()) check_output(words);
+  const Node root = read_toml(words.from);
+  const NamedFabric named = read_fabric_file(root, words.from);
+  const std::string text = FabricFile(root, named).text(words.from);
+  if (words.out.empty()) {
+    std::fputs(text.c_str(), stdout);
+    return 0;
+  }
+  AtomicFile file(words.out);
+  file.write(text);
+  file.keep();
+  std::printf("%s\n", in_words(named.fabric).c_str());
+  for (const std::string& line : lines_of(named.record)) std::printf("%s\n", one_line(line).c_str());
+  std::printf("wrote %s\n", words.out.c_str());
+  return 0;
+}
+
+}  // namespace drape::app
