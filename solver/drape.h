@@ -16,6 +16,7 @@
 #include "mesh/triangles/topology.h"
 #include "solver/assembly/assembly.h"
 #include "solver/assembly/imperfection.h"
+#include "solver/forces/air.h"
 #include "solver/forces/choi_ko.h"
 #include "solver/forces/noh_jung.h"
 #include "solver/forces/pair_force.h"

@@ -163,7 +163,7 @@ TEST_CASE("a woven cloth is read, and refused where its directions are not known
       read(woven +
            "warp = [0, 0, 2]\nstretch = { warp = \"6 N/cm\", weft = 400, shear = 50, poisson = 0.2 }\n"
            "bend = { warp = \"2.1 uN.m\", weft = \"1.4 uN.m\", bias = \"1.6 uN.m\", poisson = 0.1 }\n"
-           "compression = 0.25\nviscosity = { stretch = \"1 ms\", bend = \"5 ms\" }\n");
+           "compression = 0.25\nrest_angle = 0.4\nviscosity = { stretch = \"1 ms\", bend = \"5 ms\" }\n");
   const ClothEntry& entry = scene.cloths.at(0);
   CHECK(entry.model == "woven");
   CHECK((*entry.warp - Vec3(0, 0, 2)).norm() == 0);
@@ -177,6 +177,11 @@ TEST_CASE("a woven cloth is read, and refused where its directions are not known
   CHECK(*w.bend_bias == Approx(1.6e-6));
   CHECK(w.bend_poisson == 0.1);
   CHECK(w.compression == 0.25);
+  CHECK(w.rest_angle == 0.4);
+  CHECK(read(woven + "rest_angle = \"mesh\"\n").cloths[0].fabric.weave.rest_angle == 1);
+  CHECK(read(woven + "rest_angle = \"flat\"\n").cloths[0].fabric.weave.rest_angle == 0);
+  CHECK_FALSE(read(woven).cloths[0].imperfection);
+  CHECK(*read(cloth + "imperfection = \"2 um\"\n").cloths[0].imperfection == Approx(2e-6));
   CHECK(w.stretch_time == Approx(1e-3));
   CHECK(w.shear_time == 0);
   CHECK(w.bend_time == Approx(5e-3));
@@ -187,6 +192,11 @@ TEST_CASE("a woven cloth is read, and refused where its directions are not known
   const test::Mistake table[] = {
       {cloth + "warp = [1, 0, 0]\n", "scene.toml:3:", "goes with model = \"woven\""},
       {cloth + "compression = 0.5\n", "scene.toml:3:", "goes with model = \"woven\""},
+      {cloth + "rest_angle = \"mesh\"\n", "scene.toml:3:", "goes with model = \"woven\""},
+      {woven + "rest_angle = \"bent\"\n", "scene.toml:4:", "\"flat\", \"mesh\", or a number"},
+      {woven + "rest_angle = 1.5\n", "scene.toml:4:", "from 0 (flat) to 1"},
+      {woven + "rest_angle = 1\n[[cloth.seams]]\n", "scene.toml:4:", "with seams"},
+      {woven + "imperfection = -1\n", "scene.toml:4:", "imperfection"},
       {cloth + "viscosity = { bend = 1 }\n", "scene.toml:3:", "goes with model = \"woven\""},
       {woven + "warp = [0, 0, 0]\n", "scene.toml:4:", "a direction is not [0, 0, 0]"},
       {woven + "stretch = { warp = 500, weft = 300 }\n", "scene.toml:3:", "give warp = [x, y, z]"},
@@ -203,6 +213,25 @@ TEST_CASE("a woven cloth is read, and refused where its directions are not known
 
       {woven + "compression = 1.5\n", "scene.toml:4:", "from 0 to 1"},
       {woven + "viscosity = 3\n", "scene.toml:4:", "expected a table"},
+  };
+  test::check_mistakes(table, [](const std::string& text) { return read(text); });
+}
+
+TEST_CASE("the air of a scene is none unless there is a table", "[scene][air]") {
+  CHECK_FALSE(read(cloth).simulation.air);
+  const std::optional<Air> air =
+      read(cloth + "[air]\nwind = [0, 0, \"18 km/h\"]\nskin_friction = 0.05\n").simulation.air;
+  REQUIRE(air);
+  CHECK((air->wind - Vec3(0, 0, 5)).norm() < 1e-12);
+  CHECK(air->density == 1.2);
+  CHECK(air->drag == 1.2);
+  CHECK(air->skin_friction == 0.05);
+  const test::Mistake table[] = {
+      {cloth + "[air]\nwind = 3\n", "scene.toml:4:", "wind"},
+      {cloth + "[air]\nwind = [0, 0, \"1 kg\"]\n", "scene.toml:4:", "speed"},
+      {cloth + "[air]\ndensity = -1\n", "scene.toml:4:", "density"},
+      {cloth + "[air]\nwinds = [0, 0, 1]\n", "scene.toml:4:", "did you mean 'wind'?"},
+      {cloth + "[[air]]\n[[air]]\n", "scene.toml:3:", "only one"},
   };
   test::check_mistakes(table, [](const std::string& text) { return read(text); });
 }

@@ -8,7 +8,6 @@
 #include "solver/forces/damping.h"
 #include "solver/forces/linear_spring.h"
 #include "solver/forces/pair_force.h"
-#include "solver/forces/plate_pair.h"
 #include "solver/forces/woven.h"
 #include "tests/integrators.h"
 #include "tests/outside/forces.h"
@@ -132,12 +131,7 @@ struct Woven {  // taut in some triangles and slack in others
   }
   static Law::Common common() { return fabric_of(0.01 * percent); }
 };
-struct PlateOfTwo {
-  using Law = PlateLaw;
-  static Law::Rest rest() { return {3}; }
-  static Law::Common common() { return 0.02; }
-};
-using Cases = std::tuple<FullSpring, Distance, Area, PointTriangle, Woven<100>, Woven<30>, PlateOfTwo>;
+using Cases = std::tuple<FullSpring, Distance, Area, PointTriangle, Woven<100>, Woven<30>>;
 
 Eigen::MatrixXd dense(const BlockMatrix& A) {  // in particle order
   const Eigen::Index n = 3 * A.rows();

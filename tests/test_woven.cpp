@@ -213,7 +213,7 @@ TEST_CASE(
   for (StripMesh kind : strip_meshes) {
     const TriangleMesh mesh = strip(kind, 6, 4, 0.3).mesh;
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(mesh.vertex_count(), mesh.vertex_count());
-    for (const PlatePair& p : plate_pairs(mesh, woven_corners(mesh, {}), plate_of(plain())))
+    for (const PlatePair& p : plate_energy(mesh, woven_corners(mesh, {}), plate_of(plain())).pairs)
       K(p.i, p.i) += p.k, K(p.j, p.j) += p.k, K(p.i, p.j) -= p.k, K(p.j, p.i) -= p.k;
     const Eigen::VectorXd e = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues();
     INFO(name(kind) << ": " << e.head(5).transpose() << " .. " << e[e.size() - 1]);
@@ -229,7 +229,7 @@ TEST_CASE("a plate with slivers has no negative stiffness", "[woven]") {
     mesh.positions[12] = mesh.positions[7] + 0.37 * (mesh.positions[11] - mesh.positions[7]) +
                          Vec3(0, 0, height * 0.025);  // nearly on an edge across from it
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(mesh.vertex_count(), mesh.vertex_count());
-    for (const PlatePair& p : plate_pairs(mesh, woven_corners(mesh, {}), plate_of(plain())))
+    for (const PlatePair& p : plate_energy(mesh, woven_corners(mesh, {}), plate_of(plain())).pairs)
       K(p.i, p.i) += p.k, K(p.j, p.j) += p.k, K(p.i, p.j) -= p.k, K(p.j, p.i) -= p.k;
     const Eigen::VectorXd e = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues();
     INFO("height " << height << ": " << e[0] << " .. " << e[e.size() - 1]);

@@ -17,6 +17,8 @@ namespace {
 constexpr std::string_view before_shapes = R"(
 [simulation]
 
+[air]
+
 [[cloth]]
 mesh   = "sheet.obj"
 rotate = { axis = [0, 1, 0], angle = 0 }

@@ -6,6 +6,7 @@
 #include "app/python/arrays.h"
 #include "app/python/forces.h"
 #include "app/scene/fabrics.h"
+#include "solver/forces/air.h"
 #include "solver/forces/choi_ko.h"
 #include "solver/forces/noh_jung.h"
 #include "solver/forces/soft.h"
@@ -28,12 +29,13 @@ using Given = std::optional<double>;
 Fabric made(double area_density, double stretch, double bend, Given stretch_spring, Given bend_spring,
             Given buckling_clamp, double damping, const std::string& kind, bool neighbour_weighting,
             Given stretch_weft, Given shear, double poisson, double compression, Given bend_weft,
-            Given bend_bias, double bend_poisson, double stretch_time, double shear_time, double bend_time) {
+            Given bend_bias, double bend_poisson, double stretch_time, double shear_time, double bend_time,
+            double rest_angle) {
   Fabric fabric{area_density,       stretch,        bend,    stretch_spring,
                 bend_spring,        buckling_clamp, damping, damping_kind(kind),
                 neighbour_weighting};
-  fabric.weave = {stretch_weft, shear,        poisson,      compression, bend_weft,
-                  bend_bias,    bend_poisson, stretch_time, shear_time,  bend_time};
+  fabric.weave = {stretch_weft, shear,        poisson,    compression, bend_weft, bend_bias,
+                  bend_poisson, stretch_time, shear_time, bend_time,   rest_angle};
   check(fabric);
   return fabric;
 }
@@ -76,13 +78,14 @@ void add_fabric(py::module_& m) {
       "for every connection; buckling_clamp [N/m]; damping [N s/m] of every connection, 'relative' or\n"
       "'axial'; neighbour_weighting after Noh & Jung, eq. 1-3. For woven(): stretch and bend are along\n"
       "the warp; stretch_weft, shear [N/m], poisson, compression, bend_weft, bend_bias [N m],\n"
-      "bend_poisson; stretch_time, shear_time, bend_time [s], viscosity over stiffness.")
+      "bend_poisson; stretch_time, shear_time, bend_time [s], viscosity over stiffness; rest_angle, the\n"
+      "share of the mesh's folds with which it rests.")
       .def(py::init(&made), py::kw_only(), "area_density"_a = 0.15, "stretch"_a = 500.0, "bend"_a = 1e-5,
            "stretch_spring"_a = py::none(), "bend_spring"_a = py::none(), "buckling_clamp"_a = py::none(),
            "damping"_a = 0.0, "damping_kind"_a = "relative", "neighbour_weighting"_a = false,
            "stretch_weft"_a = py::none(), "shear"_a = py::none(), "poisson"_a = 0.3, "compression"_a = 1.0,
            "bend_weft"_a = py::none(), "bend_bias"_a = py::none(), "bend_poisson"_a = 0.0,
-           "stretch_time"_a = 0.0, "shear_time"_a = 0.0, "bend_time"_a = 0.0,
+           "stretch_time"_a = 0.0, "shear_time"_a = 0.0, "bend_time"_a = 0.0, "rest_angle"_a = 0.0,
            "ValueError names a value that is negative, not finite, or zero where it may not be.")
       .def_readwrite("area_density", &Fabric::area_density, "kg/m^2")
       .def_readwrite("stretch", &Fabric::stretch, "N/m, membrane stiffness per width")
@@ -134,6 +137,10 @@ void add_fabric(py::module_& m) {
       .def_property(
           "bend_time", [](const Fabric& fabric) { return fabric.weave.bend_time; },
           [](Fabric& fabric, double value) { fabric.weave.bend_time = value; }, "s, of bending")
+      .def_property(
+          "rest_angle", [](const Fabric& fabric) { return fabric.weave.rest_angle; },
+          [](Fabric& fabric, double value) { fabric.weave.rest_angle = value; },
+          "share of the mesh's folds with which it rests: 0 is flat, 1 the mesh")
       .def(
           "copy", [](const Fabric& fabric) { return Fabric(fabric); },
           "Another fabric with the same numbers.")
@@ -267,9 +274,22 @@ void add_fabrics(py::module_& m) {
       },
       "mesh"_a, "fabric"_a, "warp"_a = py::none(), "first_particle"_a = 0,
       "A membrane of triangles and a plate, of any triangle mesh that rests as it is, but flat where it is\n"
-      "folded. [Baraff & Witkin 1998, 4.2; Morley 1968] `warp` (3,) is a direction in the mesh, needed "
+      "folded, unless fabric.rest_angle says otherwise. [Baraff & Witkin 1998, 4.2; Morley 1968] `warp` (3,) "
+      "is a direction in the mesh, needed "
       "where\n"
       "the fabric differs along warp and weft. ValueError where the numbers make no law.");
+  m.def(
+      "air_drag",
+      [](const TriangleMesh& mesh, const Vec3& wind, double density, double drag, double skin_friction,
+         int first) {
+        std::vector<std::unique_ptr<Force>> forces;
+        forces.push_back(air_drag(mesh, {wind, density, drag, skin_friction}, first));
+        return Forces{std::move(forces)};
+      },
+      "mesh"_a, py::kw_only(), "wind"_a = Vec3(0, 0, 0), "density"_a = 1.2, "drag"_a = 1.2,
+      "skin_friction"_a = 0.0, "first_particle"_a = 0,
+      "The air around a cloth: wind (3,) [m/s], density [kg/m^3], and the coefficients of a plate square to\n"
+      "the wind and along it. ValueError where a value is negative or not finite.");
   m.def(
       "soft_body",
       [](const Lattice& lattice, const SoftMaterial& material, int first) {

@@ -70,6 +70,7 @@ std::string fabric_words(const Json& fabric) {
     const auto at = [&](std::size_t k) { return rounded(weave["warp"].items()[k].number(NAN), 4); };
     words.add("warp along " + at(0) + ", " + at(1) + ", " + at(2));
   }
+  if (weave["rest_angle"].number(0) > 0) words.number("rest angle ", weave["rest_angle"], " of the mesh's");
   return words.text();
 }
 
@@ -151,7 +152,8 @@ Json weave_json(const ClothEntry& entry) {
                        {"bend_poisson", weave.bend_poisson},
                        {"stretch_time", weave.stretch_time},
                        {"shear_time", weave.shear_time},
-                       {"bend_time", weave.bend_time}};
+                       {"bend_time", weave.bend_time},
+                       {"rest_angle", weave.rest_angle}};
 }
 
 }  // namespace
@@ -227,9 +229,18 @@ Json::Members contact_json(const Obstacle& obstacle) {
           {"restitution", obstacle.restitution}};
 }
 
+Json air_json(const std::optional<Air>& air) {
+  if (!air) return {};
+  return Json::Members{{"wind", vector_json(air->wind)},
+                       {"density", air->density},
+                       {"drag", air->drag},
+                       {"skin_friction", air->skin_friction}};
+}
+
 Json::Members numerics_json(const SimulationOptions& options) {
   return {{"frame_rate", options.frame_rate},
           {"gravity", vector_json(options.gravity)},
+          {"air", air_json(options.air)},
           {"tolerance", options.step.tolerance},
           {"newton_iterations", options.step.newton_iterations}};
 }

@@ -13,6 +13,7 @@
 #include "app/scene/laboratory.h"
 #include "constraints/constraints.h"
 #include "mesh/pattern/pattern.h"
+#include "solver/forces/air.h"
 #include "solver/forces/fabric.h"
 #include "solver/forces/soft.h"
 #include "solver/integrators/integrator.h"
@@ -133,6 +134,7 @@ struct SimulationOptions {
   double time_step = 0.01;       // s
   double frame_rate = 25;        // 1/s; 0: only the last state is written
   Vec3 gravity = {0, -9.81, 0};  // m/s^2
+  std::optional<Air> air;        // unset: there is none
   std::string integrator = "implicit-euler";
   std::string linear_solver = "mpcg+block-ic0";  // docs/solvers.md compares the solvers
   StepOptions step;

@@ -109,6 +109,21 @@ SimulationOptions read_simulation(const Table* given) {
   return options;
 }
 
+std::optional<Air> read_air(std::vector<Table> given, const Table& scene) {
+  if (given.size() > 1) scene.fail("air", "there may be only one");
+  if (given.empty()) return {};
+  Air air;
+  Table& table = given.front();
+  table.read("wind", air.wind, dimension::speed, "the velocity of the air, the same everywhere and always");
+  table.read("density", air.density, dimension::density, Range::not_negative, "of the air");
+  table.read("drag", air.drag, dimension::number, Range::not_negative,
+             "C of a plate square to the wind: its force per area is density C v^2 / 2");
+  table.read("skin_friction", air.skin_friction, dimension::number, Range::not_negative,
+             "C of a plate along the wind, of both sides together");
+  table.finish();
+  return air;
+}
+
 // A name becomes a file name.
 std::string read_name(Table& table, const fs::path& mesh) {
   std::string name = mesh.stem().string();
@@ -174,6 +189,30 @@ std::optional<Vec3> read_warp(Table& table, const ClothEntry& cloth) {
               "v of the texture coordinates, with rest = \"uv\""});
   if (table.has("warp") && warp.isZero()) table.fail("warp", "a direction is not [0, 0, 0]");
   return warp.isZero() ? std::optional<Vec3>() : warp;
+}
+
+// "flat", "mesh", or a share between them.
+void read_rest_angle(Table& table, ClothEntry& cloth) {
+  const Node* const node = table.take(
+      "rest_angle", "\"flat\", \"mesh\", or a number from 0 to 1",
+      {"of model = \"woven\": with which folds it rests: none, those of the mesh as it starts, or a "
+       "share of them; the springs of the other models rest at the lengths of the mesh",
+       "\"flat\""});
+  if (!node) return;
+  if (cloth.model != "woven") table.fail("rest_angle", "goes with model = \"woven\"");
+  double& share = cloth.fabric.weave.rest_angle;
+  const bool is_text = node->kind == Node::Kind::text;
+  if (is_text && node->text == "flat") return;
+  if (is_text && node->text == "mesh")
+    share = 1;
+  else if (node->kind == Node::Kind::number || node->kind == Node::Kind::integer)
+    share = node->number;
+  else
+    share = -1;
+  if (!(share >= 0 && share <= 1))
+    table.fail("rest_angle", "expected \"flat\", \"mesh\", or a number from 0 (flat) to 1 (the mesh)");
+  if (share > 0 && !cloth.seams.empty())
+    table.fail("rest_angle", "where panels are sewn the mesh has no angle; expected \"flat\" with seams");
 }
 
 // A woven cloth has no connections, and a cloth of connections no warp.
@@ -252,6 +291,7 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
     cloth.fabric_record = named.record;
   }
   read_fabric(table, cloth.fabric, cloth.fabric_record);
+  read_rest_angle(table, cloth);
   check_model(table, cloth);
   for (Table& pin : table.tables("pins", pins_about)) cloth.pins.push_back(read_pin(pin, folder));
   table.finish();
@@ -306,6 +346,8 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path
   scene.label = std::move(label);
   scene.settings = settings;
   const std::vector<Table> simulation = table.tables("simulation", "how long, how exactly, by which methods");
+  std::vector<Table> air = table.tables("air", {"the air that the cloth moves in, and its wind",
+                                                "none: nothing but what it touches slows the cloth"});
   std::vector<Table> cloths = table.tables("cloth", "each a cloth"),
                      softs = table.tables("soft", "each a soft body, a lattice of springs"),
                      obstacles = table.tables("obstacle", "each a body that the cloth meets");
@@ -313,6 +355,7 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path
   table.finish();  // before anything is missed: it may be there with its name mistyped
   if (simulation.size() > 1) table.fail("simulation", "there may be only one");
   scene.simulation = read_simulation(simulation.empty() ? nullptr : simulation.data());
+  scene.simulation.air = read_air(std::move(air), table);
   if (!table.has("soft")) table.require("cloth");
   for (Table& cloth : cloths) scene.cloths.push_back(read_cloth(cloth, folder));
   for (Table& soft : softs) scene.softs.push_back(read_whole_soft(soft, folder));

@@ -37,7 +37,7 @@ void add_pins(const Scene& scene, Simulation& simulation) {
 
 Simulation make_simulation(const Scene& scene, bool keep_level_sets) {
   const SimulationOptions& options = scene.simulation;
-  Simulation simulation(options.gravity, options.contact);
+  Simulation simulation(options.gravity, options.contact, options.air);
   simulation.scene = std::make_shared<const Scene>(scene);
   load_parts(scene, simulation);
   add_obstacles(scene, keep_level_sets, simulation);

@@ -109,8 +109,8 @@ void add_edges(const std::vector<LatticePair>& pairs, const std::vector<Vec3>& p
 
 }  // namespace
 
-Assembly::Assembly(const Vec3& gravity, ContactOptions contact)
-    : constraints(std::make_unique<Constraints>(contact)), gravity_(gravity) {}
+Assembly::Assembly(const Vec3& gravity, ContactOptions contact, std::optional<Air> air)
+    : constraints(std::make_unique<Constraints>(contact)), gravity_(gravity), air_(air) {}
 
 // Appends the particles of the part to those that are there.
 Cloth& Assembly::take(Cloth cloth, const std::vector<Vec3>& positions, const std::vector<double>& masses) {
@@ -135,6 +135,9 @@ Cloth& Assembly::add(ClothPart part) {
   cloth.fabric = part.fabric;
   cloth.model = part.model;
   cloth.warp = part.warp;
+  if (cloth.fabric.weave.rest_angle > 0 && !part.seams.empty())
+    throw InputError(cloth.name +
+                     ": rest_angle: where panels are sewn the mesh has no angle; expected 0 with seams");
   cloth.imperfection = imperfection_of(cloth, part.imperfection);
   for (OpenSeam& seam : open_seams(part.seams, cloth.fabric, cloth.mesh, cloth.rest))
     cloth.seams.push_back({std::move(seam), nullptr});
@@ -210,6 +213,7 @@ void Assembly::connect(Cloth& cloth, Forces& forces) const {
       if (s.L > 0) cloth.edges.push_back({cloth.first_particle + s.i, cloth.first_particle + s.j, s.L});
     append(forces_of(connections, cloth.fabric, cloth.first_particle), forces);
   }
+  if (air_) forces.push_back(air_drag(mesh, *air_, cloth.first_particle));
   for (Cloth::Stitched& open : cloth.seams) {
     std::unique_ptr<Force> force = stitches(open.seam, cloth.embedding, state.time);
     open.force = force.get();

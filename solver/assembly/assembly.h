@@ -11,10 +11,12 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "solver/assembly/cloth.h"
+#include "solver/forces/air.h"
 #include "solver/integrators/integrator.h"
 
 namespace drape {
@@ -22,7 +24,9 @@ namespace drape {
 using MakeIntegrator = std::function<std::unique_ptr<Integrator>(System&, Constraints&)>;
 
 struct Assembly {
-  explicit Assembly(const Vec3& gravity = {0, -9.81, 0}, ContactOptions contact = {});  // m/s^2
+  // gravity [m/s^2]. Without air nothing slows the cloth; soft bodies do not feel it.
+  explicit Assembly(const Vec3& gravity = {0, -9.81, 0}, ContactOptions contact = {},
+                    std::optional<Air> air = {});
 
   std::vector<Cloth> cloths;  // cloths and soft bodies as they were added
   std::unique_ptr<System> system;
@@ -66,6 +70,7 @@ struct Assembly {
   State merged_state(const std::vector<double>& masses, const std::vector<int>& number) const;
 
   Vec3 gravity_;
+  std::optional<Air> air_;
   // These are in use until the system is made.
   std::vector<double> masses_;    // kg
   Forces forces_;                 // of all parts

@@ -21,6 +21,8 @@ void check(const Weave& w) {
     require(std::abs(value) < 1, field, value, "", "Poisson's ratio is between -1 and 1");
   require(w.compression >= 0 && w.compression <= 1, "compression", w.compression, "",
           "the share of the resistance to compression is from 0 to 1");
+  require(w.rest_angle >= 0 && w.rest_angle <= 1, "rest_angle", w.rest_angle, "",
+          "the share of the mesh's own angles is from 0 (flat) to 1");
   for (const auto& [field, value] :
        {std::pair{"stretch_time", w.stretch_time}, std::pair{"shear_time", w.shear_time},
         std::pair{"bend_time", w.bend_time}})

@@ -21,6 +21,8 @@ struct Weave {
   std::optional<double> bend_weft = {}, bend_bias = {};  // N m, B along the weft and at 45 degrees
   double bend_poisson = 0;
   double stretch_time = 0, shear_time = 0, bend_time = 0;  // s, viscosity over stiffness
+  // The share of the curvature of the mesh, as the cloth starts, with which it rests: 0 is flat, 1 the mesh.
+  double rest_angle = 0;
 };
 
 struct Fabric {

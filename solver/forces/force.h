@@ -30,6 +30,9 @@ struct StepStart {
   double t, h;    // s
   const VecX& x;  // m, at t
   const VecX& v;  // m/s
+  // How long after t is best for what a force takes from x and v and keeps for the whole step [s]: the end of an
+  // implicit step, the middle of the others.
+  double ahead = 0;
 };
 
 class Force {
@@ -51,9 +54,13 @@ class Force {
   virtual void bind(const BlockLayout& layout) = 0;
 
   // All functions below are pure functions of x and v, given the stencils of the step.
-  virtual double energy(const VecX& x) const = 0;                                       // J
-  virtual double dissipation(const VecX& /*x*/, const VecX& /*v*/) const { return 0; }  // v . D v / 2 [W]
-  virtual void add_force(const VecX& x, const VecX& v, VecX& f) const = 0;              // f += force [N]
+  virtual double energy(const VecX& x) const = 0;  // J
+  // A convex function of v, whose slope is the force that depends on v: -dP/dv [W]. Where that force is linear it
+  // is v . D v / 2.
+  virtual double dissipation(const VecX& /*x*/, const VecX& /*v*/) const { return 0; }
+  // The power that what is outside of the system gives by this force, such as the wind; never negative [W].
+  virtual double given_power(const VecX& /*x*/, const VecX& /*v*/) const { return 0; }
+  virtual void add_force(const VecX& x, const VecX& v, VecX& f) const = 0;  // f += force [N]
   // Adds this force to the two sides of an implicit step, linearised at (x, v):
   //   A += c D + c^2 K,  b += c (f - K y).        solver/integrators/bdf.h explains c [s] and y [m].
   virtual void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,

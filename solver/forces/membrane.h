@@ -23,6 +23,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/forces/rest_corners.h"
 #include "solver/forces/stencil_force.h"
 
 namespace drape {
@@ -31,10 +32,7 @@ struct Membrane {
   static constexpr const char* name = "membrane";
   static constexpr int particles = 3;
 
-  struct Rest {
-    Eigen::Matrix<double, 3, 2> weights;  // f_u and f_v are the sums of weight times corner [1/m]
-    double area;                          // m^2
-  };
+  using Rest = RestSlopes;  // f_u and f_v are the sums of weight times corner
   struct Common {
     double warp, weft, cross;         // Y_u, Y_v and nu sqrt(Y_u Y_v) [N/m]
     double uu, uv, vv;                // C [N/m]
@@ -61,35 +59,32 @@ struct Membrane {
             s * all.vv + r * taut.vv};
   }
 
-  static double energy(const Common& c, const Rest& r, const Points<3>& X) {
-    const Eigen::Matrix<double, 3, 2> f = X * r.weights;
+  static const Eigen::Matrix<double, 3, 2>& slope_weights(const Rest& r) { return r.weights; }
+
+  static double energy(const Common& c, const Rest& r, const Slopes& f) {
     const double e_u = f.col(0).norm() - 1, e_v = f.col(1).norm() - 1, gamma = f.col(0).dot(f.col(1));
     const Response stretch = stress(c, e_u, e_v);  // homogeneous of degree 1 in the strains
     return 0.5 * r.area * (stretch.u * e_u + stretch.v * e_v + c.shear * gamma * gamma);
   }
 
-  static Points<3> gradient(const Common& c, const Rest& r, const Points<3>& X) {
-    const Eigen::Matrix<double, 3, 2> f = X * r.weights;
+  static Slopes gradient(const Common& c, const Rest& r, const Slopes& f) {
     const double l_u = f.col(0).norm(), l_v = f.col(1).norm();
     const double tau = c.shear * f.col(0).dot(f.col(1));
     const Response stretch = stress(c, l_u - 1, l_v - 1);
-    Eigen::Matrix<double, 3, 2> pull;
-    pull.col(0) = per_length(stretch.u, l_u) * f.col(0) + tau * f.col(1);
-    pull.col(1) = per_length(stretch.v, l_v) * f.col(1) + tau * f.col(0);
-    return r.area * pull * r.weights.transpose();
+    Slopes pull;
+    pull.col(0) = r.area * (per_length(stretch.u, l_u) * f.col(0) + tau * f.col(1));
+    pull.col(1) = r.area * (per_length(stretch.v, l_v) * f.col(1) + tau * f.col(0));
+    return pull;
   }
 
-  static Blocks<3> hessian(const Common& c, const Rest& r, const Points<3>& X, Stiffness stiffness) {
-    const Eigen::Matrix<double, 3, 2> f = X * r.weights;
+  static SlopeBlocks hessian(const Common& c, const Rest& r, const Slopes& f, Stiffness stiffness) {
     const double l_u = f.col(0).norm(), l_v = f.col(1).norm();
+    const Vec3 n_u = direction(f.col(0), l_u), n_v = direction(f.col(1), l_v);
     const double tau = c.shear * f.col(0).dot(f.col(1));
-    const Response stretch = stress(c, l_u - 1, l_v - 1);
-    Common whole = c;
-    if (stiffness == Stiffness::majorant) whole.compression = 1;
-    Second h = material(whole, f, l_u, l_v, 1, 1);
-    const double a = per_length(stretch.u, l_u), b = per_length(stretch.v, l_v);
-    const Vec3 n_u = l_u > 0 ? Vec3(f.col(0) / l_u) : Vec3::Zero(),
-               n_v = l_v > 0 ? Vec3(f.col(1) / l_v) : Vec3::Zero();
+    const Response now = stress(c, l_u - 1, l_v - 1);
+    const Response k = stiffness == Stiffness::majorant ? whole(c) : now;
+    SlopeBlocks h = material(k, c.shear, f, n_u, n_v);
+    const double a = per_length(now.u, l_u), b = per_length(now.v, l_v);
     Vec3 normal = f.col(0).cross(f.col(1));
     if (!normal.isZero(0))
       normal.normalize();
@@ -97,57 +92,51 @@ struct Membrane {
       normal = n_u.unitOrthogonal();  // collapsed onto a line
     else if (l_v > 0)
       normal = n_v.unitOrthogonal();
-    const Mat3 across = normal * normal.transpose();
     // ((a, tau), (tau, b)) without its negative part: its eigenvalues are middle +- radius.
-    const double middle = 0.5 * (a + b), radius = std::hypot(0.5 * (a - b), tau);
+    const double middle = 0.5 * (a + b), radius = std::sqrt(0.25 * (a - b) * (a - b) + tau * tau);
     const double high = std::max(middle + radius, 0.0), low = std::max(middle - radius, 0.0);
     const double mean = 0.5 * (high + low), half = radius > 0 ? 0.5 * (high - low) / radius : 0;
-    const Mat3 in_plane = Mat3::Identity() - across;
+    const double off = 0.5 * half * (a - b), loose = 0.5 * std::abs(tau);
     const Vec3 t_u = normal.cross(n_u), t_v = normal.cross(n_v);
-    h.uu += (mean + half * 0.5 * (a - b)) * across + 0.5 * std::abs(tau) * in_plane +
-            std::max(a, 0.0) * t_u * t_u.transpose();
-    h.vv += (mean - half * 0.5 * (a - b)) * across + 0.5 * std::abs(tau) * in_plane +
-            std::max(b, 0.0) * t_v * t_v.transpose();
-    h.uv += half * tau * across + 0.5 * tau * in_plane;
-    return of_corners(h, r);
+    // In the plane: loose (I - n n^T), which makes room for tau of either sign.
+    h.uu += outer(mean + off - loose, normal, normal, loose) + outer(std::max(a, 0.0), t_u, t_u);
+    h.vv += outer(mean - off - loose, normal, normal, loose) + outer(std::max(b, 0.0), t_v, t_v);
+    h.uv += outer((half - 0.5) * tau, normal, normal, 0.5 * tau);
+    return {r.area * h.uu, r.area * h.uv, r.area * h.vv};
   }
 
   static bool damped(const Common& c) { return c.stretch_time > 0 || c.shear_time > 0; }
-  static Blocks<3> damping(const Common& c, const Rest& r, const Points<3>& X) {
-    const Eigen::Matrix<double, 3, 2> f = X * r.weights;
-    return of_corners(material(c, f, f.col(0).norm(), f.col(1).norm(), c.stretch_time, c.shear_time), r);
+  static SlopeBlocks damping(const Common& c, const Rest& r, const Slopes& f) {
+    const double l_u = f.col(0).norm(), l_v = f.col(1).norm(), t = c.stretch_time;
+    const Response k = stress(c, l_u - 1, l_v - 1);
+    const SlopeBlocks d = material({0, 0, t * k.uu, t * k.uv, t * k.vv}, c.shear_time * c.shear, f,
+                                   direction(f.col(0), l_u), direction(f.col(1), l_v));
+    return {r.area * d.uu, r.area * d.uv, r.area * d.vv};
   }
 
  private:
-  struct Second {
-    Mat3 uu, uv, vv;  // the second derivatives over f_u and f_v
-  };
-
   static double per_length(double stress, double length) { return length > 0 ? stress / length : 0; }
+  static Vec3 direction(const Vec3& f, double length) {
+    return length > 0 ? Vec3(f / length) : Vec3(Vec3::Zero());
+  }
+  // The tangent of the full law, whatever is wrinkled.
+  static Response whole(const Common& c) { return {0, 0, c.uu, c.uv, c.vv}; }
 
-  // times_k k_ab n_a n_b^T + times_g G (f_v, f_u)(f_v, f_u)^T
-  static Second material(const Common& c, const Eigen::Matrix<double, 3, 2>& f, double l_u, double l_v,
-                         double times_k, double times_g) {
-    const Response k = stress(c, l_u - 1, l_v - 1);
-    const Vec3 n_u = l_u > 0 ? Vec3(f.col(0) / l_u) : Vec3::Zero(),
-               n_v = l_v > 0 ? Vec3(f.col(1) / l_v) : Vec3::Zero();
-    const double g = times_g * c.shear;
-    return {times_k * k.uu * n_u * n_u.transpose() + g * f.col(1) * f.col(1).transpose(),
-            times_k * k.uv * n_u * n_v.transpose() + g * f.col(1) * f.col(0).transpose(),
-            times_k * k.vv * n_v * n_v.transpose() + g * f.col(0) * f.col(0).transpose()};
+  // factor p q^T + diagonal I
+  static Mat3 outer(double factor, const Vec3& p, const Vec3& q, double diagonal = 0) {
+    const double x = factor * q[0], y = factor * q[1], z = factor * q[2];
+    Mat3 block;
+    block << p[0] * x + diagonal, p[0] * y, p[0] * z, p[1] * x, p[1] * y + diagonal, p[1] * z, p[2] * x,
+        p[2] * y, p[2] * z + diagonal;
+    return block;
   }
 
-  static Blocks<3> of_corners(const Second& h, const Rest& r) {
-    Blocks<3> blocks;
-    for (int k = 0; k < 3; ++k)
-      for (int l = k; l < 3; ++l) {
-        const double ku = r.weights(k, 0), kv = r.weights(k, 1), lu = r.weights(l, 0), lv = r.weights(l, 1);
-        const Mat3 block =
-            r.area * (ku * lu * h.uu + kv * lv * h.vv + ku * lv * h.uv + kv * lu * h.uv.transpose());
-        blocks.block<3, 3>(3 * k, 3 * l) = block;
-        if (l > k) blocks.block<3, 3>(3 * l, 3 * k) = block.transpose();
-      }
-    return blocks;
+  // k_ab n_a n_b^T + G (f_v, f_u)(f_v, f_u)^T
+  static SlopeBlocks material(const Response& k, double G, const Slopes& f, const Vec3& n_u,
+                              const Vec3& n_v) {
+    return {outer(k.uu, n_u, n_u) + outer(G, f.col(1), f.col(1)),
+            outer(k.uv, n_u, n_v) + outer(G, f.col(1), f.col(0)),
+            outer(k.vv, n_v, n_v) + outer(G, f.col(0), f.col(0))};
   }
 };
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mesh/triangles/topology.h"
+#include "solver/forces/triangle_frame.h"
 
 namespace drape {
 namespace {
@@ -39,13 +40,17 @@ struct Apex {
 class MorleyPlate {
  public:
   MorleyPlate(const TriangleMesh& mesh, const std::vector<RestCorners>& corners,
-              const PlateStiffness& stiffness)
-      : mesh_(mesh), corners_(corners), hinges_(hinges(mesh)), around_(mesh.triangles.size()) {
+              const PlateStiffness& stiffness, double rest_angle)
+      : mesh_(mesh),
+        corners_(corners),
+        rest_angle_(rest_angle),
+        hinges_(hinges(mesh)),
+        around_(mesh.triangles.size()) {
     D_ << stiffness.warp, stiffness.cross, 0, stiffness.cross, stiffness.weft, 0, 0, 0, stiffness.twist;
     find_neighbours();
   }
 
-  std::vector<PlatePair> pairs() {
+  PlateEnergy make() {
     slopes_.reserve(hinges_.size());
     for (const Hinge& hinge : hinges_) slopes_.push_back(slope(hinge));
     for (int t : counted_triangles(mesh_))
@@ -61,7 +66,7 @@ class MorleyPlate {
         pairs_[kept++] = p;
     }
     pairs_.resize(kept);
-    return std::move(pairs_);
+    return {std::move(pairs_), std::move(bent_)};
   }
 
  private:
@@ -287,22 +292,48 @@ class MorleyPlate {
         if (K(i, j) != 0)
           pairs_.push_back({vertices.vertices[static_cast<std::size_t>(i)],
                             vertices.vertices[static_cast<std::size_t>(j)], -K(i, j)});
+    if (rest_angle_ > 0) add_bent(t, vertices.vertices, rows, stiffness);
+  }
+
+  // The rest slopes are those of the mesh, rows X; a triangle among others in its plane has none.
+  void add_bent(int t, const std::vector<int>& vertices, const Eigen::MatrixXd& rows,
+                const Eigen::MatrixXd& stiffness) {
+    const auto at = [&](int v) { return mesh_.positions[static_cast<std::size_t>(v)]; };
+    BentTriangle bent{.corners = triangle(t),
+                      .weights = slopes_of(corners_[static_cast<std::size_t>(t)]).weights,
+                      .pulls = {},
+                      .energy = 0};
+    Slopes f = Slopes::Zero();
+    for (int k = 0; k < 3; ++k) f += at(bent.corners[static_cast<std::size_t>(k)]) * bent.weights.row(k);
+    const internal::TriangleFrame frame(f);
+    Eigen::MatrixX3d from_corner(rows.cols(), 3);
+    for (Eigen::Index v = 0; v < rows.cols(); ++v)
+      from_corner.row(v) = (at(vertices[static_cast<std::size_t>(v)]) - at(bent.corners[0])).transpose();
+    const Eigen::MatrixX3d slopes = rest_angle_ * rows * from_corner;
+    if (!frame.stands || !(slopes.norm() > 1e-12)) return;
+    bent.energy = 0.5 * (slopes.transpose() * stiffness * slopes).trace();
+    const Eigen::MatrixX3d pulls = rows.transpose() * stiffness * slopes * frame.axes;
+    for (Eigen::Index v = 0; v < rows.cols(); ++v)
+      bent.pulls.push_back({vertices[static_cast<std::size_t>(v)], pulls.row(v).transpose()});
+    bent_.push_back(std::move(bent));
   }
 
   const TriangleMesh& mesh_;
   const std::vector<RestCorners>& corners_;
+  double rest_angle_;
   std::vector<Hinge> hinges_;
   std::vector<std::vector<int>> around_;  // triangle -> its hinges
   std::vector<Functional> slopes_;        // of the hinges
   std::vector<PlatePair> pairs_;
+  std::vector<BentTriangle> bent_;
   Eigen::Matrix3d D_;
 };
 
 }  // namespace
 
-std::vector<PlatePair> plate_pairs(const TriangleMesh& mesh, const std::vector<RestCorners>& corners,
-                                   const PlateStiffness& stiffness) {
-  return MorleyPlate(mesh, corners, stiffness).pairs();
+PlateEnergy plate_energy(const TriangleMesh& mesh, const std::vector<RestCorners>& corners,
+                         const PlateStiffness& stiffness, double rest_angle) {
+  return MorleyPlate(mesh, corners, stiffness, rest_angle).make();
 }
 
 }  // namespace drape

@@ -13,14 +13,17 @@
 // and no bending is free. (Where three rings of triangles have too few vertices for a quadratic function, as in a
 // strip of one row, the slope is that between the two triangles.) At a border no moment is transmitted: the slope there is the one of least energy.
 // D [N m], k [N/m].
+//
+// A plate may rest bent. In a triangle, E is 1/2 d . Z d, where the vectors d are how far the slopes of the edges are
+// from its own (plate.cpp). Where it rests with slopes d_0 that is 1/2 (d - R d_0) . Z (d - R d_0): R turns with the
+// triangle (solver/forces/plate_force.h). Against the energy above this adds a linear function of the positions in
+// the triangle's own axes.
 #pragma once
 
-#include <array>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "mesh/triangles/triangle_mesh.h"
+#include "solver/forces/rest_corners.h"
 
 namespace drape {
 
@@ -33,12 +36,27 @@ struct PlatePair {
   double k;  // N/m; also negative
 };
 
-using RestCorners = std::array<Eigen::Vector2d, 3>;  // of a triangle at rest, (u, v) [m]
+// A triangle that rests bent: its energy is that of the pairs + energy - sum_v x_v . R force_v.
+struct BentTriangle {
+  struct Pull {
+    int vertex;
+    Vec3 force;  // N, in the triangle's axes; their sum is zero
+  };
+  std::array<int, 3> corners;
+  Eigen::Matrix<double, 3, 2> weights;  // of the slopes (solver/forces/rest_corners.h)
+  std::vector<Pull> pulls;
+  double energy;  // J
+};
+
+struct PlateEnergy {
+  std::vector<PlatePair> pairs;    // sorted by (i, j)
+  std::vector<BentTriangle> bent;  // empty where the plate rests flat
+};
 
 // corners[t] are those of triangle t of the mesh, vertex by vertex; each triangle may have an origin of its
-// own. Sorted by (i, j). Edges of more than two triangles and of slivers (height below 1e-4 of the longest edge)
-// bend freely.
-std::vector<PlatePair> plate_pairs(const TriangleMesh& mesh, const std::vector<RestCorners>& corners,
-                                   const PlateStiffness& stiffness);
+// own. rest_angle: the share of the mesh's own curvature with which the plate rests; 0 is flat, 1 the mesh as it is.
+// Edges of more than two triangles and of slivers (height below 1e-4 of the longest edge) bend freely.
+PlateEnergy plate_energy(const TriangleMesh& mesh, const std::vector<RestCorners>& corners,
+                         const PlateStiffness& stiffness, double rest_angle = 0);
 
 }  // namespace drape

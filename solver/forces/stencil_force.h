@@ -20,6 +20,10 @@
 //   static Vec3 pull(const Common&, const Rest&, const Vec3& p, const auto& velocity);
 //   static VectorResponse linearised(const Common&, const Rest&, const Vec3& p, const auto& velocity,
 //                                    const auto& shift, double c, Stiffness);
+// Or it depends on two vectors, the slopes f_u = sum w_ku x_k and f_v = sum w_kv x_k (a SlopeLaw), and gives
+//   static const Eigen::Matrix<double, n, 2>& slope_weights(const Rest&);                          // w_ku, w_kv
+// and energy, gradient, hessian, damping and damped as above, over f = (f_u, f_v) in place of X: the gradient as
+// Slopes and the second derivatives as SlopeBlocks.
 // velocity() is sum w_k v_k and shift() is sum w_k y_k; they are functions because they are computed only
 // when asked for. The pull is dE/dp + D v, and f_k = -w_k pull. The response is that of an implicit step (see
 // Force::add_linearised).
@@ -51,9 +55,18 @@ struct VectorResponse {
   bool acts = false;  // false: both are zero
 };
 
+using Slopes = Eigen::Matrix<double, 3, 2>;
+struct SlopeBlocks {
+  Mat3 uu, uv, vv;  // uu and vv are symmetric
+};
+
 template <class Law>
 concept VectorLaw = requires(const typename Law::Rest& rest) {
   Law::weights(rest);
+};
+template <class Law>
+concept SlopeLaw = requires(const typename Law::Rest& rest) {
+  Law::slope_weights(rest);
 };
 
 template <class Law>
@@ -122,6 +135,8 @@ class StencilForce : public Force {
     return sum([&](const Element& e) {
       if constexpr (VectorLaw<Law>)
         return Law::energy(common_, e.rest, at(e, x));
+      else if constexpr (SlopeLaw<Law>)
+        return Law::energy(common_, e.rest, slopes(e, x));
       else
         return Law::energy(common_, e.rest, points(e, x));
     });
@@ -131,6 +146,11 @@ class StencilForce : public Force {
     if constexpr (VectorLaw<Law>)
       return sum([&](const Element& e) {
         return Law::dissipation(common_, e.rest, at(e, x), [&] { return at(e, v); });
+      });
+    else if constexpr (SlopeLaw<Law>)
+      return !Law::damped(common_) ? 0 : sum([&](const Element& e) {
+        const Slopes g = slopes(e, v);
+        return 0.5 * g.cwiseProduct(times(Law::damping(common_, e.rest, slopes(e, x)), g)).sum();
       });
     else if constexpr (damps)
       return !Law::damped(common_) ? 0 : sum([&](const Element& e) {
@@ -146,6 +166,11 @@ class StencilForce : public Force {
       if constexpr (VectorLaw<Law>) {
         const Vec3 pull = Law::pull(common_, e.rest, at(e, x), [&] { return at(e, v); });
         if (!pull.isZero(0)) subtract(e, pull, f);
+      } else if constexpr (SlopeLaw<Law>) {
+        const Slopes at_x = slopes(e, x);
+        Slopes pull = Law::gradient(common_, e.rest, at_x);
+        if (Law::damped(common_)) pull += times(Law::damping(common_, e.rest, at_x), slopes(e, v));
+        subtract(e, pull, f);
       } else {
         const Points<n> X = points(e, x);
         Points<n> pull = Law::gradient(common_, e.rest, X);
@@ -165,6 +190,18 @@ class StencilForce : public Force {
         if (!response.acts) return;
         subtract(e, response.impulse, b);
         add_blocks(e, response.block, A);
+      } else if constexpr (SlopeLaw<Law>) {
+        const Slopes at_x = slopes(e, x);
+        SlopeBlocks K = Law::hessian(common_, e.rest, at_x, stiffness);
+        Slopes impulse = c * (Law::gradient(common_, e.rest, at_x) + times(K, slopes(e, y)));
+        for (Mat3* block : {&K.uu, &K.uv, &K.vv}) *block *= c * c;
+        if (Law::damped(common_)) {
+          const SlopeBlocks D = Law::damping(common_, e.rest, at_x);
+          impulse += c * times(D, slopes(e, v));
+          K = {K.uu + c * D.uu, K.uv + c * D.uv, K.vv + c * D.vv};
+        }
+        subtract(e, impulse, b);
+        add_blocks(e, K, A);
       } else {
         const Points<n> X = points(e, x);
         const Blocks<n> K = Law::hessian(common_, e.rest, X, stiffness);
@@ -184,6 +221,29 @@ class StencilForce : public Force {
     });
   }
 
+ protected:
+  template <class F>
+  double sum(const F& f) const {
+    return sum_chunks(static_cast<int>(elements_.size()), [&](int begin, int end) {
+      double total = 0;
+      for (int e = begin; e < end; ++e) total += f(elements_[e]);
+      return total;
+    });
+  }
+  // Calls change(element) for every element; its particles must stay.
+  template <class F>
+  void change_elements(const F& change) {
+    for (Element& e : elements_) change(e);
+  }
+  // The vector sum w_k x_k of an element.
+  static Vec3 at(const Element& e, const VecX& all) {
+    const auto w = Law::weights(e.rest);
+    Vec3 p = w[0] * all.segment<3>(3 * e.particles[0]);
+    for (std::size_t k = 1; k < e.particles.size(); ++k) p += w[k] * all.segment<3>(3 * e.particles[k]);
+    return p;
+  }
+  const Common& common() const { return common_; }
+
  private:
   static constexpr bool damps =
       requires(const Common& common, const typename Law::Rest& rest, const Points<n>& X) {
@@ -201,14 +261,6 @@ class StencilForce : public Force {
   void run(const F& f) const {
     schedule_.run(static_cast<int>(elements_.size()), [&](int e) { f(elements_[e]); });
   }
-  template <class F>
-  double sum(const F& f) const {
-    return sum_chunks(static_cast<int>(elements_.size()), [&](int begin, int end) {
-      double total = 0;
-      for (int e = begin; e < end; ++e) total += f(elements_[e]);
-      return total;
-    });
-  }
 
   static Points<n> points(const Element& e, const VecX& all) {
     Points<n> X;
@@ -221,17 +273,34 @@ class StencilForce : public Force {
   static Eigen::Map<const Eigen::Matrix<double, 3 * n, 1>> flat(const Points<n>& X) {
     return Eigen::Map<const Eigen::Matrix<double, 3 * n, 1>>(X.data());
   }
-  // The vector sum w_k x_k of an element.
-  static Vec3 at(const Element& e, const VecX& all) {
-    const auto w = Law::weights(e.rest);
-    Vec3 p = w[0] * all.segment<3>(3 * e.particles[0]);
-    for (std::size_t k = 1; k < e.particles.size(); ++k) p += w[k] * all.segment<3>(3 * e.particles[k]);
-    return p;
+  static Slopes slopes(const Element& e, const VecX& all) {
+    const auto& w = Law::slope_weights(e.rest);
+    Slopes f = Slopes::Zero();
+    for (int k = 0; k < n; ++k) {
+      const double* const p = all.data() + 3 * e.particles[static_cast<std::size_t>(k)];
+      for (int i = 0; i < 3; ++i) {
+        f(i, 0) += w(k, 0) * p[i];
+        f(i, 1) += w(k, 1) * p[i];
+      }
+    }
+    return f;
+  }
+  static Slopes times(const SlopeBlocks& K, const Slopes& g) {
+    Slopes product;
+    product.col(0) = K.uu * g.col(0) + K.uv * g.col(1);
+    product.col(1) = K.uv.transpose() * g.col(0) + K.vv * g.col(1);
+    return product;
   }
 
   static void subtract(const Element& e, const Vec3& pull, VecX& f) {
     const auto w = Law::weights(e.rest);
     for (std::size_t k = 0; k < e.particles.size(); ++k) f.segment<3>(3 * e.particles[k]) -= w[k] * pull;
+  }
+  static void subtract(const Element& e, const Slopes& pull, VecX& f) requires SlopeLaw<Law> {
+    const auto& w = Law::slope_weights(e.rest);
+    for (int k = 0; k < n; ++k)
+      f.segment<3>(3 * e.particles[static_cast<std::size_t>(k)]) -=
+          w(k, 0) * pull.col(0) + w(k, 1) * pull.col(1);
   }
   static void subtract(const Element& e, const Points<n>& pull, VecX& f) {
     for (int k = 0; k < n; ++k) f.segment<3>(3 * e.particles[k]) -= pull.col(k);
@@ -245,6 +314,20 @@ class StencilForce : public Force {
         double* a = A.block(*slot < 0 ? ~*slot : *slot);  // the block is symmetric
         const double weight = w[k] * w[l];
         for (int i = 0; i < 9; ++i) a[i] += weight * block.data()[i];
+      }
+  }
+  static void add_blocks(const Element& e, const SlopeBlocks& K, BlockMatrix& A) {
+    const auto& w = Law::slope_weights(e.rest);
+    const Mat3 K_vu = K.uv.transpose();
+    auto slot = e.slots.begin();
+    for (int k = 0; k < n; ++k)
+      for (int l = k; l < n; ++l, ++slot) {
+        const bool stands = *slot >= 0;  // or it stands transposed
+        double* const a = A.block(stands ? *slot : ~*slot);
+        const double uu = w(k, 0) * w(l, 0), vv = w(k, 1) * w(l, 1), kl = w(k, 0) * w(l, 1),
+                     lk = w(k, 1) * w(l, 0), uv = stands ? kl : lk, vu = stands ? lk : kl;
+        for (int i = 0; i < 9; ++i)
+          a[i] += uu * K.uu.data()[i] + vv * K.vv.data()[i] + uv * K.uv.data()[i] + vu * K_vu.data()[i];
       }
   }
   static void add_blocks(const Element& e, const Blocks<n>& block, BlockMatrix& A) {

@@ -1,6 +1,5 @@
 #include "solver/forces/woven.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -8,26 +7,9 @@
 
 #include "mesh/base/errors.h"
 #include "mesh/triangles/topology.h"
-#include "solver/forces/plate_pair.h"
+#include "solver/forces/plate_force.h"
 
 namespace drape {
-namespace {
-
-// The rest data of triangle t; its area is 0 where the corners are on one line.
-Membrane::Rest rest_of(const RestCorners& corners) {
-  Eigen::Matrix2d edges;  // from corner 0 to 1 and to 2, in (u, v)
-  edges << corners[1] - corners[0], corners[2] - corners[0];
-  const double twice = edges.determinant();
-  const double longest = std::max(edges.colwise().norm().maxCoeff(), (corners[2] - corners[1]).norm());
-  if (std::abs(twice) <= 1e-9 * longest * longest) return {Eigen::Matrix<double, 3, 2>::Zero(), 0};
-  Membrane::Rest rest;
-  rest.weights.bottomRows<2>() = edges.inverse();
-  rest.weights.row(0) = -rest.weights.bottomRows<2>().colwise().sum();
-  rest.area = 0.5 * std::abs(twice);
-  return rest;
-}
-
-}  // namespace
 
 Membrane::Common membrane_of(const Fabric& fabric) {
   const Weave& weave = fabric.weave;
@@ -116,7 +98,7 @@ std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const Triang
     std::vector<StencilForce<Membrane>::Element> triangles;
     for (int t : counted_triangles(mesh)) {
       const auto k = static_cast<std::size_t>(t);
-      const Membrane::Rest at_rest = rest_of(corners[k]);
+      const Membrane::Rest at_rest = slopes_of(corners[k]);
       const Triangle& v = mesh.triangles[k];
       if (at_rest.area > 0)
         triangles.push_back({.particles = {first + v[0], first + v[1], first + v[2]}, .rest = at_rest});
@@ -124,10 +106,8 @@ std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const Triang
     forces.push_back(std::make_unique<StencilForce<Membrane>>(std::move(triangles), membrane_of(fabric)));
   }
   if (fabric.bend > 0) {
-    std::vector<StencilForce<PlateLaw>::Element> pairs;
-    for (const PlatePair& p : plate_pairs(mesh, corners, plate_of(fabric)))
-      pairs.push_back({.particles = {first + p.i, first + p.j}, .rest = {p.k}});
-    forces.push_back(std::make_unique<StencilForce<PlateLaw>>(std::move(pairs), fabric.weave.bend_time));
+    const PlateEnergy plate = plate_energy(mesh, corners, plate_of(fabric), fabric.weave.rest_angle);
+    forces.push_back(std::make_unique<PlateForce>(plate, fabric.weave.bend_time, first));
   }
   return forces;
 }

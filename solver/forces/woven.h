@@ -4,7 +4,8 @@
 //
 // The warp runs along a direction of the rest shape, laid into the plane of every triangle. Where the law is the
 // same in all directions, none has to be given. The rest shape may be cut where
-// the cloth is sewn, as in solver/forces/noh_jung.h. It is flat: a fold of a rest shape in space is bent cloth.
+// the cloth is sewn, as in solver/forces/noh_jung.h. The plate rests flat, whatever folds the rest shape has in space, or
+// with a share of the angles that the mesh itself has (Weave::rest_angle).
 #pragma once
 
 #include <memory>

@@ -116,7 +116,7 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
     if (!p_.x.allFinite()) return fail(report, "the new positions are not finite numbers");
     newton.took(full, falls_back() && merit_.makes_energy(state, p_, contacts.work()), report);
   }
-  if (k().order_2() && merit_.makes_energy(state, p_, contacts.work())) {
+  if (k().order_2() && merit_.makes_energy(state, p_, contacts.work() + given(state, piece.h))) {
     ++report.rescues;
     return attempt(state, {piece.h, false, piece.shortest}, report);  // taken again by order 1
   }
@@ -140,7 +140,7 @@ ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& repor
   merit_.begin(piece.h);
   const Stopwatch watch(report.collide_ms);
   ContactStep contacts = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, piece.h);
-  system_.begin_step({state.time, piece.h, state.x, state.v});
+  system_.begin_step({state.time, piece.h, state.x, state.v, piece.h});
   history_.begin(state, piece, contacts);
   history_.first_point(state, p_);
   // The first dv is free fall. So rigid motion is right from the first iterate, and a solve that is cut short
@@ -174,6 +174,11 @@ double Bdf::residual(ContactStep& contacts) {
   contacts.filter(p_.v, filter_);
   filter_.apply(b_rubbed_);
   return std::sqrt(dot(b_rubbed_, b_rubbed_));
+}
+
+// At least what the wind gives in the step [J], which is not steady.
+double Bdf::given(const State& start, double h) const {
+  return 2 * h * std::max(system_.given_power(start.x, start.v), system_.given_power(p_.x, p_.v));
 }
 
 double Bdf::residual_wanted() const {

@@ -69,6 +69,7 @@ void Explicit::take(State& state, double h, StepReport& report) {
   }
   if (tableau_.positions_last) x_ += h * v_;
   given_ += std::max(0.0, work) + std::max(0.0, system_.gravity_energy(state.x) - system_.gravity_energy(x_));
+  given_ += h * std::max(system_.given_power(state.x, start), system_.given_power(x_, v_));
   if (explodes(h)) {
     report.done = false;
     report.failure = explosion();

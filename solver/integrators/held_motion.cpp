@@ -16,7 +16,7 @@ void HeldMotion::begin(const State& state, double h, StepReport& report) {
   contacts_ =
       constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h,
                               contact_ == ContactMode::constraint ? Foresight::here : Foresight::none);
-  system_.begin_step({state.time, h, state.x, state.v});
+  system_.begin_step({state.time, h, state.x, state.v, 0.5 * h});
   contacts_->filter(state.v, held_);
   pull_.setZero(state.x.size());
   pulled_.setZero(state.x.size());

@@ -157,7 +157,7 @@ bool NewtonKinsol::attempt(State& state, const Piece& piece) {
   {
     const Stopwatch watch(report_.collide_ms);
     contacts_ = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h);
-    system_.begin_step({state.time, h, state.x, state.v});
+    system_.begin_step({state.time, h, state.x, state.v, h});
   }
   v_ = state.v;
   for (int i = 0; i < system_.particles(); ++i) v_.segment<3>(3 * i) += h * system_.gravity_acceleration();

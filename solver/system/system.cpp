@@ -118,6 +118,12 @@ VecX System::force(const VecX& x, const VecX& v) const {
   return f;
 }
 
+double System::given_power(const VecX& x, const VecX& v) const {
+  double sum = 0;
+  for (const auto& force : forces_) sum += force->given_power(x, v);
+  return sum;
+}
+
 std::string_view System::not_finite_force(const VecX& x, const VecX& v) const {
   if (!gravity_.allFinite()) return "gravity";
   for (const auto& force : forces_) {

@@ -43,6 +43,8 @@ class System {
   double gravity_energy(const VecX& x) const;      // zero at the origin [J]
   double total_energy(const State& state) const;   // kinetic and stored energy and that of gravity [J]
   VecX force(const VecX& x, const VecX& v) const;  // gravity included [N]
+  double given_power(const VecX& x,
+                     const VecX& v) const;  // by what is outside of the system, such as wind [W]
 
   // The name of the first force, or "gravity", that is not finite at (x, v); empty when all are finite.
   std::string_view not_finite_force(const VecX& x, const VecX& v) const;

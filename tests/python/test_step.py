@@ -52,6 +52,39 @@ class Step(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "poisson = 2"):
             drape.Fabric(poisson=2)
 
+    def test_a_woven_fold_rests_as_its_mesh_or_flat(self):
+        fold = drape.parse_obj("v 0 0 0\nv 0 0 1\nv 1 0.5 0\nv -1 0.5 1\nf 1 2 3\nf 2 1 4\n")
+        state = drape.at_rest(fold)
+        for rest_angle in (0, 0.5, 1):
+            fabric = drape.Fabric(bend=1, rest_angle=rest_angle)
+            self.assertEqual(fabric.rest_angle, rest_angle)
+            system = drape.System(drape.masses(fold, fabric))
+            system.add(drape.woven(fold, fabric))
+            system.add(drape.gravity([0, 0, 0]))
+            energy = system.elastic_energy(state)
+            if rest_angle == 0:
+                flat = energy
+                self.assertGreater(flat, 0.1)
+            self.assertAlmostEqual(energy / flat, (1 - rest_angle) ** 2, delta=1e-12)
+        with self.assertRaisesRegex(ValueError, "rest_angle = 2"):
+            drape.Fabric(rest_angle=2)
+
+    def test_a_sheet_in_the_air_comes_to_its_terminal_velocity(self):
+        sheet, fabric = drape.grid(4, 4, 0.1, 0.1), drape.Fabric(area_density=0.2)
+        system = drape.System(drape.masses(sheet, fabric))
+        system.add(drape.woven(sheet, fabric))
+        system.add(drape.gravity([0, -9.81, 0]))
+        system.add(drape.air_drag(sheet, wind=[0, 1, 0], density=1.2, drag=1.2))
+        self.assertIn("air", system.forces)
+        state = drape.at_rest(sheet)
+        stepper = drape.ImplicitEuler(system, drape.Constraints())
+        for _ in range(60):
+            stepper.advance(state, 0.02)
+        terminal = np.sqrt(2 * 0.2 * 9.81 / (1.2 * 1.2)) - 1
+        self.assertAlmostEqual(-state.v[:, 1].mean() / terminal, 1, delta=1e-2)
+        with self.assertRaisesRegex(ValueError, "drag = -1"):
+            drape.air_drag(sheet, drag=-1)
+
     def test_free_fall(self):
         sheet = drape.grid(5, 5, 1, 1)
         fabric = drape.Fabric()

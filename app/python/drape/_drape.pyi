@@ -79,6 +79,7 @@ class Fabric(metaclass=_Class):
     stretch_time: float
     shear_time: float
     bend_time: float
+    rest_angle: float
     def __init__(
         self,
         *,
@@ -101,6 +102,7 @@ class Fabric(metaclass=_Class):
         stretch_time: float = ...,
         shear_time: float = ...,
         bend_time: float = ...,
+        rest_angle: float = ...,
     ) -> None: ...
     def copy(self) -> Fabric: ...
     def __copy__(self) -> Fabric: ...
@@ -180,6 +182,15 @@ def noh_jung(mesh: TriangleMesh, fabric: Fabric, first_particle: int = ...) -> F
 def choi_ko(mesh: TriangleMesh, fabric: Fabric, first_particle: int = ...) -> Forces: ...
 def woven(
     mesh: TriangleMesh, fabric: Fabric, warp: Optional[ArrayLike] = ..., first_particle: int = ...
+) -> Forces: ...
+def air_drag(
+    mesh: TriangleMesh,
+    *,
+    wind: ArrayLike = ...,
+    density: float = ...,
+    drag: float = ...,
+    skin_friction: float = ...,
+    first_particle: int = ...,
 ) -> Forces: ...
 def soft_body(lattice: Lattice, material: SoftMaterial, first_particle: int = ...) -> Forces: ...
 
