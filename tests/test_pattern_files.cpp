@@ -1,8 +1,10 @@
 // Patterns as files: units and transforms of drawings, curved sides, and everything that is refused.
+#include <Eigen/LU>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "mesh/pattern/flat_pattern.h"
 #include "tests/folder.h"
 #include "tests/mistakes.h"
 #include "tests/obj.h"
@@ -107,6 +109,54 @@ TEST_CASE("sides, holes, lines and seams of a drawing", "[pattern]") {
   CHECK(curve(curves, "a.top").size() == group(m.mesh, "a.top").size());
 }
 
+TEST_CASE("the grain line of a drawing is the warp of its panel, and no line of the mesh", "[pattern]") {
+  const std::string square = "<path id=\"a\" d=\"M10 10 H90 V90 H10 Z\"/>\n";
+  for (const char* line :
+       {"<line id=\"grain\" x1=\"40\" y1=\"80\" x2=\"60\" y2=\"40\"/>",
+        "<path id=\"Grainline-3\" d=\"M40 80 L60 40\"/>", "<path class=\"thin GRAIN\" d=\"M40 80 L60 40\"/>",
+        "<path inkscape:label=\"grain\" d=\"M40 80 L60 40\"/>",
+        "<path id=\"grain\" d=\"M38 76 L40 80 L44 79 M40 80 L60 40 M59 45 L60 40 L56 42\"/>",
+        "<g transform=\"translate(40 80)\"><path id=\"grain\" d=\"M0 0 l 20 -40\"/></g>"}) {
+    INFO(line);
+    const Pattern p = drawn(svg(kPage, square + line));
+    REQUIRE(p.panels.size() == 1);
+    CHECK(p.panels[0].lines.empty());
+    REQUIRE(p.panels[0].grain);
+    CHECK((p.panels[0].grain->normalized() - Vec2(1, 2).normalized()).norm() < 1e-9);
+  }
+  CHECK_FALSE(drawn(svg(kPage, square)).panels[0].grain);
+  CHECK(drawn(svg(kPage, "<path id=\"grain-sack\" d=\"M10 10 H90 V90 H10 Z\"/>\n")).panels[0].name ==
+        "grain-sack");
+}
+
+TEST_CASE("texture coordinates are the panel, turned so that its grain runs along v", "[pattern]") {
+  const std::string square = "[[panel]]\nname = \"a\"\noutline = [[0, 0], [20, 0], [24, 15], [3, 20]]\n";
+  const TriangleMesh plain = triangulate(cm_pattern(square), {.edge = 0.03}).mesh;
+  for (const Vec2& grain : {Vec2(1, 2), Vec2(-3, 1), Vec2(1, 0), Vec2(0, -2), Vec2(-1, -1)}) {
+    INFO(grain.transpose());
+    const TriangleMesh mesh = triangulate(cm_pattern(square + "grain = [" + std::to_string(grain.x()) + ", " +
+                                                     std::to_string(grain.y()) + "]\n"),
+                                          {.edge = 0.03})
+                                  .mesh;
+    CHECK(mesh.positions == plain.positions);
+    CHECK(mesh.triangles == plain.triangles);
+    const TriangleMesh rest = flat_pattern(mesh, 1);
+    for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
+      const auto edges = [&](const TriangleMesh& of) {
+        const Triangle& t = of.triangles[k];
+        Eigen::Matrix2d all;
+        all << (of.positions[t[1]] - of.positions[t[0]]).head<2>(),
+            (of.positions[t[2]] - of.positions[t[0]]).head<2>();
+        return all;
+      };
+      const Eigen::Matrix2d turn = edges(rest) * edges(mesh).inverse();
+      CHECK((turn * turn.transpose() - Eigen::Matrix2d::Identity()).norm() < 1e-9);
+      CHECK(turn.determinant() > 0);
+      CHECK(std::abs((turn * grain.normalized()).x()) < 1e-9);
+    }
+  }
+}
+
 TEST_CASE("what a drawing does not show is no part of the pattern", "[pattern]") {
   const auto panels = [](const std::string& attributes) {
     const std::string two = "<path id=\"a\" d=\"M10 10 h20 v20z\"/><g " + attributes +
@@ -158,6 +208,13 @@ TEST_CASE("drawings that are refused", "[pattern]") {
        "p.svg:2: path 'a': panel 'a' overlaps panel 'b'", ""},
       {svg(kPage, square + "<path id=\"l\" d=\"M95 5 L99 50\"/>"),
        "p.svg:3: path 'l': this path is open and in no panel", ""},
+      {svg(kPage, square + "<path id=\"Grain\" d=\"M95 5 L99 50\"/>"),
+       "p.svg:3: path 'Grain': this grain line is in no panel", ""},
+      {svg(kPage, square + "<path id=\"grain\" d=\"M20 50 H40 H20\"/>"),
+       "p.svg:3: path 'grain': a grain line goes from one end to another", ""},
+      {svg(kPage,
+           square + "<path id=\"grain\" d=\"M20 20 V80\"/>\n<path class=\"x grain\" d=\"M30 20 V80\"/>"),
+       "p.svg:4: path: panel 'a' has another grain line", ""},
       {svg(kPage, square + "<path id=\"l\" d=\"M20 20 L95 50\"/>"),
        "p.svg:2: path 'a': crosses or touches p.svg:3: path 'l'", ""},
       {svg(kPage, "<path id=\"a\" data-sides=\"x y\" d=\"M10 10 H90 V90 H10 Z\"/>"),
@@ -192,6 +249,12 @@ TEST_CASE("polygons that are refused", "[pattern]") {
           {panel + "outline = [[0, 0], [1, 0], [1, 1]]\n", "p.toml:3:", "without a unit"},
           {"unit = \"1 kg\"\n" + panel, "p.toml:1: unit", "expected a length"},
           {panel, "p.toml:1:", "'outline' is missing"},
+          {"unit = \"1 cm\"\n" + panel + "outline = [[0, 0], [5, 0], [5, 5]]\ngrain = [0, 0]\n",
+           "p.toml:5:", "a direction is not [0, 0]"},
+          {"unit = \"1 cm\"\n" + panel + "outline = [[0, 0], [5, 0], [5, 5]]\ngrain = 90\n",
+           "p.toml:5:", "expected a direction [x, y]"},
+          {"unit = \"1 cm\"\n" + panel + "outline = [[0, 0], [5, 0], [5, 5]]\ngrain = [1, \"2 cm\"]\n",
+           "p.toml:5:", "expected a number"},
           {"unit = \"1 cm\"\n" + panel + "outline = [[0, 0], [1, 0, 2], [1, 1]]\n",
            "p.toml:4:", "expected a point"},
           {"unit = \"1 cm\"\n" + panel + "outline = [[0, 0], [nan, 0], [1, 1]]\n", "p.toml:4:", "finite"},

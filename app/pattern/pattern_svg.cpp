@@ -3,6 +3,7 @@
 //   Up: y of the drawing points down, y of the pattern up; x and the sizes stay.
 #include <Eigen/LU>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <pugixml.hpp>
 #include <set>
@@ -60,6 +61,7 @@ class SvgReader {
     std::string name;
     Chain chain;
     bool closed = false;
+    bool grain = false;  // the line says where the warp runs, and is no line of the mesh
     double area = 0;
     std::vector<Vec2> corners;  // of the loop as a polygon, to see what is in what
   };
@@ -224,16 +226,22 @@ class SvgReader {
       throw InputError(at(node) + ": <" + kind + ">: " + error.what());
     }
     if (paths.empty()) throw InputError(at(node) + ": <" + kind + "> draws nothing");
+    const bool grain = is_grain(node) && std::none_of(paths.begin(), paths.end(),
+                                                      [](const SvgPath& path) { return path.closed; });
+    if (grain) keep_longest(paths);
     const Names sides = words(node.attribute("data-sides").value());
     std::size_t used = 0;
     for (std::size_t i = 0; i < paths.size(); ++i) {
       Shape shape;
-      shape.name = name, shape.closed = paths[i].closed;
+      shape.name = name, shape.closed = paths[i].closed, shape.grain = grain;
       shape.chain.where = at(node) + ": " + kind + (name.empty() ? "" : " " + in_quotes(name));
       for (const Segment& s : paths[i].segments)
         shape.chain.segments.push_back(mapped(s, map.leftCols<2>(), map.col(2)));
       std::vector<Segment>& drawn = shape.chain.segments;
       const double gap = (drawn.back().end - drawn.front().start).norm();
+      if (grain && gap <= 1e-6)
+        throw InputError(shape.chain.where +
+                         ": a grain line goes from one end to another, and this one ends where it starts");
       if (!shape.closed && drawn.size() > 1 && gap <= 1e-6)
         shape.closed = true;  // m: drawn back to its start
       if (shape.closed) finish_loop(shape.chain, true);
@@ -246,6 +254,26 @@ class SvgReader {
       if (shape.closed) outline(shape);
       shapes_.push_back(std::move(shape));
     }
+  }
+
+  // An id, a class or a label that begins with "grain", as in "Grainline" and "grain-front".
+  static bool is_grain(const pugi::xml_node& node) {
+    Names names = words(node.attribute("class").value());
+    for (const char* key : {"id", "label", "inkscape:label"}) names.emplace_back(node.attribute(key).value());
+    return std::any_of(names.begin(), names.end(), [](std::string name) {
+      std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+      return name.starts_with("grain");
+    });
+  }
+
+  // The others are heads of its arrow.
+  static void keep_longest(std::vector<SvgPath>& paths) {
+    const auto reach = [](const SvgPath& path) {
+      return (path.segments.back().end - path.segments.front().start).norm();
+    };
+    const auto longest = std::max_element(
+        paths.begin(), paths.end(), [&](const SvgPath& a, const SvgPath& b) { return reach(a) < reach(b); });
+    paths = {*longest};
   }
 
   static void outline(Shape& shape) {
@@ -299,10 +327,17 @@ class SvgReader {
       const int owner = parent[k] < 0 ? -1 : panel_of[parent[k]];
       if (owner < 0)
         throw InputError(shape.chain.where +
-                         (shape.closed ? ": this hole is in no panel"
-                                       : ": this path is open and in no panel; close it (z), or draw "
-                                         "it inside a panel as a line"));
+                         (shape.grain    ? ": this grain line is in no panel"
+                          : shape.closed ? ": this hole is in no panel"
+                                         : ": this path is open and in no panel; close it (z), or draw "
+                                           "it inside a panel as a line"));
       Panel& panel = pattern_.panels[owner];
+      if (shape.grain) {
+        if (panel.grain)
+          throw InputError(shape.chain.where + ": panel '" + panel.name + "' has another grain line");
+        panel.grain = shape.chain.segments.back().end - shape.chain.segments.front().start;
+        continue;
+      }
       if (!shape.closed) name_line(shape);
       (shape.closed ? panel.holes : panel.lines).push_back(shape.chain);
     }

@@ -50,8 +50,27 @@ class PatternTable {
     }
     for (Table& line : table.tables("line", "each a line along which the mesh has edges"))
       panel.lines.push_back(read_line(line));
+    panel.grain = read_grain(table);
     table.finish();
     return panel;
+  }
+
+  static std::optional<Vec2> read_grain(Table& table) {
+    const Node* const node = table.take("grain", "[x, y], two numbers",
+                                        {"direction of the warp, for model = \"woven\"; the texture "
+                                         "coordinates are turned so that it runs along v",
+                                         "[0, 1]"});
+    if (!node) return {};
+    const bool two = node->kind == Node::Kind::array && node->items.size() == 2;
+    if (!two) table.fail("grain", "expected a direction [x, y], such as [0, 1]");
+    Vec2 grain;
+    try {
+      for (int i = 0; i < 2; ++i) grain[i] = quantity(node->items[i], dimension::number, Range::any);
+    } catch (const InputError& error) {
+      table.fail("grain", error.what());
+    }
+    if (!(grain.norm() > 0)) table.fail("grain", "a direction is not [0, 0]");
+    return grain;
   }
 
   // { outline = [...], sides = [...] }

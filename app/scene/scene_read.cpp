@@ -186,7 +186,7 @@ std::optional<Vec3> read_warp(Table& table, const ClothEntry& cloth) {
   Vec3 warp = cloth.rest_is_flat ? Vec3(0, 1, 0) : Vec3(Vec3::Zero());
   table.read("warp", warp, dimension::number,
              {"of model = \"woven\": the direction of the warp in the rest shape, as the file has it",
-              "v of the texture coordinates, with rest = \"uv\""});
+              "v of the texture coordinates, with rest = \"uv\": the grain of each panel of a pattern"});
   if (table.has("warp") && warp.isZero()) table.fail("warp", "a direction is not [0, 0, 0]");
   return warp.isZero() ? std::optional<Vec3>() : warp;
 }

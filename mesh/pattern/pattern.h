@@ -4,6 +4,7 @@
 //   name form one curve, PANEL.NAME. The corners between segments are vertices of every mesh.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,9 @@ struct Panel {
   std::string name;
   Chain outline;
   std::vector<Chain> holes, lines;  // lines are open chains inside the panel; edges of the mesh lie on them
+  // Direction of the warp; not zero. Texture coordinates are places in the panel, turned so that the warp runs along v.
+  // Unset: along y, so that nothing is turned.
+  std::optional<Vec2> grain = {};
 };
 
 // Outlines are taken counter-clockwise and holes clockwise, whichever way they were drawn. So two curves that

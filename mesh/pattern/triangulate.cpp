@@ -102,8 +102,7 @@ class Assembler {
     made_.mesh.positions.resize(made_.mesh.positions.size() + mesh.points().size() - kBox);
     for (std::size_t i = kBox; i < mesh.points().size(); ++i)
       made_.mesh.positions[z(number[i])] = Vec3(mesh.points()[i].x(), mesh.points()[i].y(), 0);
-    for (std::size_t i = z(first_); i < made_.mesh.positions.size(); ++i)
-      document_.texcoords.push_back(written(made_.mesh.positions[i]));
+    add_texture(pattern_.panels[z(p)].grain);
     document_.statements.push_back({document_.face_count(), "g " + pattern_.panels[z(p)].name});
     PanelReport report{pattern_.panels[z(p)].name, static_cast<int>(mesh.points().size()) - kBox, 0, 0,
                        std::numbers::pi};
@@ -125,7 +124,25 @@ class Assembler {
     made_.panels.push_back(report);
   }
 
-  static std::string written(const Vec3& x) {
+  // Of the last panel: where its vertices are, turned about its middle so that the grain points up or, which is the
+  // same to a fabric, down.
+  void add_texture(const std::optional<Vec2>& grain) {
+    const auto begin = made_.mesh.positions.begin() + first_;
+    Eigen::AlignedBox2d box;
+    std::for_each(begin, made_.mesh.positions.end(), [&](const Vec3& x) { box.extend(Vec2(x.head<2>())); });
+    const Vec2 middle = box.center();
+    Eigen::Matrix2d turn = Eigen::Matrix2d::Identity();
+    if (grain) {
+      const Vec2 g = (grain->y() < 0 ? -1 : 1) * grain->normalized();
+      turn << g.y(), -g.x(), g.x(), g.y();
+    }
+    for (auto x = begin; x != made_.mesh.positions.end(); ++x) {
+      const Vec2 place = x->head<2>();
+      document_.texcoords.push_back(written(grain ? Vec2(middle + turn * (place - middle)) : place));
+    }
+  }
+
+  static std::string written(const Vec2& x) {
     char text[64];
     char* end = std::to_chars(text, text + 32, x.x()).ptr;
     *end++ = ' ';
