@@ -14,6 +14,8 @@
 //            never turn it round. In the step in which the particle comes loose, friction is the impulse
 //            mu_k (r.n) r_T/|r_T|. Before the first solve of a step r.n is taken from the last step, with its
 //            arrival impulse replaced by that of this step: otherwise an impact would rub twice.
+//   stop     where friction can stop all that slides on a body within a step, and it slows down, the step
+//            begins with it as sticking; where |r_T| > mu_k r.n it slides on, rubbed as above
 // r = A dv - b [N s] is the impulse of the constraint on the particle.
 //                                           [Baraff & Witkin 1998 (BW98), section 5.2; Noh & Jung, section 4]
 #pragma once

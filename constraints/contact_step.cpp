@@ -1,6 +1,7 @@
 #include "constraints/contact_step.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace drape {
 
@@ -83,8 +84,10 @@ ContactChange ContactStep::judge(const VecX& v, const VecX& r, const VecX& x_new
   const StepMotion& step = constraints_->step_;
   ParticleContacts& contacts = constraints_->contacts_;
   ContactChange change;
-  change.grip = contacts.react(constraints_->bodies_, step, v, r, noise);
   change.caught = contacts.find_on_path(constraints_->bodies_, step, x_new);
+  // While particles fall through a body, what their neighbours bear is all noise: nothing comes loose by it.
+  const double too_small = change.caught ? std::numeric_limits<double>::infinity() : noise;
+  change.grip = contacts.react(constraints_->bodies_, step, v, r, too_small);
   if (step.foresight == Foresight::ahead) change.faces = constraints_->faces_.react(x_new, v);
   return change;
 }

@@ -126,6 +126,8 @@ bool ParticleContacts::update_grip(const Bodies& bodies, const StepMotion& step,
     return true;
   }
   const Friction& mu = friction_of(bodies, c);
+  const int before = committed_of_[c.particle];
+  const bool slid = before >= 0 && committed_[before].grip == Grip::slide;  // when the step began
   double normal = 0;
   for (int k = 0; k < c.planes; ++k) normal += std::max(lambda[k], 0.0);
   const double rubbed = mu.kinetic * c.normal_impulse;
@@ -137,7 +139,10 @@ bool ParticleContacts::update_grip(const Bodies& bodies, const StepMotion& step,
   Grip next = c.grip;
   switch (c.grip) {
     case Grip::stick:
-      if (rub.norm() > mu.statics * normal + noise) {
+      if (slid && rub.norm() > mu.kinetic * normal + noise) {  // friction does not stop it in this step
+        next = Grip::slide;
+        c.changes = most_changes - 1;
+      } else if (!slid && rub.norm() > mu.statics * normal + noise) {
         next = Grip::breaking_loose;
         c.friction_impulse = mu.kinetic * normal * rub.normalized();
       }

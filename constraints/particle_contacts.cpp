@@ -24,6 +24,30 @@ void for_free(const StepMotion& step, const F& f) {
   });
 }
 
+// Takes what slides on a body to stick where friction can stop all of it within the step, and its slip is
+// falling: the solve then tells whether it sticks. The damper of what slides would not stop it: near the angle
+// of friction it only creeps more slowly. Single contacts are not tried, because their neighbours drag them on.
+void stop_together(const ParticleContacts::Bodies& bodies, const StepMotion& step,
+                   std::vector<Contact>& contacts) {
+  for (const MovingBody& body : bodies) {
+    const double mu = body.obstacle().friction.kinetic;
+    const auto slides_on_it = [&](const Contact& c) {
+      return c.grip == Grip::slide && c.plane[0].obstacle == body.number();
+    };
+    bool can_stop = true;
+    double gained = 0;  // of the momentum along the body [N s]
+    for (const Contact& c : contacts) {
+      if (!slides_on_it(c)) continue;
+      const double mass = step.mass(c.particle);
+      can_stop = can_stop && mass * c.last_slip.norm() <= mu * c.normal_impulse;
+      gained += mass * (c.slip.norm() - c.last_slip.norm());
+    }
+    if (!can_stop || gained > 0) continue;
+    for (Contact& c : contacts)
+      if (slides_on_it(c)) c.grip = Grip::stick;
+  }
+}
+
 }  // namespace
 
 void ParticleContacts::prepare(int particles, std::size_t bodies) {
@@ -64,6 +88,7 @@ void ParticleContacts::find(const Bodies& bodies, const StepMotion& step) {
   }
   for_free(step, [&](int i, std::size_t k) { look_for(i, bodies, step, found_[k], deepest_[k]); });
   take_found(step.h);
+  if (step.foresight == Foresight::ahead) stop_together(bodies, step, trial_);
 }
 
 void ParticleContacts::take_found(double h) {

@@ -2,7 +2,8 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "tests/tables.h"
+#include "solver/forces/woven.h"
+#include "tests/integrators.h"
 
 using namespace drape;
 using namespace drape::test;
@@ -70,6 +71,101 @@ TEST_CASE("an incline holds below tan(theta) = mu and lets go above", "[contact]
       CHECK(speed == Approx(expected).epsilon(0.02));
       CHECK(p.state.v[0] > 0);  // downhill
     }
+  }
+}
+
+TEST_CASE("a sheet on an incline holds to 0.999 mu within a micrometre, and slides from 1.001 mu",
+          "[contact]") {
+  // It is laid on, or dropped from 1 mm; what the landing took is no creep.
+  const double mu = 0.3, h = 0.01, g = 9.81;
+  const Fabric fabric{.area_density = 0.15, .stretch = 500, .bend = 1e-5};
+  const TriangleMesh mesh = grid(7, 7, 0.3, 0.3);
+  for (const char* integrator : {"implicit-euler", "bdf2"}) {
+    for (const bool of_springs : {false, true}) {
+      for (const double lift : {0.0, 1e-3}) {
+        for (const double factor : {0.985, 0.999, 1.001}) {
+          const double angle = std::atan(mu * factor);
+          const Plane plane = incline(angle);
+          const Vec3 down(std::cos(angle), -std::sin(angle), 0);
+          System system(lumped_mass(mesh, fabric.area_density));
+          system.add(of_springs ? noh_jung(mesh, fabric) : woven(mesh, mesh, fabric));
+          system.add(Gravity{});
+          Constraints constraints;
+          constraints.add(Obstacle{.shape = plane, .friction = mu});
+          State state = at_rest(mesh);
+          state.x = moved_rigidly(state.x, rotation(-angle, {0, 0, 1}), (2e-3 + lift) * plane.normal);
+          auto stepper =
+              make_integrator(integrator, system, constraints, make_linear_solver("mpcg+block-ic0"), {});
+          const auto advance = [&](double duration) {
+            for (int n = 0; n < static_cast<int>(std::lround(duration / h)); ++n)
+              REQUIRE(stepper->advance(state, h).done);
+          };
+          const auto mean_speed = [&] {
+            double sum = 0;
+            for (int i = 0; i < state.particles(); ++i) sum += state.v.segment<3>(3 * i).dot(down);
+            return sum / state.particles();
+          };
+          INFO(integrator << (of_springs ? ", noh-jung, " : ", woven, ") << lift << " m, " << factor
+                          << " mu");
+          advance(0.5);
+          const VecX landed = state.x;
+          const double before = mean_speed();
+          if (factor < 1) {
+            advance(10);
+            CHECK((state.x - landed).cwiseAbs().maxCoeff() < 1e-9);
+            CHECK(max_speed(state) < 1e-9);
+          } else {
+            advance(5);
+            const double a = g * (std::sin(angle) - mu * std::cos(angle));
+            // Springs that push each other aside are rubbed aside, too, and so less against the way down.
+            CHECK(mean_speed() - before ==
+                  Approx(5 * a).epsilon(0.05).margin(of_springs ? 5 * 2e-3 * mu * g : 0));
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("what rests on a moving incline keeps its place on it", "[contact]") {
+  // A mesh that goes up and to the side, steadily, at 0.999 mu.
+  const double mu = 0.3, angle = std::atan(0.999 * mu), h = 0.01;
+  TriangleMesh slab = box({2, 0.1, 2});
+  for (Vec3& x : slab.positions) x = rotation(-angle, {0, 0, 1}) * (x - Vec3(0, 0.05, 0));
+  const Vec3 carried(0.2, 0.1, -0.3), normal = incline(angle).normal;  // m/s
+  for (const char* integrator : {"implicit-euler", "bdf2"}) {
+    System system({0.01});
+    system.add(Gravity{});
+    Constraints constraints;
+    constraints.add(Obstacle{.shape = body(slab),
+                             .friction = mu,
+                             .motion = Motion::constant(carried, Vec3::Zero(), Vec3::Zero())});
+    State state{0, VecX(2e-3 * normal), VecX(carried)};
+    auto stepper = make_integrator(integrator, system, constraints, make_linear_solver("mpcg"), {});
+    for (int n = 0; n < 200; ++n) REQUIRE(stepper->advance(state, h).done);
+    INFO(integrator);
+    CHECK((state.x - 2e-3 * normal - state.time * carried).norm() < 1e-9);
+  }
+}
+
+TEST_CASE("what slides slowly stops as friction stops it, and no later", "[contact]") {
+  // Close to the angle of friction that takes long; on the level it is done within one step.
+  const double mu = 0.3, h = 0.01, v0 = 0.01;
+  for (const double factor : {0.0, 0.9, 0.985}) {
+    const double angle = std::atan(mu * factor);
+    Particle p;
+    p.constraints.add(Obstacle{.shape = incline(angle), .friction = mu, .margin = 0});
+    p.state.v = v0 * Vec3(std::cos(angle), -std::sin(angle), 0);
+    const double a = 9.81 * (mu * std::cos(angle) - std::sin(angle));
+    double stopped = 0;
+    for (int n = 0; n < 100; ++n) {
+      p.step(h);
+      if (stopped == 0 && p.state.v.norm() < 1e-12) stopped = p.state.time;
+    }
+    INFO(factor);
+    CHECK(stopped == Approx(v0 / a).margin(2 * h));
+    CHECK(p.state.x.norm() == Approx(v0 * v0 / (2 * a)).margin(v0 * h));
+    CHECK(p.state.v.norm() < 1e-12);
   }
 }
 
