@@ -114,9 +114,9 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
     const bool full = descend(contacts, newton.first());  // v += dv, as far as Phi falls         [NW06, 3.1]
     p_.x = k().x_bar + k().c * p_.v;                      // x = x_bar + c v
     if (!p_.x.allFinite()) return fail(report, "the new positions are not finite numbers");
-    newton.took(full, falls_back() && merit_.makes_energy(state, p_, contacts.work()), report);
+    newton.took(full, falls_back() && makes_energy(state, contacts, piece.h), report);
   }
-  if (k().order_2() && merit_.makes_energy(state, p_, contacts.work() + given(state, piece.h))) {
+  if (k().order_2() && makes_energy(state, contacts, piece.h)) {
     ++report.rescues;
     return attempt(state, {piece.h, false, piece.shortest}, report);  // taken again by order 1
   }
@@ -176,9 +176,10 @@ double Bdf::residual(ContactStep& contacts) {
   return std::sqrt(dot(b_rubbed_, b_rubbed_));
 }
 
-// At least what the wind gives in the step [J], which is not steady.
-double Bdf::given(const State& start, double h) const {
-  return 2 * h * std::max(system_.given_power(start.x, start.v), system_.given_power(p_.x, p_.v));
+// The wind may give twice what its power at one end of the step comes to, because the power is not steady.
+bool Bdf::makes_energy(const State& start, const ContactStep& contacts, double h) const {
+  const double power = std::max(system_.given_power(start.x, start.v), system_.given_power(p_.x, p_.v));
+  return merit_.makes_energy(start, p_, contacts.work() + 2 * h * power);
 }
 
 double Bdf::residual_wanted() const {

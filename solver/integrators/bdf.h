@@ -44,7 +44,7 @@ class Bdf final : public Integrator {
   void linearise(const State& state, Stiffness stiffness, const ContactStep& contacts, StepReport& report);
   double residual(ContactStep& contacts);  // N s
   double residual_wanted() const;          // N s
-  double given(const State& start, double h) const;
+  bool makes_energy(const State& start, const ContactStep& contacts, double h) const;
   bool descend(ContactStep& contacts, bool first);
   void finish(State& state, ContactStep& contacts, StepReport& report);
   bool good(const LinearReport& linear) const;
