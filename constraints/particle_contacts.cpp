@@ -31,6 +31,7 @@ void stop_together(const ParticleContacts::Bodies& bodies, const StepMotion& ste
                    std::vector<Contact>& contacts) {
   for (const MovingBody& body : bodies) {
     const double mu = body.obstacle().friction.kinetic;
+    if (mu == 0) continue;  // nothing stops what slides without friction
     const auto slides_on_it = [&](const Contact& c) {
       return c.grip == Grip::slide && c.plane[0].obstacle == body.number();
     };

@@ -443,3 +443,17 @@ TEST_CASE("a contact may change its mind, and comes to a decision within a step"
     CHECK(changes <= 10);
   }
 }
+
+TEST_CASE("nothing sticks where there is no friction, also what does not slide", "[contact]") {
+  System system(std::vector<double>{0.01});
+  system.add(gravity({0, -9.81, 0}));
+  Constraints constraints;
+  constraints.add(Obstacle{.shape = Plane{}, .friction = 0.0});
+  const auto stepper = make_integrator("implicit-euler", system, constraints, make_linear_solver("mpcg"));
+  State state{0, stacked({Vec3(0, 0.001, 0)}), VecX::Zero(3)};
+  for (int step = 0; step < 20; ++step) {
+    REQUIRE(stepper->advance(state, 0.01).done);
+    for (const Contact& c : constraints.contacts()) CHECK(c.grip != Grip::stick);
+  }
+  CHECK(constraints.contacts().size() == 1);
+}

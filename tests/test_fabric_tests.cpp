@@ -191,19 +191,25 @@ TEST_CASE("test-fabric prints a table and writes it, with the shadows", "[fabric
 }
 
 TEST_CASE("what test-fabric cannot do is refused in one line", "[fabric-tests]") {
-  const Folder folder;
-  for (const auto& [words, message] : {std::pair{"cotton", "there is no fabric 'cotton'"},
-                                       {"cotton-broad --mesh 0.1mm", "from 1 mm to 20 mm"},
-                                       {"cotton-broad --mesh 5kg", "expected a length"},
-                                       {"cotton-broad --tests stretch", "there is no test"},
-                                       {"cotton-broad --model choi-ko", "expected woven or noh-jung"},
-                                       {"cotton-broad --repeats 1.5", "whole number"},
-                                       {"cotton-broad --specimen 18cm", "from 200 mm"}}) {
+  Folder folder;
+  folder.write("springs.toml", "area_density = 0.1\nstretch_spring = 100\n");
+  for (const auto& [words, message] :
+       {std::pair{"cotton", "there is no fabric 'cotton'"},
+        {"cotton-broad --mesh 0.1mm", "from 1 mm to 20 mm"},
+        {"cotton-broad --mesh 5kg", "expected a length"},
+        {"cotton-broad --tests stretch", "there is no test"},
+        {"cotton-broad --tests drape,drape", "name it once"},
+        {"cotton-broad --mesh 10mm,10mm", "name it once"},
+        {"cotton-broad --mesh 15mm --specimen 21cm", "too coarse for the 15 mm"},
+        {"springs.toml", "a specimen needs stretch and bend per width"},
+        {"cotton-broad --model choi-ko", "expected woven or noh-jung"},
+        {"cotton-broad --repeats 1.5", "whole number"},
+        {"cotton-broad --specimen 18cm", "from 200 mm"}}) {
     CAPTURE(words);
     const Outcome outcome = folder.drape(std::string("test-fabric ") + words);
     CHECK(outcome.exit_code == 2);
     CHECK_THAT(outcome.err, Catch::Contains(message));
     CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
-    CHECK(folder.files().empty());
+    CHECK(folder.files() == std::set<std::string>{"springs.toml"});
   }
 }

@@ -84,9 +84,25 @@ class FabricFile {
     return (by.empty() ? "given as " : by + ", ") + given;
   }
 
+  // "bend.weft" stands in the list of "kes.B.weft" where the file has that, else in the list of "kes.B".
   void mark(const std::string& number, const std::string& parameter) {
     const std::string key = key_of(parameter);
-    list_of(key, key != parameter).push_back(number);
+    const std::size_t dot = number.find('.');
+    const std::string own = key.empty() || dot == number.npos ? key : key + number.substr(dot);
+    list_of(has(own) ? own : key, key != parameter).push_back(number);
+  }
+
+  // Whether the file has a value at "kes.B.warp".
+  bool has(const std::string& path) const {
+    const Node* node = &root_;
+    for (std::size_t begin = 0; begin <= path.size();) {
+      const std::size_t end = std::min(path.find('.', begin), path.size());
+      const auto found = node->members.find(path.substr(begin, end - begin));
+      if (found == node->members.end()) return false;
+      node = &found->second;
+      begin = end + 1;
+    }
+    return true;
   }
 
   void line(const std::string& parameter, const std::string& value) {

@@ -50,7 +50,7 @@ Values drape_test(const Fabric& fabric, ClothModel model, double edge, const Dra
   Values values = {{"drape coefficient", {"%", "1", 0.01}, {}, {}},
                    {"nodes", {"", "1", 1}, {}, {}},
                    {"amplitude of the nodes", {"mm", "m", 1e-3}, {}, {}}};
-  for (int repeat = 0; repeat < test.repeats; ++repeat) {
+  for (int repeat = 0; repeat < test.repeats && !interrupted(); ++repeat) {
     Random random(static_cast<std::uint64_t>(repeat) + 1);
     const double angle = 2 * pi * random();
     Rig rig(disc, {fabric, model, angle}, {0, 0, 0}, [&](const Vec3& x) {

@@ -9,7 +9,7 @@ namespace drape::app {
 // c = (B / (area_density g))^(1/3), within 0.01 %.
 inline constexpr double standard_chord_angle = 41.5 * 3.14159265358979323846 / 180;
 
-// Gamma of the strip whose chord stands at this angle [rad], between 0 and pi/2.
+// Gamma of the strip whose chord stands at this angle [rad], between 0.01 and 1.5.
 double gamma_of_chord(double angle);
 
 }  // namespace drape::app

@@ -25,7 +25,7 @@ std::string cell(const std::optional<double>& value, const Unit& unit) {
 
 std::string cell(const std::vector<double>& found, const Unit& unit) {
   const Spread s = spread(found);
-  if (!std::isfinite(s.mean)) return "not at rest";
+  if (!std::isfinite(s.mean)) return "not found";
   std::string text = rounded(s.mean / unit.in_si, 4);
   if (found.size() > 1) text += " ± " + rounded(s.deviation / unit.in_si, 2);
   return text;
@@ -68,6 +68,8 @@ std::string fabric_text(const FabricTable& table) {
     before = line[0];
     text += one.substr(0, one.find_last_not_of(' ') + 1) + "\n";
   }
+  if (text.find("not found") != text.npos)
+    text += "not found: the specimen did not come to rest, or the mesh is too coarse for the fabric\n";
   return text;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "app/base/interrupt.h"
 #include "mesh/base/errors.h"
 #include "solver/forces/noh_jung.h"
 #include "solver/forces/woven.h"
@@ -22,11 +23,17 @@ std::vector<std::unique_ptr<Force>> forces_of(const TriangleMesh& mesh, const Cu
   throw InputError("model choi-ko needs a grid of quads, and a specimen is an irregular mesh of triangles");
 }
 
+// Those of the model: neighbour weighting is part of them.
+std::vector<double> masses_of(const TriangleMesh& mesh, const Cut& cut) {
+  return cut.model == ClothModel::noh_jung ? masses(mesh, cut.fabric)
+                                           : lumped_mass(mesh, cut.fabric.area_density);
+}
+
 }  // namespace
 
 Rig::Rig(const Specimen& specimen, const Cut& cut, const Vec3& g,
          const std::function<Vec3(const Vec3&)>& start)
-    : system_(lumped_mass(specimen.mesh, cut.fabric.area_density)), state_(at_rest(specimen.mesh)) {
+    : system_(masses_of(specimen.mesh, cut)), state_(at_rest(specimen.mesh)) {
   system_.add(forces_of(specimen.mesh, cut));
   system_.add(gravity(g));
   for (int i = 0; i < specimen.mesh.vertex_count(); ++i)
@@ -39,7 +46,7 @@ Rig::Rig(const Specimen& specimen, const Cut& cut, const Vec3& g,
 
 bool Rig::settle(double h, double speed, int most) {
   for (int k = 0; k < most; ++k) {
-    if (!step(h)) return false;
+    if (interrupted() || !step(h)) return false;
     if (max_speed(state_.v) < speed) return true;
   }
   return false;

@@ -1,7 +1,7 @@
 #include "app/textile/test_fabric.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "app/base/atomic_file.h"
@@ -54,9 +54,21 @@ ClothModel model_of(const std::string& name) {
   throw InputError("--model " + name + ": expected woven or noh-jung; the specimens are meshes of triangles");
 }
 
+std::string millimetres(double length) { return rounded(1000 * length, 3) + " mm"; }
+
+// Specimens have meshes of their own, for which constants of single connections mean nothing.
+void check_widths(const NamedFabric& named) {
+  const Fabric& fabric = named.fabric;
+  if (!fabric.stretch_spring && !fabric.bend_spring && fabric.stretch > 0 && fabric.bend > 0) return;
+  throw InputError("fabric " + named.name +
+                   ": a specimen needs stretch and bend per width, both above 0; stretch_spring and "
+                   "bend_spring are of the connections of one mesh");
+}
+
 Plan plan_of(const TestFabricWords& words) {
   Plan plan;
   plan.fabric = load_fabric(words.fabric);
+  check_widths(plan.fabric);
   plan.model_name = words.model.empty() ? "woven" : words.model;
   plan.model = model_of(plan.model_name);
   for (const std::string& word : split(words.mesh.empty() ? "10 mm,5 mm" : words.mesh))
@@ -66,19 +78,41 @@ Plan plan_of(const TestFabricWords& words) {
     if (std::find(test_names.begin(), test_names.end(), name) == test_names.end())
       throw InputError("--tests " + words.tests + ": there is no test '" + name + "'; " +
                        suggestion(name, test_names));
+  const auto twice = [](const char* option, const std::string& text, const std::string& what) {
+    return InputError(std::string(option) + " " + text + ": " + what + " stands there twice; name it once");
+  };
+  for (std::size_t k = 0; k < plan.tests.size(); ++k)
+    if (std::count(plan.tests.begin(), plan.tests.end(), plan.tests[k]) > 1)
+      throw twice("--tests", words.tests, plan.tests[k]);
+  for (std::size_t k = 0; k < plan.edges.size(); ++k)
+    for (std::size_t l = 0; l < k; ++l)
+      if (millimetres(plan.edges[k]) == millimetres(plan.edges[l]))
+        throw twice("--mesh", words.mesh, millimetres(plan.edges[k]));
   if (!words.specimen.empty()) plan.drape.radius = 0.5 * length(words.specimen, "--specimen", 0.2, 0.4);
   if (!words.repeats.empty()) {
     try {
       const double repeats =
           quantity(parse_toml_value(words.repeats, "--repeats"), dimension::number, Range::positive);
+      if (repeats > 1000 || repeats != std::floor(repeats))
+        throw InputError("expected a whole number from 1 to 1000");
       plan.drape.repeats = static_cast<int>(repeats);
-      if (plan.drape.repeats != repeats || repeats > 1000)
-        throw InputError("expected a whole number to 1000");
     } catch (const InputError& error) {
       throw InputError("--repeats " + words.repeats + ": " + error.what());
     }
   }
+  const double overhang = plan.drape.radius - plan.drape.plate_radius;
+  if (std::find(plan.tests.begin(), plan.tests.end(), "drape") != plan.tests.end())
+    for (double edge : plan.edges)
+      if (overhang < 2.5 * edge)
+        throw InputError("--mesh " + millimetres(edge) + ": is too coarse for the " + millimetres(overhang) +
+                         " of fabric that hang over the plate; take a finer mesh or a larger --specimen");
   return plan;
+}
+
+// What the output folder is called: "my" of my.toml, else the name of the fabric.
+std::filesystem::path folder_name(const std::string& fabric) {
+  const std::filesystem::path path(fabric);
+  return is_fabric_file(fabric) ? path.stem() : path;
 }
 
 using Pictures = std::vector<std::pair<std::string, std::string>>;  // name and bytes of the file
@@ -117,16 +151,15 @@ void add(FabricTable& table, const NamedFabric& fabric, const std::string& test,
 
 int test_fabric(const TestFabricWords& words, const std::filesystem::path& out, bool quiet) {
   const Plan plan = plan_of(words);
-  const std::filesystem::path folder = out.empty() ? std::filesystem::path("out") / "test-fabric" /
-                                                         std::filesystem::path(plan.fabric.name).stem()
-                                                   : out;
+  const std::filesystem::path folder =
+      out.empty() ? std::filesystem::path("out") / "test-fabric" / folder_name(plan.fabric.name) : out;
   make_output_folder(folder, {"test-fabric.json"});
   catch_interrupts();
   FabricTable table{plan.fabric.name, plan.model_name, plan.edges, {}};
   Pictures pictures;
   for (const std::string& test : plan.tests)
     for (double edge : plan.edges) {
-      if (!quiet) std::fprintf(stderr, "%s, mesh of %s mm\n", test.c_str(), rounded(1000 * edge, 3).c_str());
+      if (!quiet) std::fprintf(stderr, "%s, mesh of %s\n", test.c_str(), millimetres(edge).c_str());
       add(table, plan.fabric, test, run(plan, test, edge, pictures));
       if (interrupted()) {
         if (!quiet) std::fprintf(stderr, "interrupted: nothing is written\n");

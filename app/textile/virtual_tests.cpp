@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "app/base/interrupt.h"
 #include "app/scene/laboratory.h"
 #include "app/textile/elastica.h"
 #include "solver/forces/woven.h"
@@ -45,8 +46,10 @@ double bending_length(double B, double area_density) {
 
 // The bending length that a strip shows, or NaN.
 double shown_bending_length(const Cut& cut, double edge, double expected) {
-  double length = 2 * expected;
-  for (int round = 0; round < 5; ++round) {
+  const double shortest = 2 * edge;  // of a strip that can bend beyond its clamp
+  double length = std::max(2 * expected, shortest);
+  for (int round = 0; round < 5 && !interrupted(); ++round) {
+    if (length < shortest) return nan;  // the mesh is too coarse for this fabric
     const double width = std::max(0.025, 4 * edge);
     const Specimen strip = overhanging_strip(length, width, edge);
     Rig rig(strip, cut, {0, -standard_gravity, 0}, [](const Vec3& x) { return x; });

@@ -1,7 +1,7 @@
 // "cvode-bdf", "cvode-adams", "arkode-erk", "arkode-dirk": SUNDIALS solves dx/dt = v, dv/dt = S M^-1 f(x, v)
 // with inner steps of its own choice inside each h, so that the error of every inner step is below
 //   e_x  in x,   e_v + relative_tolerance |v|  in v,    for each particle
-//   e_x = share g / w^2,   e_v = share g / w,   w^2 = |K_ii| / m_i,   unless they are given
+//   e_x = share g / w^2,   e_v = share g / w,   w^2 = |D_ii / s + K_ii| / m_i,   unless they are given
 // so e_x is a share of the length by which the weight of the particle stretches what holds it, and e_v is
 // that at its stiffest vibration. (A share of |x| would depend on where the origin is, and lets the particles
 // of a stiff cloth vibrate.)
