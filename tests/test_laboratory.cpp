@@ -200,6 +200,52 @@ TEST_CASE("the built-in fabrics have the numbers of their sources", "[scene]") {
   CHECK(load_fabric("cotton-broad").record.bending_hysteresis->warp == Approx(0.124 * 9.80665e-3));
 }
 
+TEST_CASE("hysteresis = true makes friction of the width that a laboratory gave, of a woven cloth", "[scene]") {
+  const auto read_cloth = [](const std::string& text) {
+    return read_scene(parse_toml("[[cloth]]\nmesh = \"a.obj\"\nwarp = [1, 0, 0]\nmodel = \"woven\"\n" + text,
+                                 "s.toml"),
+                      {}, "folder", "s.toml")
+        .cloths[0]
+        .fabric;
+  };
+  const double gf = 9.80665e-3;
+  const std::string kes = "kes = { 2HB = { warp = \"0.12 gf.cm/cm\", weft = \"0.1 gf.cm/cm\" } }\n";
+  const Fabric both = read_cloth(kes + "hysteresis = true\n");
+  CHECK(both.weave.bend_friction == Approx(0.06 * gf));
+  CHECK(both.weave.bend_friction_weft.value() == Approx(0.05 * gf));
+  const Fabric one = read_cloth("fabric = \"cotton-broad\"\nhysteresis = true\n");
+  CHECK(one.weave.bend_friction == Approx(0.5 * 1.21602e-3));
+  CHECK_FALSE(one.weave.bend_friction_weft);
+  CHECK(read_cloth(kes + "hysteresis = false\n").weave.bend_friction == 0);
+  CHECK(read_cloth(kes).weave.bend_friction == 0);
+  const test::Mistake table[] = {
+      {"hysteresis = true\n", "s.toml:5:", "kes = { 2HB = \"0.12 gf.cm/cm\" }, and the fabric has none"},
+      {kes + "hysteresis = 1\n", "s.toml:6:", "hysteresis"},
+      {kes + "bend = 0\nhysteresis = true\n", "s.toml:7:", "needs its bending rigidity"},
+  };
+  test::check_mistakes(table, read_cloth);
+  CHECK_THROWS_WITH(
+      read_scene(parse_toml("[[cloth]]\nmesh = \"a.obj\"\n" + kes + "hysteresis = true\n", "s.toml"), {}, "folder",
+                 "s.toml"),
+      Catch::StartsWith("s.toml:4: hysteresis") && Contains("goes with model = \"woven\""));
+}
+
+TEST_CASE("a run with hysteresis says so, and keeps its numbers", "[cli]") {
+  const test::Workshop shop;
+  shop.write("rubs.toml",
+             "[[cloth]]\nmesh = \"sheet.obj\"\nfabric = \"cotton-broad\"\nmodel = \"woven\"\nhysteresis = true\n");
+  CHECK_THAT(shop.drape("check rubs.toml").out,
+             Contains("note: cloth sheet: its threads rub when they are bent, 2HB 1.216 mN"));
+  REQUIRE(shop.drape("simulate rubs.toml --duration 0.02 --out o --quiet").exit_code == 0);
+  const test::Json weave = shop.json("o/run.json")["cloths"][0]["fabric"]["weave"];
+  CHECK(weave["bend_friction_warp"].get<double>() == Approx(0.5 * 1.21602e-3));
+  CHECK(weave["bend_friction_weft"].get<double>() == Approx(0.5 * 1.21602e-3));
+  const test::Outcome springs = shop.drape("test-fabric cotton-broad --model noh-jung --hysteresis");
+  CHECK(springs.exit_code == 2);
+  CHECK_THAT(springs.err, Contains("--hysteresis") && Contains("--model woven"));
+  CHECK_THAT(shop.drape("test-fabric polyester-plain --hysteresis").err, Contains("2HB") && Contains("none"));
+}
+
 TEST_CASE("check, run.json and the notes say what was given and what a model leaves out", "[cli]") {
   const test::Workshop shop;
   shop.write(
@@ -212,7 +258,7 @@ TEST_CASE("check, run.json and the notes say what was given and what a model lea
        {"f.toml: of mine", "179.7 g/m^2, stretch 500 N/m, shear 44.95 N/m, bend 14.1 / 1.762 uN.m",
         "as given: area_density = \"5.3 oz/yd^2\", bending_length = { warp = \"2 cm\", weft = \"1 cm\" }, "
         "kes.G = ",
-        "2HB 0.9807 mN: recorded, no model has friction inside the fabric", "assumed: kes.G",
+        "2HB 0.9807 mN: friction of model = \"woven\" with hysteresis = true", "assumed: kes.G",
         "not said whether measured: area_density, bending_length.warp"})
     CHECK_THAT(fabric.out, Contains(line));
   shop.write("mine.toml", "[[cloth]]\nmesh = \"sheet.obj\"\nfabric = \"f.toml\"\n");

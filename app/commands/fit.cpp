@@ -172,7 +172,7 @@ class FabricFile {
       members += (members.empty() ? "" : ", ") + std::string(key) + " = " + toml_text(width->second);
       list_of(std::string("kes.") + key, false).push_back(std::string("kes.") + key);
     }
-    if (!members.empty()) text_ += "kes = { " + members + " }  # no model has friction inside the fabric\n";
+    if (!members.empty()) text_ += "kes = { " + members + " }  # as the file has it\n";
   }
 
   const Node& root_;

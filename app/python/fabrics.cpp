@@ -30,12 +30,23 @@ Fabric made(double area_density, double stretch, double bend, Given stretch_spri
             Given buckling_clamp, double damping, const std::string& kind, bool neighbour_weighting,
             Given stretch_weft, Given shear, double poisson, double compression, Given bend_weft,
             Given bend_bias, double bend_poisson, double stretch_time, double shear_time, double bend_time,
-            double rest_angle) {
+            double rest_angle, double bend_friction, Given bend_friction_weft) {
   Fabric fabric{area_density,       stretch,        bend,    stretch_spring,
                 bend_spring,        buckling_clamp, damping, damping_kind(kind),
                 neighbour_weighting};
-  fabric.weave = {stretch_weft, shear,        poisson,    compression, bend_weft, bend_bias,
-                  bend_poisson, stretch_time, shear_time, bend_time,   rest_angle};
+  fabric.weave = {.stretch_weft = stretch_weft,
+                  .shear = shear,
+                  .poisson = poisson,
+                  .compression = compression,
+                  .bend_weft = bend_weft,
+                  .bend_bias = bend_bias,
+                  .bend_poisson = bend_poisson,
+                  .bend_friction = bend_friction,
+                  .bend_friction_weft = bend_friction_weft,
+                  .stretch_time = stretch_time,
+                  .shear_time = shear_time,
+                  .bend_time = bend_time,
+                  .rest_angle = rest_angle};
   check(fabric);
   return fabric;
 }
@@ -65,6 +76,8 @@ std::string text(const Fabric& fabric) {
   other("stretch_time", w.stretch_time, 0, " s");
   other("shear_time", w.shear_time, 0, " s");
   other("bend_time", w.bend_time, 0, " s");
+  other("bend_friction", w.bend_friction, 0, " N");
+  given("bend_friction_weft", w.bend_friction_weft, " N");
   return all + ")";
 }
 
@@ -79,13 +92,16 @@ void add_fabric(py::module_& m) {
       "'axial'; neighbour_weighting after Noh & Jung, eq. 1-3. For woven(): stretch and bend are along\n"
       "the warp; stretch_weft, shear [N/m], poisson, compression, bend_weft, bend_bias [N m],\n"
       "bend_poisson; stretch_time, shear_time, bend_time [s], viscosity over stiffness; rest_angle, the\n"
-      "share of the mesh's folds with which it rests.")
+      "share of the mesh's folds with which it rests; bend_friction, bend_friction_weft [N], the moment of "
+      "dry\n"
+      "friction per width against bending, half of the width 2HB of KES-FB2's loop. [Kawabata 1980]")
       .def(py::init(&made), py::kw_only(), "area_density"_a = 0.15, "stretch"_a = 500.0, "bend"_a = 1e-5,
            "stretch_spring"_a = py::none(), "bend_spring"_a = py::none(), "buckling_clamp"_a = py::none(),
            "damping"_a = 0.0, "damping_kind"_a = "relative", "neighbour_weighting"_a = false,
            "stretch_weft"_a = py::none(), "shear"_a = py::none(), "poisson"_a = 0.3, "compression"_a = 1.0,
            "bend_weft"_a = py::none(), "bend_bias"_a = py::none(), "bend_poisson"_a = 0.0,
            "stretch_time"_a = 0.0, "shear_time"_a = 0.0, "bend_time"_a = 0.0, "rest_angle"_a = 0.0,
+           "bend_friction"_a = 0.0, "bend_friction_weft"_a = py::none(),
            "ValueError names a value that is negative, not finite, or zero where it may not be.")
       .def_readwrite("area_density", &Fabric::area_density, "kg/m^2")
       .def_readwrite("stretch", &Fabric::stretch, "N/m, membrane stiffness per width")
@@ -141,6 +157,14 @@ void add_fabric(py::module_& m) {
           "rest_angle", [](const Fabric& fabric) { return fabric.weave.rest_angle; },
           [](Fabric& fabric, double value) { fabric.weave.rest_angle = value; },
           "share of the mesh's folds with which it rests: 0 is flat, 1 the mesh")
+      .def_property(
+          "bend_friction", [](const Fabric& fabric) { return fabric.weave.bend_friction; },
+          [](Fabric& fabric, double value) { fabric.weave.bend_friction = value; },
+          "N, moment of dry friction per width against bending; 0: there is none")
+      .def_property(
+          "bend_friction_weft", [](const Fabric& fabric) { return fabric.weave.bend_friction_weft; },
+          [](Fabric& fabric, Given value) { fabric.weave.bend_friction_weft = value; },
+          "N, along the weft; None: as along the warp")
       .def(
           "copy", [](const Fabric& fabric) { return Fabric(fabric); },
           "Another fabric with the same numbers.")

@@ -70,6 +70,10 @@ std::string fabric_words(const Json& fabric) {
     const auto at = [&](std::size_t k) { return rounded(weave["warp"].items()[k].number(NAN), 4); };
     words.add("warp along " + at(0) + ", " + at(1) + ", " + at(2));
   }
+  if (weave["bend_friction_warp"].number(0) > 0) {
+    words.number("friction against bending ", weave["bend_friction_warp"], " N");
+    words.number("along the weft ", weave["bend_friction_weft"], " N");
+  }
   if (weave["rest_angle"].number(0) > 0) words.number("rest angle ", weave["rest_angle"], " of the mesh's");
   return words.text();
 }
@@ -137,6 +141,7 @@ namespace {
 Json weave_json(const ClothEntry& entry) {
   const Membrane::Common membrane = membrane_of(entry.fabric);
   const PlateStiffness plate = plate_of(entry.fabric);
+  const PlateFrictionLaw friction = plate_friction_of(entry.fabric);
   const Weave& weave = entry.fabric.weave;
   Json warp;
   if (entry.warp) warp = Json::List{entry.warp->x(), entry.warp->y(), entry.warp->z()};
@@ -153,6 +158,8 @@ Json weave_json(const ClothEntry& entry) {
                        {"stretch_time", weave.stretch_time},
                        {"shear_time", weave.shear_time},
                        {"bend_time", weave.bend_time},
+                       {"bend_friction_warp", friction.warp},
+                       {"bend_friction_weft", friction.weft},
                        {"rest_angle", weave.rest_angle}};
 }
 

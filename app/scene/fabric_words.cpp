@@ -51,11 +51,11 @@ Names lines_of(const FabricRecord& record) {
   if (record.bending_hysteresis)
     lines.push_back("hysteresis of bending 2HB " +
                     both(record.bending_hysteresis->warp, record.bending_hysteresis->weft, 1000, "mN") +
-                    ": recorded, no model has friction inside the fabric");
+                    ": friction of model = \"woven\" with hysteresis = true");
   if (record.shear_hysteresis)
     lines.push_back("hysteresis of shear 2HG " +
                     both(record.shear_hysteresis->warp, record.shear_hysteresis->weft, 1, "N/m") +
-                    ": recorded, no model has friction inside the fabric");
+                    ": recorded, no model has friction against shear");
   return lines;
 }
 

@@ -145,9 +145,9 @@ std::optional<double> read_kes(Table& table, Fabric& fabric, FabricRecord& recor
   refuse_misplaced(kes, "kes");
   if (const auto B = read_directions(kes, "B", dimension::sheet_bend, true, "bending rigidity: gives bend"))
     set_bend(fabric, *B);
-  if (const auto width =
-          read_directions(kes, "2HB", dimension::sheet_moment, false,
-                          "width of the hysteresis of bending; no model has it: it is kept and shown"))
+  if (const auto width = read_directions(
+          kes, "2HB", dimension::sheet_moment, false,
+          "width of the hysteresis of bending: gives the friction that hysteresis = true asks for"))
     record.bending_hysteresis = width;
   if (const auto EMT =
           read_directions(kes, "EMT", dimension::sheet_extension, false,
@@ -199,6 +199,19 @@ std::optional<double> read_fast(Table& table, Fabric& fabric) {
 
 double bend_of_length(double bending_length, double area_density) {
   return standard_gravity * area_density * bending_length * bending_length * bending_length;
+}
+
+void use_hysteresis(const FabricRecord& record, Fabric& fabric) {
+  const std::optional<Directions>& width = record.bending_hysteresis;
+  if (!width)
+    throw InputError(
+        "friction inside the fabric needs the width of its hysteresis of bending, "
+        "kes = { 2HB = \"0.12 gf.cm/cm\" }, and the fabric has none; see docs/fabrics.md");
+  if (!(fabric.bend > 0) || fabric.bend_spring)
+    throw InputError("friction inside the fabric needs its bending rigidity per width, and bend is 0");
+  fabric.weave.bend_friction = 0.5 * width->warp;
+  fabric.weave.bend_friction_weft.reset();
+  if (width->weft) fabric.weave.bend_friction_weft = 0.5 * *width->weft;
 }
 
 std::optional<Directions> read_directions(Table& table, const std::string& key, const Dimension& dimension,

@@ -28,7 +28,8 @@ struct FabricRecord {
   // What gave a quantity, as it was written: "bend" -> "bending_length = \"2.1 cm\"". Of area_density, stretch, shear
   // and bend; nothing where the default holds.
   std::map<std::string, std::string> given;
-  // Widths of the hysteresis that KES prints. No model has friction inside the fabric: they are kept and shown.
+  // Widths of the hysteresis that KES prints. That of bending is friction inside the fabric, where it is asked for; no
+  // model has that of shear.
   std::optional<Directions> bending_hysteresis;  // 2HB [N]
   std::optional<Directions> shear_hysteresis;    // 2HG [N/m]
 };
@@ -36,6 +37,9 @@ struct FabricRecord {
 inline constexpr double standard_gravity = 9.80665;  // m/s^2, that of gf
 
 double bend_of_length(double bending_length, double area_density);  // N m
+
+// Gives the fabric the friction against bending that its record has. Throws InputError where the record has none.
+void use_hysteresis(const FabricRecord& record, Fabric& fabric);
 
 // A quantity that is given as one number or as a table of directions; unset: the key is not there.
 std::optional<Directions> read_directions(Table& table, const std::string& key, const Dimension& dimension,

@@ -215,6 +215,22 @@ void read_rest_angle(Table& table, ClothEntry& cloth) {
     table.fail("rest_angle", "where panels are sewn the mesh has no angle; expected \"flat\" with seams");
 }
 
+void read_hysteresis(Table& table, ClothEntry& cloth) {
+  bool asked = false;
+  table.read(
+      "hysteresis", asked,
+      "of model = \"woven\": whether its threads rub when they are bent, as kes.2HB of the fabric says; a "
+      "fold then does not open fully");
+  if (cloth.model != "woven" && table.has("hysteresis"))
+    table.fail("hysteresis", "goes with model = \"woven\"");
+  if (!asked) return;
+  try {
+    use_hysteresis(cloth.fabric_record, cloth.fabric);
+  } catch (const InputError& error) {
+    table.fail("hysteresis", error.what());
+  }
+}
+
 // A woven cloth has no connections, and a cloth of connections no warp.
 void check_model(const Table& table, const ClothEntry& cloth) {
   const bool woven = cloth.model == "woven";
@@ -292,6 +308,7 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
   }
   read_fabric(table, cloth.fabric, cloth.fabric_record);
   read_rest_angle(table, cloth);
+  read_hysteresis(table, cloth);
   check_model(table, cloth);
   for (Table& pin : table.tables("pins", pins_about)) cloth.pins.push_back(read_pin(pin, folder));
   table.finish();

@@ -62,6 +62,16 @@ void tell_of_damping(const Cloth& cloth, Names& messages) {
       ": damping is of connections, and model = \"woven\" has none; viscosity calms its folds");
 }
 
+void tell_of_friction(const Cloth& cloth, Names& messages) {
+  const Weave& w = cloth.fabric.weave;
+  if (w.bend_friction == 0) return;
+  messages.push_back("note: cloth " + cloth.name + ": its threads rub when they are bent, 2HB " +
+                     rounded(2000 * w.bend_friction, 4) +
+                     (w.bend_friction_weft ? " / " + rounded(2000 * *w.bend_friction_weft, 4) : "") +
+                     " mN: it stays bent by up to " + rounded(w.bend_friction / cloth.fabric.bend, 3) +
+                     " 1/m, and how it comes to rest depends on how it came there");
+}
+
 // Springs are the same in all directions.
 void tell_of_directions(const ClothEntry& entry, Names& messages) {
   const Weave& w = entry.fabric.weave;
@@ -162,6 +172,7 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
     warn_if_limp(cloth, simulation.messages);
     warn_if_coarse_for_folds(cloth, simulation.messages);
     tell_of_damping(cloth, simulation.messages);
+    tell_of_friction(cloth, simulation.messages);
   }
   for (const ClothEntry& cloth : scene.cloths) {
     warn_if_heavy(cloth, simulation.messages);

@@ -57,7 +57,9 @@ std::string fabric_text(const FabricTable& table) {
   std::vector<std::size_t> width(heading.size(), 0);
   for (const Names& line : lines)
     for (std::size_t c = 0; c < line.size(); ++c) width[c] = std::max(width[c], letters(line[c]));
-  std::string text = table.fabric + ", model " + table.model + "\n", before;
+  std::string text = table.fabric + ", model " + table.model + (table.hysteresis ? ", with hysteresis" : "") +
+                     "\n",
+              before;
   for (const Names& line : lines) {
     std::string one;
     for (std::size_t c = 0; c < line.size(); ++c) {
@@ -92,6 +94,7 @@ std::string fabric_json(const FabricTable& table) {
   return json_text(Json::Members{{"drape_version", DRAPE_VERSION},
                                  {"fabric", table.fabric},
                                  {"model", table.model},
+                                 {"hysteresis", table.hysteresis},
                                  {"rows", std::move(rows)}});
 }
 

@@ -65,12 +65,23 @@ void check_widths(const NamedFabric& named) {
                    "bend_spring are of the connections of one mesh");
 }
 
+void add_friction(const TestFabricWords& words, Plan& plan) {
+  if (plan.model != ClothModel::woven)
+    throw InputError("--hysteresis: goes with --model woven; the springs of " + words.model + " do not rub");
+  try {
+    use_hysteresis(plan.fabric.record, plan.fabric.fabric);
+  } catch (const InputError& error) {
+    throw InputError("--hysteresis, fabric " + plan.fabric.name + ": " + error.what());
+  }
+}
+
 Plan plan_of(const TestFabricWords& words) {
   Plan plan;
   plan.fabric = load_fabric(words.fabric);
   check_widths(plan.fabric);
   plan.model_name = words.model.empty() ? "woven" : words.model;
   plan.model = model_of(plan.model_name);
+  if (words.hysteresis) add_friction(words, plan);
   for (const std::string& word : split(words.mesh.empty() ? "10 mm,5 mm" : words.mesh))
     plan.edges.push_back(length(word, "--mesh", 1e-3, 0.02));
   plan.tests = words.tests.empty() ? test_names : split(words.tests);
@@ -155,7 +166,7 @@ int test_fabric(const TestFabricWords& words, const std::filesystem::path& out, 
       out.empty() ? std::filesystem::path("out") / "test-fabric" / folder_name(plan.fabric.name) : out;
   make_output_folder(folder, {"test-fabric.json"});
   catch_interrupts();
-  FabricTable table{plan.fabric.name, plan.model_name, plan.edges, {}};
+  FabricTable table{plan.fabric.name, plan.model_name, words.hysteresis, plan.edges, {}};
   Pictures pictures;
   for (const std::string& test : plan.tests)
     for (double edge : plan.edges) {

@@ -12,6 +12,7 @@ namespace drape::app {
 // As on the command line; empty when not given.
 struct TestFabricWords {
   std::string fabric, mesh, tests, model, repeats, specimen;
+  bool hysteresis = false;  // whether the threads rub, as kes.2HB says
 };
 
 // Returns the exit code: 0 done; 130 interrupted, with nothing written. Throws InputError.
@@ -27,6 +28,7 @@ struct FabricRow {
 
 struct FabricTable {
   std::string fabric, model;
+  bool hysteresis = false;
   std::vector<double> edges;  // m, of the meshes
   std::vector<FabricRow> rows;
 };

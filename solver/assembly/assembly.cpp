@@ -203,7 +203,8 @@ void Assembly::connect(Cloth& cloth, Forces& forces) const {
   if (cloth.soft) return append(soft_body(*cloth.lattice, cloth.material, cloth.first_particle), forces);
   const TriangleMesh mesh = between_particles(cloth);
   if (cloth.model == ClothModel::woven) {
-    append(woven(mesh, cloth.rest, cloth.fabric, cloth.warp, cloth.first_particle), forces);
+    if (!cloth.memory) cloth.memory = std::make_shared<BendMemory>();
+    append(woven(mesh, cloth.rest, cloth.fabric, cloth.warp, cloth.first_particle, cloth.memory), forces);
     cloth.edges = rest_edges(cloth, mesh);
   } else {
     const Connections connections = connections_of(cloth, mesh);

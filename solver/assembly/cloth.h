@@ -16,6 +16,7 @@
 #include "mesh/obj/examine.h"
 #include "solver/assembly/seam.h"
 #include "solver/forces/connections.h"
+#include "solver/forces/plate_friction.h"
 #include "solver/forces/soft.h"
 
 namespace drape {
@@ -72,9 +73,10 @@ struct Cloth {
 
   Fabric fabric;  // of a cloth
   ClothModel model = ClothModel::noh_jung;
-  std::optional<Vec3> warp;  // direction in the rest shape
-  double imperfection = 0;   // m, how far the start is off `mesh`
-  double limp_below = 0;     // curvature [1/m] below which the cloth is limp (solver/forces/connections.h)
+  std::optional<Vec3> warp;            // direction in the rest shape
+  double imperfection = 0;             // m, how far the start is off `mesh`
+  std::shared_ptr<BendMemory> memory;  // of a woven cloth whose threads rub
+  double limp_below = 0;  // curvature [1/m] below which the cloth is limp (solver/forces/connections.h)
 
   std::optional<LatticeCounts> soft;       // set: this is a soft body and no cloth
   std::shared_ptr<const Lattice> lattice;  // of a soft body

@@ -23,6 +23,13 @@ void check(const Weave& w) {
           "the share of the resistance to compression is from 0 to 1");
   require(w.rest_angle >= 0 && w.rest_angle <= 1, "rest_angle", w.rest_angle, "",
           "the share of the mesh's own angles is from 0 (flat) to 1");
+  require(w.bend_friction >= 0, "bend_friction", w.bend_friction, "N", "a frictional moment is not negative");
+  if (w.bend_friction_weft) {
+    require(*w.bend_friction_weft > 0, "bend_friction_weft", *w.bend_friction_weft, "N",
+            "a frictional moment in one direction is greater than zero");
+    require(w.bend_friction > 0, "bend_friction", w.bend_friction, "N",
+            "with a frictional moment along the weft it is greater than zero");
+  }
   for (const auto& [field, value] :
        {std::pair{"stretch_time", w.stretch_time}, std::pair{"shear_time", w.shear_time},
         std::pair{"bend_time", w.bend_time}})
@@ -52,6 +59,8 @@ void check(const Fabric& f) {
           "with a stiffness along the weft or of shear it is greater than zero");
   require(f.bend > 0 || !(f.weave.bend_weft || f.weave.bend_bias), "bend", f.bend, "N.m",
           "with a rigidity along the weft or in the bias it is greater than zero");
+  require(f.bend > 0 || f.weave.bend_friction == 0, "bend", f.bend, "N.m",
+          "with friction against bending it is greater than zero");
 }
 
 double mean_stretch(const Fabric& f) { return mean(f.stretch, f.weave.stretch_weft); }

@@ -20,6 +20,10 @@ struct Weave {
   double compression = 1;  // share of the resistance to compression that stays, from 0 to 1
   std::optional<double> bend_weft = {}, bend_bias = {};  // N m, B along the weft and at 45 degrees
   double bend_poisson = 0;
+  // N, the moment of dry friction per width against bending along warp and weft (solver/forces/plate_friction.h):
+  // half of the width 2HB of the loop of KES-FB2. 0: there is none.
+  double bend_friction = 0;
+  std::optional<double> bend_friction_weft = {};
   double stretch_time = 0, shear_time = 0, bend_time = 0;  // s, viscosity over stiffness
   // The share of the curvature of the mesh, as the cloth starts, with which it rests: 0 is flat, 1 the mesh.
   double rest_angle = 0;

@@ -1,4 +1,5 @@
-// A force pushes on particles. It is const during a step, once it is bound to the matrix.
+// A force pushes on particles. It is const during a step, once it is bound to the matrix; what it knows of the past
+// changes at the end of a step.
 //   f = -dE/dx (+ damping),  K = -df/dx (positive semidefinite part),  D = -df/dv
 // Vectors are in the order of the particles, 3 numbers for each; the matrix is in row order
 // (solver/matrix/block_matrix.h).
@@ -48,12 +49,17 @@ class Force {
   virtual bool changes() const { return false; }
   // Finds the stencils of a step. Returns true when they differ from those of the last step.
   virtual bool begin_step(const StepStart&) { return false; }
+  // Takes up what the step did that has ended at x: of a force that knows the past, such as dry friction.
+  virtual void end_step(const VecX& /*x*/) {}
+  // Keeps what the force knows of the past, and goes back to what was kept last.
+  virtual void keep() {}
+  virtual void go_back() {}
   // Lists the pairs of those stencils, besides the pairs of list_pairs.
   virtual void list_changing_pairs(std::vector<ParticlePair>&) const {}
   // Remembers where the blocks of the force are in matrices of this layout.
   virtual void bind(const BlockLayout& layout) = 0;
 
-  // All functions below are pure functions of x and v, given the stencils of the step.
+  // All functions below are pure functions of x and v, given the stencils of the step and the past.
   virtual double energy(const VecX& x) const = 0;  // J
   // A convex function of v, whose slope is the force that depends on v: -dP/dv [W]. Where that force is linear it
   // is v . D v / 2.

@@ -59,4 +59,23 @@ struct PlateEnergy {
 PlateEnergy plate_energy(const TriangleMesh& mesh, const std::vector<RestCorners>& corners,
                          const PlateStiffness& stiffness, double rest_angle = 0);
 
+// The curvature of a triangle of the plate: (x_uu, x_vv, 2 x_uv) = sum over shares of x_v weights^T, with which its
+// energy is A / 2 (D_11 |x_uu|^2 + ...).
+struct PlateCurvature {
+  struct Share {
+    int vertex;
+    Vec3 weights;  // 1/m^2
+  };
+  int number;  // of the triangle in the mesh
+  std::array<int, 3> corners;
+  Eigen::Matrix<double, 3, 2> slopes;  // weights of the slopes (solver/forces/rest_corners.h)
+  double area;                         // m^2
+  std::vector<Share> shares;           // the corners among them
+};
+
+// Of the triangles that bend, ascending.
+std::vector<PlateCurvature> plate_curvatures(const TriangleMesh& mesh,
+                                             const std::vector<RestCorners>& corners,
+                                             const PlateStiffness& stiffness);
+
 }  // namespace drape

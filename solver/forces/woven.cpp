@@ -47,9 +47,17 @@ PlateStiffness plate_of(const Fabric& fabric) {
   return {warp, weft, weave.bend_poisson * mean, twist};
 }
 
+PlateFrictionLaw plate_friction_of(const Fabric& fabric) {
+  const Weave& weave = fabric.weave;
+  return {.warp = weave.bend_friction,
+          .weft = weave.bend_friction_weft.value_or(weave.bend_friction),
+          .bend_warp = fabric.bend,
+          .bend_weft = weave.bend_weft.value_or(fabric.bend)};
+}
+
 bool has_directions(const Fabric& fabric) {
   const Weave& w = fabric.weave;
-  return w.stretch_weft || w.shear || w.bend_weft || w.bend_bias;
+  return w.stretch_weft || w.shear || w.bend_weft || w.bend_bias || w.bend_friction_weft;
 }
 
 bool needs_warp(const Fabric& fabric) {
@@ -77,7 +85,8 @@ std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::opti
 }
 
 std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const TriangleMesh& rest,
-                                          const Fabric& fabric, const std::optional<Vec3>& warp, int first) {
+                                          const Fabric& fabric, const std::optional<Vec3>& warp, int first,
+                                          std::shared_ptr<BendMemory> memory) {
   check(fabric);
   if (rest.triangles.size() != mesh.triangles.size())
     throw InputError("the rest shape has " + std::to_string(rest.triangles.size()) +
@@ -108,6 +117,11 @@ std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const Triang
   if (fabric.bend > 0) {
     const PlateEnergy plate = plate_energy(mesh, corners, plate_of(fabric), fabric.weave.rest_angle);
     forces.push_back(std::make_unique<PlateForce>(plate, fabric.weave.bend_time, first));
+  }
+  if (fabric.weave.bend_friction > 0) {
+    if (!memory) memory = std::make_shared<BendMemory>();
+    forces.push_back(std::make_unique<PlateFriction>(plate_curvatures(mesh, corners, plate_of(fabric)),
+                                                     plate_friction_of(fabric), std::move(memory), first));
   }
   return forces;
 }

@@ -5,7 +5,8 @@
 // The warp runs along a direction of the rest shape, laid into the plane of every triangle. Where the law is the
 // same in all directions, none has to be given. The rest shape may be cut where
 // the cloth is sewn, as in solver/forces/noh_jung.h. The plate rests flat, whatever folds the rest shape has in space, or
-// with a share of the angles that the mesh itself has (Weave::rest_angle).
+// with a share of the angles that the mesh itself has (Weave::rest_angle). Its threads may rub when they are bent
+// (Weave::bend_friction).
 #pragma once
 
 #include <memory>
@@ -15,12 +16,14 @@
 #include "solver/forces/force.h"
 #include "solver/forces/membrane.h"
 #include "solver/forces/plate.h"
+#include "solver/forces/plate_friction.h"
 
 namespace drape {
 
 // Of a fabric that check() takes. plate_of throws InputError where bend_bias is too small.
 Membrane::Common membrane_of(const Fabric& fabric);
 PlateStiffness plate_of(const Fabric& fabric);
+PlateFrictionLaw plate_friction_of(const Fabric& fabric);
 double least_bend_bias(const Fabric& fabric);  // N m; bend_bias is greater
 
 // True when the fabric differs along warp and weft, so that it has to be known which is which.
@@ -32,10 +35,12 @@ bool needs_warp(const Fabric& fabric);
 // when a triangle is square to the direction `warp`.
 std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::optional<Vec3>& warp);
 
-// Vertex 0 is the particle `first_particle` of the system. Triangles without area give no force. Throws
-// InputError when the fabric has directions and `warp` is missing.
+// Vertex 0 is the particle `first_particle` of the system. Triangles without area give no force. `memory` is that of
+// friction against bending, of these triangles; null: a new one. Throws InputError when the fabric has directions and
+// `warp` is missing.
 std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const TriangleMesh& rest,
                                           const Fabric& fabric, const std::optional<Vec3>& warp = {},
-                                          int first_particle = 0);
+                                          int first_particle = 0,
+                                          std::shared_ptr<BendMemory> memory = nullptr);
 
 }  // namespace drape

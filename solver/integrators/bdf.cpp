@@ -28,7 +28,7 @@ StepReport Bdf::advance(State& state, double h) {
   StepReport report;
   {
     const Stopwatch watch(report.step_ms);
-    take_in_pieces(state, h, options_.max_halvings, before_, report,
+    take_in_pieces(system_, state, h, options_.max_halvings, before_, report,
                    [&](const Piece& piece) { return attempt(state, piece, report); });
   }
   return report;
@@ -225,6 +225,7 @@ void Bdf::finish(State& state, ContactStep& contacts, StepReport& report) {
   report.residual = std::max(report.residual, linear_.residual);
   report.converged = report.converged && linear_.reason == StopReason::converged;
   history_.remember(state, end_, contacts);
+  system_.end_step(end_.x);
   state.x = end_.x;
   state.v = end_.v;
   state.time += k().h;

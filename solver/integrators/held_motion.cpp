@@ -104,6 +104,7 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
     }
     end_step(*contacts_, x_new_, v_new_, report);
   }
+  system_.end_step(x_new_);
   state.x = x_new_;
   state.v = v_new_;
   state.time += h;

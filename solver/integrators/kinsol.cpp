@@ -110,7 +110,7 @@ StepReport NewtonKinsol::advance(State& state, double h) {
   double step_ms = 0;
   {
     const Stopwatch watch(step_ms);
-    take_in_pieces(state, h, options_.max_halvings, before_, report_,
+    take_in_pieces(system_, state, h, options_.max_halvings, before_, report_,
                    [&](const Piece& piece) { return attempt(state, piece); });
   }
   report_.step_ms = step_ms;
@@ -169,6 +169,7 @@ bool NewtonKinsol::attempt(State& state, const Piece& piece) {
   if (!x_.allFinite()) return fail("the new positions are not finite numbers");
   report_.converged = report_.converged && solved_;
   end_step(*contacts_, x_, v_, report_);
+  system_.end_step(x_);
   state.x = x_;
   state.v = v_;
   state.time += h;

@@ -16,10 +16,10 @@ struct Piece {
 
 // attempt(piece) takes `state` on by the piece, or returns false and leaves the state as it is. `before` is
 // the state to which a step that fails half-way returns; it belongs to the caller, so that nothing is
-// allocated.
+// allocated. What the forces know of the past returns with it.
 template <class Attempt>
-void take_in_pieces(State& state, double h, int max_halvings, State& before, StepReport& report,
-                    const Attempt& attempt) {
+void take_in_pieces(System& system, State& state, double h, int max_halvings, State& before,
+                    StepReport& report, const Attempt& attempt) {
   const double end = state.time + h;
   int halvings = 0, left = 1;
   report.substeps = 0;
@@ -29,9 +29,13 @@ void take_in_pieces(State& state, double h, int max_halvings, State& before, Ste
       ++report.substeps;
       continue;
     }
-    if (halvings == 0) before = state;
+    if (halvings == 0) {
+      before = state;
+      system.keep();
+    }
     if (halvings == max_halvings) {
       state = before;
+      system.go_back();
       report.done = false;
       return;
     }

@@ -70,6 +70,18 @@ void System::begin_step(const StepStart& start) {
     if (force->changes()) force->bind(BlockLayout(*pattern_, *overlay_));
 }
 
+void System::end_step(const VecX& x) {
+  for (const auto& force : forces_) force->end_step(x);
+}
+
+void System::keep() {
+  for (const auto& force : forces_) force->keep();
+}
+
+void System::go_back() {
+  for (const auto& force : forces_) force->go_back();
+}
+
 BlockMatrix System::matrix() {
   bind();
   return BlockMatrix(pattern_, overlay_);

@@ -34,6 +34,10 @@ class System {
   const std::shared_ptr<const BlockPattern>& bind();
   // To be called before a step: forces find the stencils that come and go, whose blocks make up the overlay.
   void begin_step(const StepStart& start);
+  void end_step(const VecX& x);  // to be called when a step has ended at x
+  // A step that fails half-way goes back to what the forces knew of the past when they kept it.
+  void keep();
+  void go_back();
   BlockMatrix matrix();  // has the pattern, and the overlay as it is in each step
 
   double elastic_energy(const VecX& x) const;      // a function of x alone [J]

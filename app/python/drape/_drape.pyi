@@ -80,6 +80,8 @@ class Fabric(metaclass=_Class):
     shear_time: float
     bend_time: float
     rest_angle: float
+    bend_friction: float
+    bend_friction_weft: Optional[float]
     def __init__(
         self,
         *,
@@ -103,6 +105,8 @@ class Fabric(metaclass=_Class):
         shear_time: float = ...,
         bend_time: float = ...,
         rest_angle: float = ...,
+        bend_friction: float = ...,
+        bend_friction_weft: Optional[float] = ...,
     ) -> None: ...
     def copy(self) -> Fabric: ...
     def __copy__(self) -> Fabric: ...
