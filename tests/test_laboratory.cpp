@@ -200,7 +200,8 @@ TEST_CASE("the built-in fabrics have the numbers of their sources", "[scene]") {
   CHECK(load_fabric("cotton-broad").record.bending_hysteresis->warp == Approx(0.124 * 9.80665e-3));
 }
 
-TEST_CASE("hysteresis = true makes friction of the width that a laboratory gave, of a woven cloth", "[scene]") {
+TEST_CASE("hysteresis = true makes friction of the width that a laboratory gave, of a woven cloth",
+          "[scene]") {
   const auto read_cloth = [](const std::string& text) {
     return read_scene(parse_toml("[[cloth]]\nmesh = \"a.obj\"\nwarp = [1, 0, 0]\nmodel = \"woven\"\n" + text,
                                  "s.toml"),
@@ -225,15 +226,16 @@ TEST_CASE("hysteresis = true makes friction of the width that a laboratory gave,
   };
   test::check_mistakes(table, read_cloth);
   CHECK_THROWS_WITH(
-      read_scene(parse_toml("[[cloth]]\nmesh = \"a.obj\"\n" + kes + "hysteresis = true\n", "s.toml"), {}, "folder",
-                 "s.toml"),
+      read_scene(parse_toml("[[cloth]]\nmesh = \"a.obj\"\n" + kes + "hysteresis = true\n", "s.toml"), {},
+                 "folder", "s.toml"),
       Catch::StartsWith("s.toml:4: hysteresis") && Contains("goes with model = \"woven\""));
 }
 
 TEST_CASE("a run with hysteresis says so, and keeps its numbers", "[cli]") {
   const test::Workshop shop;
-  shop.write("rubs.toml",
-             "[[cloth]]\nmesh = \"sheet.obj\"\nfabric = \"cotton-broad\"\nmodel = \"woven\"\nhysteresis = true\n");
+  shop.write(
+      "rubs.toml",
+      "[[cloth]]\nmesh = \"sheet.obj\"\nfabric = \"cotton-broad\"\nmodel = \"woven\"\nhysteresis = true\n");
   CHECK_THAT(shop.drape("check rubs.toml").out,
              Contains("note: cloth sheet: its threads rub when they are bent, 2HB 1.216 mN"));
   REQUIRE(shop.drape("simulate rubs.toml --duration 0.02 --out o --quiet").exit_code == 0);
@@ -243,6 +245,7 @@ TEST_CASE("a run with hysteresis says so, and keeps its numbers", "[cli]") {
   const test::Outcome springs = shop.drape("test-fabric cotton-broad --model noh-jung --hysteresis");
   CHECK(springs.exit_code == 2);
   CHECK_THAT(springs.err, Contains("--hysteresis") && Contains("--model woven"));
+  CHECK_THAT(shop.drape("test-fabric cotton-broad --lowering 5cm").err, Contains("--lowering 5cm: "));
   CHECK_THAT(shop.drape("test-fabric polyester-plain --hysteresis").err, Contains("2HB") && Contains("none"));
 }
 

@@ -148,7 +148,7 @@ TEST_CASE("a rolled strip left alone stays rolled by H / B, and one without fric
     all.state.x = rolled(s.mesh, 100, 0.5 * s.length);
     all.use("implicit-euler", "mpcg+block-ic0", {.tolerance = 1e-10});
     for (int step = 0; step < 80; ++step) REQUIRE(all.advance(0.05).done);
-    // The curvature in the middle half, from the largest angle between two of its edges along the strip.
+    // The curvature of the circle through three vertices of the middle line.
     const auto near = [&](double at) {
       int best = 0;
       for (int i = 0; i < s.mesh.vertex_count(); ++i) {
@@ -321,7 +321,7 @@ class Failing final : public LinearSolver {
   std::unique_ptr<LinearSolver> inner_ = make_linear_solver("mpcg+block-ic0");
 };
 
-// A strip that falls out of a roll; `order` of the method.
+// A clamped strip that falls.
 struct Falling {
   Strip s = strip(StripMesh::irregular, 12, 4, 0.05);
   std::shared_ptr<BendMemory> memory = std::make_shared<BendMemory>();

@@ -48,6 +48,16 @@ double length(const std::string& word, const char* option, double least, double 
   }
 }
 
+double lowering(const std::string& word) {
+  try {
+    const double value = quantity(parse_toml_value(word, "--lowering"), dimension::time, Range::positive);
+    if (value > 30) throw InputError("expected a time up to 30 s");
+    return value;
+  } catch (const InputError& error) {
+    throw InputError("--lowering " + word + ": " + error.what());
+  }
+}
+
 ClothModel model_of(const std::string& name) {
   if (name == "woven") return ClothModel::woven;
   if (name == "noh-jung") return ClothModel::noh_jung;
@@ -100,6 +110,7 @@ Plan plan_of(const TestFabricWords& words) {
       if (millimetres(plan.edges[k]) == millimetres(plan.edges[l]))
         throw twice("--mesh", words.mesh, millimetres(plan.edges[k]));
   if (!words.specimen.empty()) plan.drape.radius = 0.5 * length(words.specimen, "--specimen", 0.2, 0.4);
+  if (!words.lowering.empty()) plan.drape.lowering = lowering(words.lowering);
   if (!words.repeats.empty()) {
     try {
       const double repeats =

@@ -69,6 +69,28 @@ class Step(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "rest_angle = 2"):
             drape.Fabric(rest_angle=2)
 
+    def test_a_woven_sheet_whose_threads_rub_stays_higher(self):
+        sheet = drape.grid(13, 5, 0.06, 0.02)
+
+        def droop(friction):
+            fabric = drape.Fabric(area_density=0.15, bend=1e-4, bend_time=0.05, bend_friction=friction)
+            self.assertEqual(fabric.bend_friction, friction)
+            system = drape.System(drape.masses(sheet, fabric))
+            system.add(drape.woven(sheet, fabric))
+            system.add(drape.gravity([0, -9.81, 0]))
+            self.assertEqual("bend friction" in system.forces, friction > 0)
+            state, held = drape.at_rest(sheet), drape.Constraints()
+            held.pin([i for i in range(65) if i % 13 < 2])
+            stepper = drape.ImplicitEuler(system, held)
+            for _ in range(40):
+                self.assertTrue(stepper.advance(state, 0.03).done)
+            return -state.x[:, 1].min()
+
+        self.assertLess(droop(5e-4), 0.9 * droop(0))
+        self.assertIn("bend_friction=0.0005 N", repr(drape.Fabric(bend_friction=5e-4)))
+        with self.assertRaisesRegex(ValueError, "bend_friction = -1"):
+            drape.Fabric(bend_friction=-1)
+
     def test_a_sheet_in_the_air_comes_to_its_terminal_velocity(self):
         sheet, fabric = drape.grid(4, 4, 0.1, 0.1), drape.Fabric(area_density=0.2)
         system = drape.System(drape.masses(sheet, fabric))
