@@ -148,20 +148,17 @@ TEST_CASE("a rolled strip left alone stays rolled by H / B, and one without fric
     all.state.x = rolled(s.mesh, 100, 0.5 * s.length);
     all.use("implicit-euler", "mpcg+block-ic0", {.tolerance = 1e-10});
     for (int step = 0; step < 80; ++step) REQUIRE(all.advance(0.05).done);
-    // The curvature of the circle through three vertices of the middle line.
+    // The curvature of the circle through three vertices, seen along the axis of the roll.
     const auto near = [&](double at) {
       int best = 0;
-      for (int i = 0; i < s.mesh.vertex_count(); ++i) {
-        const auto off = [&](int v) {
-          const Vec3& x = s.mesh.positions[static_cast<std::size_t>(v)];
-          return std::hypot(x.x() - at * s.length, x.z() - 0.5 * s.mesh.positions[0].z());
-        };
+      const auto off = [&](int v) {
+        return std::abs(s.mesh.positions[static_cast<std::size_t>(v)].x() - at * s.length);
+      };
+      for (int i = 0; i < s.mesh.vertex_count(); ++i)
         if (off(i) < off(best)) best = i;
-      }
-      return best;
+      return Vec3(all.state.x[3 * best], all.state.x[3 * best + 1], 0);
     };
-    const Vec3 a = all.state.x.segment<3>(3 * near(0.2)), b = all.state.x.segment<3>(3 * near(0.5)),
-               c = all.state.x.segment<3>(3 * near(0.8));
+    const Vec3 a = near(0.2), b = near(0.5), c = near(0.8);
     return 2 * (b - a).cross(c - a).norm() / ((b - a).norm() * (c - b).norm() * (c - a).norm());
   };
   for (StripMesh kind : three_meshes) {
