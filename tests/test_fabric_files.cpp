@@ -79,8 +79,8 @@ TEST_CASE("a mistake in a fabric file is told with its file and line", "[scene]"
   };
   check_mistakes(table, read);
   const NamedFabric named = read(plain + "measured_drape = { coefficient = \"45 %\", nodes = 6.5 }\n");
-  REQUIRE(named.measured_drape);
-  CHECK(named.measured_drape->coefficient == Approx(0.45));
-  CHECK(named.measured_drape->nodes == 6.5);
-  CHECK_FALSE(read(plain).measured_drape);
+  REQUIRE(named.tests.drape);
+  CHECK(named.tests.drape->coefficient == Approx(0.45));
+  CHECK(named.tests.drape->nodes == 6.5);
+  CHECK_FALSE(read(plain).tests.drape);
 }

@@ -54,7 +54,7 @@ TEST_CASE("drape fit writes the fabric that was measured, in six digits and with
     for (std::size_t k = 0; k < a.size(); ++k) CHECK(b[k] == Approx(a[k]).epsilon(5e-5));
     CHECK(listed(other.unmarked) == "(none)");
     CHECK(other.description == one.description);
-    CHECK(other.measured_drape.has_value() == one.measured_drape.has_value());
+    CHECK(other.tests.drape.has_value() == one.tests.drape.has_value());
     CHECK(other.record.bending_hysteresis.has_value() == one.record.bending_hysteresis.has_value());
     CHECK(other.record.shear_hysteresis.has_value() == one.record.shear_hysteresis.has_value());
     CHECK(folder.drape("fit --from measured.toml").out == content(folder.path / "made.toml"));

@@ -192,11 +192,11 @@ TEST_CASE("the built-in fabrics have the numbers of their sources", "[scene]") {
     CHECK(named.fabric.bend == Approx(row.warp));
     CHECK(named.fabric.weave.bend_weft.value_or(0) == Approx(row.weft));
     CHECK(named.fabric.weave.shear.value_or(0) == Approx(row.shear));
-    REQUIRE(named.measured_drape);
-    CHECK(named.measured_drape->coefficient == Approx(row.drape));
+    REQUIRE(named.tests.drape);
+    CHECK(named.tests.drape->coefficient == Approx(row.drape));
   }
-  CHECK(load_fabric("cotton-broad").measured_drape->nodes == 2.0);
-  CHECK(load_fabric("polyester-tropical").measured_drape->nodes == 5.0);
+  CHECK(load_fabric("cotton-broad").tests.drape->nodes == 2.0);
+  CHECK(load_fabric("polyester-tropical").tests.drape->nodes == 5.0);
   CHECK(load_fabric("cotton-broad").record.bending_hysteresis->warp == Approx(0.124 * 9.80665e-3));
 }
 

@@ -38,6 +38,7 @@ inline constexpr Dimension moment_of_inertia{"kg.m^2", "a moment of inertia", "2
 inline constexpr Dimension density{"kg/m^3", "a density", "300 kg/m^3"};
 inline constexpr Dimension pressure{"Pa", "a modulus", "20 kPa"};
 inline constexpr Dimension area_density{"kg/m^2", "a mass per area", "150 g/m^2"};
+inline constexpr Dimension force{"N", "a force", "0.3 N"};
 inline constexpr Dimension stretch{"N/m", "a membrane stiffness", "500 N/m"};
 inline constexpr Dimension spring{"N/m", "a spring constant", "200 N/m"};
 inline constexpr Dimension bend{"N.m", "a bending rigidity", "10 uN.m"};

@@ -162,12 +162,13 @@ void check_fabric(const std::filesystem::path& file) {
   std::printf("%s\n  %s\n", one_line(file.string() + ": " + named.description).c_str(),
               in_words(named.fabric).c_str());
   print_lines(named.record);
-  if (const auto& drape = named.measured_drape)
+  if (const auto& drape = named.tests.drape)
     std::printf("  a drape test gave %s %%%s\n", rounded(100 * drape->coefficient, 4).c_str(),
                 drape->nodes ? (", " + rounded(*drape->nodes, 3) + " nodes").c_str() : "");
   for (const auto& [what, names] :
        {std::pair{"measured", &named.measured}, std::pair{"converted", &named.converted},
-        std::pair{"assumed", &named.assumed}, std::pair{"not said whether measured", &named.unmarked}})
+        std::pair{"fitted", &named.fitted}, std::pair{"assumed", &named.assumed},
+        std::pair{"not said whether measured", &named.unmarked}})
     if (!names->empty()) std::printf("  %s: %s\n", what, one_line(listed(*names)).c_str());
 }
 

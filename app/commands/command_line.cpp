@@ -317,12 +317,21 @@ void add_export(CLI::App& app, int& exit_code) {
 
 void add_fit(CLI::App& app, int& exit_code) {
   CLI::App* const command = app.add_subcommand(
-      "fit", "makes the parameters of a fabric from what a laboratory measured, by direct formulas");
+      "fit",
+      "makes the parameters of a fabric from what a laboratory measured, by formulas and virtual tests");
   auto words = std::make_shared<FitWords>();
   command->add_option("FABRIC", words->out, "the fabric file to write, .toml (printed)");
-  command->add_option("--from", words->from, "a fabric file with bending_length, kes, fast and so on")
-      ->type_name("FILE")
+  const auto option = [&](const char* name, std::string& value, const char* type, const char* help) {
+    return command->add_option(name, value, help)->type_name(type);
+  };
+  option("--from", words->from, "FILE", "a fabric file with bending_length, kes, measured_drape and so on")
       ->required();
+  option("--mesh", words->mesh, "LENGTH", "longest edge of the meshes of virtual tests (10 mm)");
+  option("--repeats", words->repeats, "N", "how many specimens a virtual drape test takes (3)");
+  option(
+      "--parameters", words->parameters, "NAME,...",
+      "what virtual tests give, of bend, bend.warp, bend.weft, bend.bias, stretch.shear (what is measured)");
+  command->add_flag("--quiet", words->quiet, "nothing but errors and the fabric");
   command->add_flag("--force", words->force, "replace a file that is there");
   command->callback([=, &exit_code] { exit_code = fit(*words); });
 }

@@ -73,6 +73,9 @@ mass   = 1
 constexpr std::string_view fabric_of_every_kind = R"(
 area_density   = 0.15
 measured_drape = { coefficient = 0.5 }
+measured_cantilever = { length = 0.1, droop = 0.05 }
+measured_bias_extension = { length = 0.1, width = 0.05, load = "5 gf/cm", extension = 0.1 }
+measured_picture_frame = { side = 0.1, shear = 0.1, force = 0.1 }
 )";
 
 constexpr std::string_view pattern_of_every_kind = R"(

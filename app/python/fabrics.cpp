@@ -179,17 +179,18 @@ void add_fabric(py::module_& m) {
       .def_readonly("source", &NamedFabric::source)
       .def_readonly("measured", &NamedFabric::measured, "keys that were measured")
       .def_readonly("converted", &NamedFabric::converted, "keys that follow from what was measured")
+      .def_readonly("fitted", &NamedFabric::fitted, "keys with which virtual tests give what was measured")
       .def_readonly("assumed", &NamedFabric::assumed, "keys that nobody measured")
       .def_property_readonly(
           "measured_drape_coefficient",
           [](const NamedFabric& named) {
-            return named.measured_drape ? Given(named.measured_drape->coefficient) : Given();
+            return named.tests.drape ? Given(named.tests.drape->coefficient) : Given();
           },
           "from 0 to 1, of a drape test of the fabric; None: not known")
       .def_property_readonly(
           "measured_drape_nodes",
           [](const NamedFabric& named) {
-            return named.measured_drape ? named.measured_drape->nodes : Given();
+            return named.tests.drape ? named.tests.drape->nodes : Given();
           },
           "folds that were counted in it; None: not known")
       .def_property_readonly("fabric", [](const NamedFabric& named) { return Fabric(named.fabric); })

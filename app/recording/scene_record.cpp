@@ -145,22 +145,26 @@ Json weave_json(const ClothEntry& entry) {
   const Weave& weave = entry.fabric.weave;
   Json warp;
   if (entry.warp) warp = Json::List{entry.warp->x(), entry.warp->y(), entry.warp->z()};
-  return Json::Members{{"warp", warp},
-                       {"stretch_warp", membrane.warp},
-                       {"stretch_weft", membrane.weft},
-                       {"shear", membrane.shear},
-                       {"poisson", weave.poisson},
-                       {"compression", weave.compression},
-                       {"bend_warp", plate.warp},
-                       {"bend_weft", plate.weft},
-                       {"bend_bias", 0.25 * (plate.warp + plate.weft + 2 * plate.cross) + plate.twist},
-                       {"bend_poisson", weave.bend_poisson},
-                       {"stretch_time", weave.stretch_time},
-                       {"shear_time", weave.shear_time},
-                       {"bend_time", weave.bend_time},
-                       {"bend_friction_warp", friction.warp},
-                       {"bend_friction_weft", friction.weft},
-                       {"rest_angle", weave.rest_angle}};
+  Json::Members groups;
+  for (const GroupWarp& group : entry.group_warps)
+    groups.emplace_back(group.group,
+                        Json::List{group.direction.x(), group.direction.y(), group.direction.z()});
+  Json::Members members{{"warp", warp},
+                        {"stretch_warp", membrane.warp},
+                        {"stretch_weft", membrane.weft},
+                        {"shear", membrane.shear},
+                        {"poisson", weave.poisson},
+                        {"compression", weave.compression},
+                        {"bend_warp", plate.warp},
+                        {"bend_weft", plate.weft},
+                        {"bend_bias", 0.25 * (plate.warp + plate.weft + 2 * plate.cross) + plate.twist},
+                        {"bend_poisson", weave.bend_poisson},
+                        {"stretch_time", weave.stretch_time},
+                        {"shear_time", weave.shear_time},
+                        {"bend_time", weave.bend_time},
+                        {"rest_angle", weave.rest_angle}};
+  if (!groups.empty()) members.emplace_back("group_warps", std::move(groups));
+  return members;
 }
 
 }  // namespace

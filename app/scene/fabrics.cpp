@@ -45,23 +45,6 @@ fs::path file_of(const std::string& name, const fs::path& folder) {
   throw InputError("there is no fabric '" + name + "'; " + suggestion(name, fabric_names()));
 }
 
-std::optional<MeasuredDrape> read_measured_drape(Table& table) {
-  const About about("what a drape test of the fabric gave");
-  const Node* const node = table.take("measured_drape", "a table", about);
-  if (!node) return {};
-  if (node->kind != Node::Kind::table)
-    table.fail("measured_drape", "expected a table such as { coefficient = \"45 %\", nodes = 6 }");
-  Table test = table.inner("measured_drape");
-  MeasuredDrape measured;
-  test.read_required("coefficient", measured.coefficient, dimension::share, Range::not_negative,
-                     "the drape coefficient: the part of the ring round the plate that the shadow covers");
-  if (measured.coefficient > 1)
-    test.fail("coefficient", "a drape coefficient is at most 1; write 45 % as \"45 %\" or 0.45");
-  test.read("nodes", measured.nodes, dimension::number, Range::not_negative, "how many folds were counted");
-  test.finish();
-  return measured;
-}
-
 // "bend.warp" and the like: the numbers of a fabric file.
 void add_numbers(const Node& node, const std::string& path, Names& numbers) {
   if (node.kind != Node::Kind::table) return numbers.push_back(path);
@@ -71,26 +54,26 @@ void add_numbers(const Node& node, const std::string& path, Names& numbers) {
 Names numbers_of(const Node& root) {
   Names numbers;
   for (const auto& [key, member] : root.members) {
-    const Names words = {"description", "source",       "measured",           "converted",
-                         "assumed",     "damping_kind", "neighbour_weighting"};
+    const Names words = {"description", "source",  "measured",     "converted",
+                         "fitted",      "assumed", "damping_kind", "neighbour_weighting"};
     if (std::find(words.begin(), words.end(), key) == words.end()) add_numbers(member, key, numbers);
   }
   return numbers;
 }
 
-// Every number that the three lists name is there, and is named once.
+// Every number that the four lists name is there, and is named once.
 void check_marks(const Table& table, const Node& root, NamedFabric& named) {
   named.unmarked = numbers_of(root);
   Names marked;
   for (const auto& [list, names] :
        {std::pair{"measured", &named.measured}, std::pair{"converted", &named.converted},
-        std::pair{"assumed", &named.assumed}})
+        std::pair{"fitted", &named.fitted}, std::pair{"assumed", &named.assumed}})
     for (const std::string& name : *names) {
       const auto is_of = [&](const std::string& number) {
         return number == name || number.starts_with(name + ".");
       };
       if (std::any_of(marked.begin(), marked.end(), is_of))
-        table.fail(list, name + " stands in two of the lists measured, converted and assumed");
+        table.fail(list, name + " stands in two of the lists measured, converted, fitted and assumed");
       const Names numbers = numbers_of(root);
       if (std::none_of(numbers.begin(), numbers.end(), is_of))
         table.fail(list, "the file does not give " + name + "; it gives " + listed(numbers));
@@ -121,8 +104,10 @@ NamedFabric read_fabric_file(const Node& root, const std::string& name, KeyNotes
   table.read("measured", named.measured, "keys whose values were measured, as \"bend\" or \"bend.warp\"");
   table.read("converted", named.converted,
              "keys whose values follow from what was measured, by a formula or in other units");
+  table.read("fitted", named.fitted,
+             "keys whose values make virtual tests give what was measured; `drape fit` looks for them");
   table.read("assumed", named.assumed, "keys whose values nobody measured");
-  named.measured_drape = read_measured_drape(table);
+  named.tests = read_measured(table);
   table.require("area_density");
   read_fabric(table, named.fabric, named.record);
   table.finish();

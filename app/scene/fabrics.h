@@ -1,6 +1,6 @@
 // Fabrics of files. A named fabric is fabrics/NAME.toml of a data folder; a fabric of one's own is any other
-// file that ends in .toml. Each file names its source and says of its numbers which were measured, converted
-// and assumed.
+// file that ends in .toml. Each file names its source and says of its numbers which were measured, converted,
+// fitted and assumed.
 //
 // Data folders: $DRAPE_DATA when it is set, whose fabrics go before those of the same name in the built-in
 // folder. That is the first of these: the folder given to set_data_folder(), ../share/drape beside the program
@@ -12,23 +12,19 @@
 #include <string>
 
 #include "app/scene/fabric_read.h"
+#include "app/scene/measured.h"
 
 namespace drape::app {
-
-// What a drape tester of Cusick's kind found. It is shown beside what a simulation gives, and changes nothing.
-struct MeasuredDrape {
-  double coefficient = 0;            // from 0 to 1
-  std::optional<double> nodes = {};  // how many folds; a mean of several tests may be no whole number
-};
 
 struct NamedFabric {
   std::string name;  // as it was asked for: "cotton-broad", "my.toml"
   std::string description, source;
   // Of the numbers of the file, as "area_density" or "bend.warp"; "bend" is all of a table.
   Names measured, converted;  // from what was measured, by a formula or into other units
+  Names fitted;               // virtual tests give with these what was measured (`drape fit`)
   Names assumed;              // nobody measured these
-  Names unmarked;             // the file says of these numbers none of the three
-  std::optional<MeasuredDrape> measured_drape;
+  Names unmarked;             // the file says of these numbers none of the four
+  MeasuredTests tests;
   Fabric fabric;
   FabricRecord record;
 };

@@ -16,6 +16,7 @@
 #include "solver/forces/air.h"
 #include "solver/forces/fabric.h"
 #include "solver/forces/soft.h"
+#include "solver/forces/woven.h"
 #include "solver/integrators/integrator.h"
 
 namespace drape::app {
@@ -75,6 +76,7 @@ struct ClothEntry {
   std::vector<SeamEntry> seams;
   std::string model = "noh-jung";
   std::optional<Vec3> warp;            // direction in the rest shape, of model = "woven"
+  std::vector<GroupWarp> group_warps;  // the same of groups of the mesh, instead of that
   std::optional<double> imperfection;  // m, how far the start is off the mesh; unset: by the model
   std::string fabric_name;             // empty when the scene names none
   Fabric fabric;

@@ -9,6 +9,7 @@
 #include "app/scene/scene.h"
 #include "app/scene/sewing_read.h"
 #include "app/scene/soft_read.h"
+#include "app/scene/warp_read.h"
 #include "mesh/base/errors.h"
 #include "mesh/base/threads.h"
 #include "solver/forces/woven.h"
@@ -181,16 +182,6 @@ PinEntry read_pin(Table& pin, const fs::path& folder) {
 
 constexpr const char* pins_about = "vertices that are held, or led";
 
-std::optional<Vec3> read_warp(Table& table, const ClothEntry& cloth) {
-  if (table.has("warp") && cloth.model != "woven") table.fail("warp", "goes with model = \"woven\"");
-  Vec3 warp = cloth.rest_is_flat ? Vec3(0, 1, 0) : Vec3(Vec3::Zero());
-  table.read("warp", warp, dimension::number,
-             {"of model = \"woven\": the direction of the warp in the rest shape, as the file has it",
-              "v of the texture coordinates, with rest = \"uv\": the grain of each panel of a pattern"});
-  if (table.has("warp") && warp.isZero()) table.fail("warp", "a direction is not [0, 0, 0]");
-  return warp.isZero() ? std::optional<Vec3>() : warp;
-}
-
 // "flat", "mesh", or a share between them.
 void read_rest_angle(Table& table, ClothEntry& cloth) {
   const Node* const node = table.take(
@@ -244,7 +235,7 @@ void check_model(const Table& table, const ClothEntry& cloth) {
     if (table.has(key)) table.fail(key, what);
     table.fail("fabric", std::string("its ") + key + " " + what);
   }
-  if (woven && needs_warp(cloth.fabric) && !cloth.warp)
+  if (woven && needs_warp(cloth.fabric) && !cloth.warp && cloth.group_warps.empty())
     table.fail("model",
                "the fabric differs, wrinkles or is viscous along warp and weft; give warp = [x, y, z], the "
                "direction of the "
@@ -292,7 +283,7 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
       "model", cloth.model, model_names(),
       "noh-jung: springs, of any mesh; choi-ko: springs, of a regular grid of quads (holes and tubes are "
       "welcome); woven: a membrane and a plate, of any mesh");
-  cloth.warp = read_warp(table, cloth);
+  read_warp(table, cloth);
   table.read(
       "imperfection", cloth.imperfection, dimension::length, Range::not_negative,
       {"how far the start is off its own surface, in gentle waves: a cloth that is exactly flat and is "

@@ -49,6 +49,7 @@ ClothPart load_cloth(const ClothEntry& entry, Names& messages) {
                : entry.model == "woven" ? ClothModel::woven
                                         : ClothModel::noh_jung;
   part.warp = entry.warp;
+  part.group_warps = entry.group_warps;
   part.imperfection = entry.imperfection;
   part.mesh = placed(is_pattern(entry.mesh) ? cut_pattern(entry, messages) : read_obj(entry.mesh),
                      {.scale = entry.placement.scale}, entry.mesh.string());

@@ -12,7 +12,7 @@ namespace {
 constexpr double right_angle = 1.57079632679489661923;
 
 struct Shape {
-  double gamma, chord_angle;
+  double gamma, chord_angle, droop;  // the droop as a share of the length
 };
 
 // The strip whose tip stands at phi_tip [rad] from the vertical. Followed from the tip in units of c, it obeys
@@ -38,17 +38,21 @@ Shape shape(double phi_tip) {
     method.do_step(slope, y, t, rest);
     t += rest;
   }
-  return {t * t * t, std::atan2(y[2], y[3])};
+  return {t * t * t, std::atan2(y[2], y[3]), y[2] / t};
 }
 
-}  // namespace
-
-double gamma_of_chord(double angle) {
-  const auto excess = [&](double phi_tip) { return shape(phi_tip).chord_angle - angle; };
+// Gamma of the shape of which `measure` is `value`; the measure grows from the level strip to the one that hangs.
+double gamma_where(double Shape::*measure, double value) {
+  const auto excess = [&](double phi_tip) { return shape(phi_tip).*measure - value; };
   std::uintmax_t most = 100;
   const auto [low, high] = boost::math::tools::toms748_solve(
       excess, 1e-8, right_angle * (1 - 1e-9), boost::math::tools::eps_tolerance<double>(40), most);
   return shape(0.5 * (low + high)).gamma;
 }
+
+}  // namespace
+
+double gamma_of_chord(double angle) { return gamma_where(&Shape::chord_angle, angle); }
+double gamma_of_droop(double share) { return gamma_where(&Shape::droop, share); }
 
 }  // namespace drape::app

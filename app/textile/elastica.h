@@ -12,4 +12,7 @@ inline constexpr double standard_chord_angle = 41.5 * 3.14159265358979323846 / 1
 // Gamma of the strip whose chord stands at this angle [rad], between 0.01 and 1.5.
 double gamma_of_chord(double angle);
 
+// Gamma of the strip whose free end hangs lower than the clamp by this share of its length, between 0.001 and 0.98.
+double gamma_of_droop(double share);
+
 }  // namespace drape::app

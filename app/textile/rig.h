@@ -35,6 +35,10 @@ class Rig {
   // steps.
   bool settle(double h, double speed, int most);
 
+  // Brings a specimen that is loaded by its clamps alone to equilibrium: by steps so long that inertia does not
+  // count.
+  bool relax() { return settle(10, 1e-11, 400); }
+
   const State& state() const { return state_; }
   Vec3 place(int vertex) const { return state_.x.segment<3>(3 * vertex); }  // m
   Vec3 pull_on(const std::vector<int>& vertices) const;  // N, what a clamp has to hold against, summed up

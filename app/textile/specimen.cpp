@@ -84,6 +84,16 @@ Specimen strip_between_clamps(double length, double width, double edge) {
   return specimen;
 }
 
+Specimen hinged_frame(double side, double edge) {
+  Specimen frame = strip_between_clamps(side, side, edge);
+  const double inner = 0.5 * side * (1 - 1e-9), first = 1e-9 * side, last = (1 - 1e-9) * side;
+  for (int i : vertices_where(frame.mesh, [&](const Vec3& p) {
+         return std::abs(p.z()) > inner && p.x() > first && p.x() < last;
+       }))
+    frame.held.push_back(i);
+  return frame;
+}
+
 Specimen disc_on_plate(double radius, double plate_radius, double edge) {
   const double apart = clamp_width(edge), inner = plate_radius + 0.5 * apart;
   Panel panel;

@@ -1,7 +1,6 @@
 #include "app/textile/test_fabric.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "app/base/atomic_file.h"
@@ -9,6 +8,7 @@
 #include "app/base/table.h"
 #include "app/recording/output.h"
 #include "app/scene/fabrics.h"
+#include "app/textile/options.h"
 #include "mesh/base/errors.h"
 
 namespace drape::app {
@@ -25,29 +25,6 @@ struct Plan {
   DrapeTest drape;
 };
 
-Names split(const std::string& text) {
-  Names words;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::size_t first = std::min(text.find_first_not_of(' ', begin), end);
-    words.push_back(text.substr(first, end - first));
-    begin = end + 1;
-  }
-  return words;
-}
-
-double length(const std::string& word, const char* option, double least, double most) {
-  try {
-    const double value = quantity(parse_toml_value(word, option), dimension::length, Range::positive);
-    if (value < least || value > most)
-      throw InputError("expected a length from " + rounded(1000 * least, 3) + " mm to " +
-                       rounded(1000 * most, 3) + " mm");
-    return value;
-  } catch (const InputError& error) {
-    throw InputError(std::string(option) + " " + word + ": " + error.what());
-  }
-}
-
 double lowering(const std::string& word) {
   try {
     const double value = quantity(parse_toml_value(word, "--lowering"), dimension::time, Range::positive);
@@ -62,17 +39,6 @@ ClothModel model_of(const std::string& name) {
   if (name == "woven") return ClothModel::woven;
   if (name == "noh-jung") return ClothModel::noh_jung;
   throw InputError("--model " + name + ": expected woven or noh-jung; the specimens are meshes of triangles");
-}
-
-std::string millimetres(double length) { return rounded(1000 * length, 3) + " mm"; }
-
-// Specimens have meshes of their own, for which constants of single connections mean nothing.
-void check_widths(const NamedFabric& named) {
-  const Fabric& fabric = named.fabric;
-  if (!fabric.stretch_spring && !fabric.bend_spring && fabric.stretch > 0 && fabric.bend > 0) return;
-  throw InputError("fabric " + named.name +
-                   ": a specimen needs stretch and bend per width, both above 0; stretch_spring and "
-                   "bend_spring are of the connections of one mesh");
 }
 
 void add_friction(const TestFabricWords& words, Plan& plan) {
@@ -92,9 +58,9 @@ Plan plan_of(const TestFabricWords& words) {
   plan.model_name = words.model.empty() ? "woven" : words.model;
   plan.model = model_of(plan.model_name);
   if (words.hysteresis) add_friction(words, plan);
-  for (const std::string& word : split(words.mesh.empty() ? "10 mm,5 mm" : words.mesh))
-    plan.edges.push_back(length(word, "--mesh", 1e-3, 0.02));
-  plan.tests = words.tests.empty() ? test_names : split(words.tests);
+  for (const std::string& word : names_in(words.mesh.empty() ? "10 mm,5 mm" : words.mesh))
+    plan.edges.push_back(specimen_length(word, "--mesh", least_edge, most_edge));
+  plan.tests = words.tests.empty() ? test_names : names_in(words.tests);
   for (const std::string& name : plan.tests)
     if (std::find(test_names.begin(), test_names.end(), name) == test_names.end())
       throw InputError("--tests " + words.tests + ": there is no test '" + name + "'; " +
@@ -109,25 +75,13 @@ Plan plan_of(const TestFabricWords& words) {
     for (std::size_t l = 0; l < k; ++l)
       if (millimetres(plan.edges[k]) == millimetres(plan.edges[l]))
         throw twice("--mesh", words.mesh, millimetres(plan.edges[k]));
-  if (!words.specimen.empty()) plan.drape.radius = 0.5 * length(words.specimen, "--specimen", 0.2, 0.4);
+  if (plan.fabric.tests.drape) plan.drape.radius = 0.5 * plan.fabric.tests.drape->specimen;
+  if (!words.specimen.empty())
+    plan.drape.radius = 0.5 * specimen_length(words.specimen, "--specimen", 0.2, 0.4);
   if (!words.lowering.empty()) plan.drape.lowering = lowering(words.lowering);
-  if (!words.repeats.empty()) {
-    try {
-      const double repeats =
-          quantity(parse_toml_value(words.repeats, "--repeats"), dimension::number, Range::positive);
-      if (repeats > 1000 || repeats != std::floor(repeats))
-        throw InputError("expected a whole number from 1 to 1000");
-      plan.drape.repeats = static_cast<int>(repeats);
-    } catch (const InputError& error) {
-      throw InputError("--repeats " + words.repeats + ": " + error.what());
-    }
-  }
-  const double overhang = plan.drape.radius - plan.drape.plate_radius;
+  if (!words.repeats.empty()) plan.drape.repeats = repeats_of(words.repeats);
   if (std::find(plan.tests.begin(), plan.tests.end(), "drape") != plan.tests.end())
-    for (double edge : plan.edges)
-      if (overhang < 2.5 * edge)
-        throw InputError("--mesh " + millimetres(edge) + ": is too coarse for the " + millimetres(overhang) +
-                         " of fabric that hang over the plate; take a finer mesh or a larger --specimen");
+    for (double edge : plan.edges) check_overhang(plan.drape.radius, plan.drape.plate_radius, edge);
   return plan;
 }
 
@@ -151,9 +105,9 @@ Values run(const Plan& plan, const std::string& test, double edge, Pictures& pic
 }
 
 std::optional<double> measured(const NamedFabric& fabric, const std::string& quantity) {
-  if (!fabric.measured_drape) return {};
-  if (quantity == "drape coefficient") return fabric.measured_drape->coefficient;
-  return quantity == "nodes" ? fabric.measured_drape->nodes : std::nullopt;
+  if (!fabric.tests.drape) return {};
+  if (quantity == "drape coefficient") return fabric.tests.drape->coefficient;
+  return quantity == "nodes" ? fabric.tests.drape->nodes : std::nullopt;
 }
 
 void add(FabricTable& table, const NamedFabric& fabric, const std::string& test, const Values& values) {

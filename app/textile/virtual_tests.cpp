@@ -8,6 +8,7 @@
 #include "app/base/interrupt.h"
 #include "app/scene/laboratory.h"
 #include "app/textile/elastica.h"
+#include "app/textile/single_tests.h"
 #include "solver/forces/woven.h"
 
 namespace drape::app {
@@ -50,18 +51,9 @@ double shown_bending_length(const Cut& cut, double edge, double expected) {
   double length = std::max(2 * expected, shortest);
   for (int round = 0; round < 5 && !interrupted(); ++round) {
     if (length < shortest) return nan;  // the mesh is too coarse for this fabric
-    const double width = std::max(0.025, 4 * edge);
-    const Specimen strip = overhanging_strip(length, width, edge);
-    Rig rig(strip, cut, {0, -standard_gravity, 0}, [](const Vec3& x) { return x; });
-    if (!rig.settle(0.1 * std::sqrt(length), 1e-6, 8000)) return nan;
-    Vec3 tip = Vec3::Zero();
-    int at_tip = 0;
-    for (int i = 0; i < strip.mesh.vertex_count(); ++i)
-      if (strip.mesh.positions[static_cast<std::size_t>(i)].x() > length * (1 - 1e-9)) {
-        tip += rig.place(i);
-        ++at_tip;
-      }
-    const double angle = std::atan2(-tip.y() / at_tip, tip.x() / at_tip);
+    const Vec3 tip = hanging_tip(cut, length, edge);
+    if (!tip.allFinite()) return nan;
+    const double angle = std::atan2(-tip.y(), tip.x());
     if (!(angle > 0.01 && angle < 1.5)) {  // far from a bending length: try another strip
       length *= angle > 1 ? 0.5 : 2;
       continue;
@@ -92,12 +84,6 @@ Gradient gradient_within(const Specimen& specimen, const Rig& rig, double from, 
   return {fit(1, 0), fit(2, 0), fit(1, 1), fit(2, 1)};
 }
 
-// Brings a specimen that is loaded by its clamps to equilibrium: steps so long that inertia does not count.
-bool relax(Rig& rig) {
-  constexpr double step = 10;  // s
-  return rig.settle(step, 1e-11, 400);
-}
-
 }  // namespace
 
 Values cantilever_test(const Fabric& fabric, ClothModel model, double edge) {
@@ -123,7 +109,7 @@ Values tensile_test(const Fabric& fabric, ClothModel model, double edge) {
     Rig rig(strip, {fabric, model, direction.angle}, Vec3::Zero(),
             [](const Vec3& x) { return Vec3((1 + strain) * x.x(), 0, x.z()); });
     double modulus = nan, narrower = nan;
-    if (relax(rig)) {
+    if (rig.relax()) {
       const Gradient middle = gradient_within(strip, rig, 0.25 * length, 0.75 * length);
       modulus = rig.pull_on(strip.held).x() / (width * middle.ux);
       narrower = -middle.wz / middle.ux;
@@ -152,7 +138,7 @@ Values shear_test(const Fabric& fabric, ClothModel model, double edge) {
     const Specimen specimen = strip_between_clamps(apart, width, edge);
     Rig rig(specimen, {fabric, model, 0}, Vec3::Zero(), sheared);
     double modulus = nan;
-    if (relax(rig)) {
+    if (rig.relax()) {
       // The share of the clamp whose fabric is sheared alike, and the length that belongs to its vertices.
       std::vector<int> middle;
       double low = width, high = -width;
@@ -170,12 +156,9 @@ Values shear_test(const Fabric& fabric, ClothModel model, double edge) {
     values.push_back({"shear modulus, between clamps", newton_per_metre, asked, {modulus}});
   }
   constexpr double side = 0.1;
-  Specimen frame = strip_between_clamps(side, side, edge);
-  for (int i = 0; i < frame.mesh.vertex_count(); ++i)
-    if (std::abs(frame.mesh.positions[static_cast<std::size_t>(i)].z()) > 0.5 * side * (1 - 1e-9))
-      frame.held.push_back(i);
+  const Specimen frame = hinged_frame(side, edge);
   Rig rig(frame, {fabric, model, 0}, Vec3::Zero(), sheared);
-  const double modulus = relax(rig) ? 2 * rig.stored_energy() / (side * side * shear * shear) : nan;
+  const double modulus = rig.relax() ? 2 * rig.stored_energy() / (side * side * shear * shear) : nan;
   values.push_back({"shear modulus, picture frame", newton_per_metre, asked, {modulus}});
   return values;
 }

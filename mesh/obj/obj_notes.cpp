@@ -86,4 +86,17 @@ std::vector<VertexGroup> Groups::collect(const ObjDocument& document, const std:
   return collected;
 }
 
+std::vector<char> Groups::faces_under(const std::string& name, std::size_t faces) const {
+  std::vector<char> under(faces, 0);
+  const auto group = numbers_.find(name);
+  if (group == numbers_.end()) return under;
+  for (std::size_t s = 0; s < spans_.size(); ++s) {
+    const std::vector<int>& groups = spans_[s].groups;
+    if (std::find(groups.begin(), groups.end(), group->second) == groups.end()) continue;
+    const std::size_t end = s + 1 < spans_.size() ? spans_[s + 1].first_face : faces;
+    for (std::size_t f = spans_[s].first_face; f < end; ++f) under[f] = 1;
+  }
+  return under;
+}
+
 }  // namespace drape::internal::obj

@@ -39,6 +39,8 @@ class Groups {
   // names it.
   std::vector<VertexGroup> collect(const ObjDocument& document, const std::vector<Polyline>& lines,
                                    int vertices) const;
+  // For each of this many faces whether it is in the group.
+  std::vector<char> faces_under(const std::string& name, std::size_t faces) const;
 
  private:
   struct Span {  // from this face on, these groups hold

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "mesh/obj/obj.h"
+#include "mesh/obj/obj_groups.h"
 #include "mesh/obj/obj_scan.h"
 #include "mesh/triangles/topology.h"
 
@@ -30,18 +31,14 @@ std::vector<Vec3> texture_points(const ObjDocument& document, double scale) {
   return points;
 }
 
-// How many triangles the reader made of a face: two fewer than it has corners, and fewer still where corners
-// repeat.
-std::size_t triangles_of(const std::vector<Triangle>& triangles, std::size_t first, const ObjCorner* corners,
-                         std::size_t count) {
-  const auto has = [&](int v) {
-    return std::any_of(corners, corners + count, [&](const ObjCorner& c) { return c.v == v; });
-  };
-  std::size_t made = 0;
-  while (made + 2 < count && first + made < triangles.size() &&
-         std::all_of(triangles[first + made].begin(), triangles[first + made].end(), has))
-    ++made;
-  return made;
+// Whether the corners lie in a line, but for the rounding of their coordinates.
+bool is_needle(const TriangleMesh& flat, const Triangle& t) {
+  double longest = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    longest = std::max(longest, (flat.positions[static_cast<std::size_t>(t[k])] -
+                                 flat.positions[static_cast<std::size_t>(t[(k + 1) % 3])])
+                                    .squaredNorm());
+  return triangle_area(flat, t) <= 1e-9 * longest;
 }
 
 }  // namespace
@@ -54,21 +51,20 @@ TriangleMesh flat_pattern(const TriangleMesh& mesh, double scale) {
   TriangleMesh flat;
   flat.positions = texture_points(document, scale);
   flat.triangles.reserve(mesh.triangles.size());
-  for (std::size_t f = 0; f < document.face_count(); ++f) {
-    const ObjCorner* const corners = document.corners.data() + document.face_start[f];
-    const std::size_t count = document.face_start[f + 1] - document.face_start[f];
-    const std::size_t first = flat.triangles.size();
-    for (std::size_t made = triangles_of(mesh.triangles, first, corners, count); made > 0; --made) {
-      const Triangle& t = mesh.triangles[flat.triangles.size()];
-      Triangle uv;
-      for (std::size_t k = 0; k < 3; ++k) {
-        uv[k] = std::find_if(corners, corners + count, [&](const ObjCorner& c) { return c.v == t[k]; })->vt;
-        if (uv[k] < 0) fail(f, "has a corner without a texture coordinate");
-      }
-      if (triangle_area(flat, uv) == 0 && triangle_area(mesh, t) > 0)
-        fail(f, "has no area in its texture coordinates: it would shrink to nothing");
-      flat.triangles.push_back(uv);
+  const std::vector<std::size_t> faces = faces_of_triangles(mesh);
+  for (std::size_t number = 0; number < faces.size(); ++number) {
+    const std::size_t f = faces[number];
+    const ObjCorner *const corners = document.corners.data() + document.face_start[f],
+                           *const end = document.corners.data() + document.face_start[f + 1];
+    const Triangle& t = mesh.triangles[number];
+    Triangle uv;
+    for (std::size_t k = 0; k < 3; ++k) {
+      uv[k] = std::find_if(corners, end, [&](const ObjCorner& c) { return c.v == t[k]; })->vt;
+      if (uv[k] < 0) fail(f, "has a corner without a texture coordinate");
     }
+    if (is_needle(flat, uv) && triangle_area(mesh, t) > 0)
+      fail(f, "has no area in its texture coordinates: it would shrink to nothing");
+    flat.triangles.push_back(uv);
   }
   return flat;
 }

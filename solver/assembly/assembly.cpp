@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "mesh/base/errors.h"
+#include "mesh/base/words.h"
 #include "mesh/lattice/solid.h"
+#include "mesh/obj/obj_groups.h"
 #include "mesh/triangles/topology.h"
 #include "solver/assembly/imperfection.h"
 #include "solver/forces/choi_ko.h"
@@ -85,6 +87,32 @@ double imperfection_of(const Cloth& cloth, const std::optional<double>& given) {
   return amplitude;
 }
 
+// The warp of each triangle: that of its group, else that of the cloth.
+std::vector<Vec3> warps_of(const ClothPart& part, const Cloth& cloth) {
+  if (cloth.model != ClothModel::woven) return {};
+  const auto count = static_cast<std::size_t>(cloth.mesh.triangle_count());
+  std::vector<Vec3> warps(count, part.warp.value_or(Vec3::Zero()));
+  std::vector<const std::string*> from(count, nullptr);
+  for (const GroupWarp& group : part.group_warps) {
+    const std::vector<int> triangles = internal::triangles_of_group(cloth.mesh, group.group);
+    if (triangles.empty()) {
+      Names known;
+      for (const VertexGroup& one : cloth.mesh.groups) known.push_back(one.name);
+      throw InputError("warp: the mesh has no faces in a group '" + group.group + "'; " +
+                       suggestion(group.group, known));
+    }
+    for (int t : triangles) {
+      const auto k = static_cast<std::size_t>(t);
+      if (from[k])
+        throw InputError("warp: triangle " + std::to_string(t + 1) + " is in the groups '" + *from[k] +
+                         "' and '" + group.group + "'; name one of them");
+      from[k] = &group.group;
+      warps[k] = group.direction;
+    }
+  }
+  return warps;
+}
+
 // Where the cloth starts: off its mesh by its imperfection.
 std::vector<Vec3> start_of(const Cloth& cloth) {
   std::vector<Vec3> positions = cloth.mesh.positions;
@@ -134,7 +162,7 @@ Cloth& Assembly::add(ClothPart part) {
   check_rest(cloth);
   cloth.fabric = part.fabric;
   cloth.model = part.model;
-  cloth.warp = part.warp;
+  cloth.warp = warps_of(part, cloth);
   if (cloth.fabric.weave.rest_angle > 0 && !part.seams.empty())
     throw InputError(cloth.name +
                      ": rest_angle: where panels are sewn the mesh has no angle; expected 0 with seams");

@@ -18,6 +18,7 @@
 #include "solver/forces/connections.h"
 #include "solver/forces/plate_friction.h"
 #include "solver/forces/soft.h"
+#include "solver/forces/woven.h"
 
 namespace drape {
 
@@ -33,7 +34,8 @@ struct ClothPart {
   std::optional<TriangleMesh> rest = {};  // as in solver/forces/noh_jung.h; unset: as the cloth starts
   Fabric fabric = {};
   ClothModel model = ClothModel::noh_jung;
-  std::optional<Vec3> warp = {};  // direction in the rest shape, of a woven cloth
+  std::optional<Vec3> warp = {};            // direction in the rest shape, of a woven cloth
+  std::vector<GroupWarp> group_warps = {};  // the same of groups of the mesh, instead of that
   // How far the start is off `mesh` [m] (solver/assembly/imperfection.h). Unset: woven_imperfection of a woven
   // cloth, 0 of the others.
   std::optional<double> imperfection = {};
@@ -73,8 +75,8 @@ struct Cloth {
 
   Fabric fabric;  // of a cloth
   ClothModel model = ClothModel::noh_jung;
-  std::optional<Vec3> warp;            // direction in the rest shape
-  double imperfection = 0;             // m, how far the start is off `mesh`
+  std::vector<Vec3> warp;   // direction in the rest shape, of each triangle; [0, 0, 0] where nothing says it
+  double imperfection = 0;  // m, how far the start is off `mesh`
   std::shared_ptr<BendMemory> memory;  // of a woven cloth whose threads rub
   double limp_below = 0;  // curvature [1/m] below which the cloth is limp (solver/forces/connections.h)
 

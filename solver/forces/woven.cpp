@@ -65,16 +65,31 @@ bool needs_warp(const Fabric& fabric) {
   return has_directions(fabric) || w.compression != 1 || w.stretch_time != w.shear_time;
 }
 
-std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::optional<Vec3>& warp) {
+namespace {
+
+// The direction for every triangle.
+std::vector<Vec3> for_all(const TriangleMesh& rest, const std::optional<Vec3>& warp) {
   if (warp && !(warp->allFinite() && warp->norm() > 0))
     throw InputError("warp: a direction is finite and not [0, 0, 0]");
+  return std::vector<Vec3>(rest.triangles.size(), warp.value_or(Vec3::Zero()));
+}
+
+}  // namespace
+
+std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::vector<Vec3>& warps) {
+  if (!warps.empty() && warps.size() != rest.triangles.size())
+    throw InputError("warp: " + std::to_string(warps.size()) + " directions for " +
+                     std::to_string(rest.triangles.size()) + " triangles");
   std::vector<RestCorners> all;
   all.reserve(rest.triangles.size());
   for (const Triangle& t : rest.triangles) {
     const auto at = [&](std::size_t k) { return rest.positions[static_cast<std::size_t>(t[k])]; };
     const Vec3 one = at(1) - at(0), two = at(2) - at(0), normal = one.cross(two).normalized();
-    Vec3 u = warp ? Vec3(*warp - normal.dot(*warp) * normal) : one;
-    if (warp && !normal.isZero() && u.norm() < 1e-6 * warp->norm())
+    const Vec3 warp = warps.empty() ? Vec3(Vec3::Zero()) : warps[all.size()];
+    if (!warp.allFinite()) throw InputError("warp: a direction is finite and not [0, 0, 0]");
+    const bool known = !warp.isZero(0);
+    Vec3 u = known ? Vec3(warp - normal.dot(warp) * normal) : one;
+    if (known && !normal.isZero() && u.norm() < 1e-6 * warp.norm())
       throw InputError("triangle " + std::to_string(all.size() + 1) +
                        " is square to the warp: give a direction that lies in the cloth, or uv");
     u.normalize();
@@ -87,6 +102,12 @@ std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::opti
 std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const TriangleMesh& rest,
                                           const Fabric& fabric, const std::optional<Vec3>& warp, int first,
                                           std::shared_ptr<BendMemory> memory) {
+  return woven(mesh, rest, fabric, for_all(rest, warp), first, std::move(memory));
+}
+
+std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const TriangleMesh& rest,
+                                          const Fabric& fabric, const std::vector<Vec3>& warp, int first,
+                                          std::shared_ptr<BendMemory> memory) {
   check(fabric);
   if (rest.triangles.size() != mesh.triangles.size())
     throw InputError("the rest shape has " + std::to_string(rest.triangles.size()) +
@@ -96,11 +117,12 @@ std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const Triang
     throw InputError(
         "stretch_spring, bend_spring, buckling_clamp and neighbour_weighting are of connections, and a woven "
         "cloth has none; give stretch and bend");
-  if (needs_warp(fabric) && !warp)
+  const auto unknown = std::find_if(warp.begin(), warp.end(), [](const Vec3& u) { return u.isZero(0); });
+  if (needs_warp(fabric) && unknown != warp.end())
     throw InputError(
-        "the fabric differs along warp and weft, or wrinkles or is viscous along them, and where the warp "
-        "runs "
-        "is not known; give its direction");
+        "the fabric differs along warp and weft, or wrinkles or is viscous along them, and where the "
+        "warp runs in triangle " +
+        std::to_string(unknown - warp.begin() + 1) + " is not known; give its direction");
   const std::vector<RestCorners> corners = woven_corners(rest, warp);
   std::vector<std::unique_ptr<Force>> forces;
   if (fabric.stretch > 0) {

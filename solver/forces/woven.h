@@ -11,6 +11,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "solver/forces/fabric.h"
 #include "solver/forces/force.h"
@@ -31,15 +32,27 @@ bool has_directions(const Fabric& fabric);
 // True when the law depends on where the warp runs: also where wrinkles or viscosity follow the threads.
 bool needs_warp(const Fabric& fabric);
 
-// The corners of every triangle of the rest shape in its own plane, u along the warp [m]. Throws InputError
-// when a triangle is square to the direction `warp`.
-std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::optional<Vec3>& warp);
+// The warp of a group of the mesh: a direction in the rest shape.
+struct GroupWarp {
+  std::string group;
+  Vec3 direction;
+};
+
+// The corners of every triangle of the rest shape in its own plane, u along the warp [m]. `warp` has a direction for
+// every triangle, [0, 0, 0] where any will do; empty: any for all. Throws InputError when a triangle is square to its
+// direction.
+std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::vector<Vec3>& warp);
 
 // Vertex 0 is the particle `first_particle` of the system. Triangles without area give no force. `memory` is that of
 // friction against bending, of these triangles; null: a new one. Throws InputError when the fabric has directions and
 // `warp` is missing.
 std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const TriangleMesh& rest,
                                           const Fabric& fabric, const std::optional<Vec3>& warp = {},
+                                          int first_particle = 0,
+                                          std::shared_ptr<BendMemory> memory = nullptr);
+// The same with a direction for every triangle; [0, 0, 0]: not known.
+std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const TriangleMesh& rest,
+                                          const Fabric& fabric, const std::vector<Vec3>& warp,
                                           int first_particle = 0,
                                           std::shared_ptr<BendMemory> memory = nullptr);
 

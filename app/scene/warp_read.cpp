@@ -1,0 +1,59 @@
+#include "app/scene/warp_read.h"
+
+#include <cmath>
+
+#include "mesh/base/errors.h"
+
+namespace drape::app {
+namespace {
+
+// [x, y, z] in the rest shape; or an angle, counterclockwise from v of the texture coordinates, u to the right.
+Vec3 direction(const Node& node, bool rest_is_flat) {
+  if (node.kind == Node::Kind::array) {
+    const Vec3 warp = vector(node, dimension::number);
+    if (warp.isZero()) throw InputError("a direction is not [0, 0, 0]");
+    return warp;
+  }
+  if (node.kind == Node::Kind::table || node.kind == Node::Kind::boolean)
+    throw InputError("expected a direction [x, y, z], or an angle such as \"30 deg\"");
+  const double angle = quantity(node, dimension::angle, Range::any);
+  if (!rest_is_flat)
+    throw InputError(
+        "an angle counts from v of the texture coordinates, and goes with rest = \"uv\"; expected a "
+        "direction [x, y, z] in the mesh");
+  return {-std::sin(angle), std::cos(angle), 0};
+}
+
+}  // namespace
+
+void read_warp(Table& table, ClothEntry& cloth) {
+  if (table.has("warp") && cloth.model != "woven") table.fail("warp", "goes with model = \"woven\"");
+  if (cloth.rest_is_flat) cloth.warp = Vec3(0, 1, 0);
+  const Node* const node =
+      table.take("warp", "[x, y, z], an angle, or a table of these by group",
+                 {"of model = \"woven\": the direction of the warp in the rest shape, as the file has it; an "
+                  "angle counts "
+                  "from v of the texture coordinates, counterclockwise; by group: { front = \"30 deg\", yoke "
+                  "= [1, 0, 0] }",
+                  "v of the texture coordinates, with rest = \"uv\": the grain of each panel of a pattern"});
+  if (!node) return;
+  if (node->kind != Node::Kind::table) {
+    try {
+      cloth.warp = direction(*node, cloth.rest_is_flat);
+    } catch (const InputError& error) {
+      table.fail("warp", error.what());
+    }
+    return;
+  }
+  const Table groups = table.inner("warp");
+  if (node->members.empty()) table.fail("warp", "names no group; expected { front = \"30 deg\" }");
+  for (const auto& [name, value] : node->members) {
+    try {
+      cloth.group_warps.push_back({name, direction(value, cloth.rest_is_flat)});
+    } catch (const InputError& error) {
+      groups.fail(name, error.what());
+    }
+  }
+}
+
+}  // namespace drape::app
