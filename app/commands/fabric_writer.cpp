@@ -63,6 +63,7 @@ class FabricFile {
       });
     };
     if (from.empty() || in(named_.assumed)) return assumed_;
+    if (in(named_.fitted)) return fitted_;
     return by_formula || in(named_.converted) ? converted_ : measured_;
   }
 

@@ -271,7 +271,7 @@ std::string fitting_text(const Fitting& fitting, const std::string& from) {
   for (const FittedParameter& p : fitting.parameters)
     text += "  " + parameter_text(p) +
             (p.uncertainty < 1
-                 ? ", ± " + rounded(100 * p.uncertainty, 2) + " % as what was measured is ± that much\n"
+                 ? ", ± " + rounded(100 * p.uncertainty, 2) + " % if the measurements are off by their ±\n"
                  : ", which what was measured hardly ties down\n");
   const bool same = fitting.parameters.front().name == "bend";
   if (same)
