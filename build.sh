@@ -301,7 +301,7 @@ pictures() {
   get_required python3-scipy
   say "making the motion of a body"
   "$python" data/meshes/make_motion.py || die "the motion could not be made, see above"
-  for scene in choi-ko-{100,200} dressed-turn ls-ball-{0,09} net noh-jung-{100,200} poncho poncho-sewn rotating-ball skirt-sewn \
+  for scene in bias choi-ko-{100,200} dressed-turn ls-ball-{0,09} net noh-jung-{100,200} poncho poncho-sewn rotating-ball skirt-sewn \
     soft-{bowl,sphere} tablecloth-pull tee; do
     say "running $scene into $out/$scene"
     build/release/drape simulate "data/scenes/$scene.toml" --out "$out/$scene" || die "$scene failed, see above"
@@ -309,6 +309,8 @@ pictures() {
   for scene in noh-jung woven; do
     build/release/drape drop data/meshes/tee.obj --onto plane --duration 1.5 --set "cloth.0.model=$scene" --out "$out/dropped/$scene" \
       || die "dropping the shirt failed, see above"
+    build/release/drape drop data/meshes/dress.obj --onto plane --duration 1.5 --set "cloth.0.model=$scene" \
+      --out "$out/dropped-dress/$scene" || die "dropping the dress failed, see above"
   done
   say "drawing into data/pictures"
   draw poncho 1100x580 -25,10 '' tee poncho
@@ -323,6 +325,8 @@ pictures() {
   draw ls-ball 800x600 -20,14 14,20 ls-ball-{0,09}
   draw dressed-turn 1100x420 15,8 1,41,59,last dressed-turn
   draw dropped-shirt 1000x360 -25,30 '' dropped/noh-jung dropped/woven
+  draw dropped-dress 1000x460 -25,30 '' dropped-dress/noh-jung dropped-dress/woven
+  draw bias 900x480 -35,12 last bias
   draw strain 640x480 -25,14 last poncho --color strain
 }
 

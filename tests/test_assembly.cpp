@@ -69,13 +69,17 @@ TEST_CASE("the library sews the poncho as the scene does, to the bit", "[sewing]
                  .rotation = turn(pi / 2, Vec3::UnitX()) * turn(pi, Vec3::UnitY()),
                  .translate = {0, 1.50, -0.38}}});
   Fabric fabric = load_fabric("cotton-poplin").fabric;
-  fabric.damping = 0.002;
+  fabric.weave.compression = 0.1;
   Assembly poncho;
-  poncho.add(ClothPart{
-      .mesh = laid, .rest = flat_pattern(flat), .fabric = fabric, .seams = declared_seam_plans(flat, 0.2)});
+  poncho.add(ClothPart{.mesh = laid,
+                       .rest = flat_pattern(flat),
+                       .fabric = fabric,
+                       .model = ClothModel::woven,
+                       .warp = Vec3::UnitY(),
+                       .seams = declared_seam_plans(flat, 0.2)});
   const auto body = std::make_shared<const SurfaceDistance>(read_obj(data / "meshes/body.obj"));
   poncho.constraints->add(Obstacle{.shape = body, .friction = 0.4, .margin = 0.003});
-  poncho.use("implicit-euler", "mpcg+block-ic0", {.tolerance = 1e-4});
+  poncho.use("implicit-euler", "mpcg", {.tolerance = 1e-4});
 
   Simulation scene = make_simulation(read_scene(data / "scenes/poncho-sewn.toml", {}));
   const auto same = [](const State& a, const State& b) { return a.x == b.x && a.v == b.v; };
@@ -219,4 +223,31 @@ TEST_CASE("strains of triangles tell what edges hide: compression, and area that
     CHECK(s.area_kept == Approx(0.5 + 0.5 * (1 + along) * (1 + across)));
   }
   CHECK(largest_strain(all.cloths, all.state.x) < 1e-12);
+}
+
+TEST_CASE("a particle is shown with what is strained most there, compression as well as extension",
+          "[woven]") {
+  for (const ClothModel model : {ClothModel::noh_jung, ClothModel::woven}) {
+    Assembly all;
+    const TriangleMesh sheet = grid(5, 9, 0.4, 0.8);
+    all.add({.mesh = sheet, .model = model, .imperfection = 0});
+    std::vector<double> strain;
+    particle_strains(all.cloths[0], all.state.x, strain);
+    REQUIRE(strain.size() == sheet.positions.size());
+    for (double s : strain) CHECK(std::abs(s) < 1e-12);
+    for (const auto& [along, across] :
+         {std::pair{0.02, -0.05}, std::pair{0.1, -0.03}, std::pair{-0.3, 0.0}}) {
+      VecX x = all.state.x;
+      for (Eigen::Index i = 0; i < x.size(); i += 3) x[i] *= 1 + along, x[i + 2] *= 1 + across;
+      particle_strains(all.cloths[0], x, strain);
+      for (double s : strain) CHECK(s == Approx(std::abs(along) > std::abs(across) ? along : across));
+    }
+    // Simple shear lengthens one diagonal more than it shortens the other.
+    VecX x = all.state.x;
+    for (Eigen::Index i = 0; i < x.size(); i += 3) x[i] += 0.2 * x[i + 2];
+    particle_strains(all.cloths[0], x, strain);
+    const double longest = std::sqrt(1.02 + std::sqrt(1.02 * 1.02 - 1)) - 1;  // of the singular values
+    if (model == ClothModel::woven)
+      for (double s : strain) CHECK(s == Approx(longest));
+  }
 }

@@ -28,9 +28,8 @@ constexpr double round_off = 1e-9;  // m
 
 struct Part {
   const char* scene;
-  double until;     // s
-  int every;        // steps from one look to the next
-  bool met = true;  // whether the cloth comes to a body at all
+  double until;  // s
+  int every;     // steps from one look to the next
 };
 
 // clang-format off
@@ -38,7 +37,7 @@ const Part gallery[] = {
     {"choi-ko-100", 0.5, 1},
     {"choi-ko-200", 0.5, 1},
     {"dressed-turn", 1.7, 4},     // the first step and half of the turn
-    {"flag", 1.1, 1, false},      // passes the pole at a distance of 8 mm
+    {"flag", 1.1, 1},             // swings against the pole
     {"ls-ball-0", 0.7, 10},       // slides over the ball and comes to the floor
     {"ls-ball-09", 0.9, 10},
     {"net", 0.9, 1},              // the ball comes to it after 0.32 s
@@ -123,7 +122,7 @@ void check_part(const Part& part, const Scene& scene) {
     met = met || depths[k].vertex.depth > -1.01 * margin;
   }
   INFO(part.scene);
-  CHECK(met == part.met);
+  CHECK(met);  // the cloth has come to a body
 }
 
 // Whether all that the scene reads is there. The motion of a body is not kept but made: here, if it must be.

@@ -264,7 +264,7 @@ TEST_CASE("check, run.json and the notes say what was given and what a model lea
         "2HB 0.9807 mN: friction of model = \"woven\" with hysteresis = true", "assumed: kes.G",
         "not said whether measured: area_density, bending_length.warp"})
     CHECK_THAT(fabric.out, Contains(line));
-  shop.write("mine.toml", "[[cloth]]\nmesh = \"sheet.obj\"\nfabric = \"f.toml\"\n");
+  shop.write("mine.toml", "[[cloth]]\nmesh = \"sheet.obj\"\nfabric = \"f.toml\"\nmodel = \"noh-jung\"\n");
   const test::Outcome scene = shop.drape("check mine.toml");
   CHECK_THAT(scene.out, Contains("179.7 g/m^2, stretch 500 N/m, bend 7.93 uN.m") && Contains("as given: ") &&
                             Contains("note: cloth sheet: model = \"noh-jung\" takes of its fabric") &&

@@ -27,7 +27,8 @@ std::vector<PairForce<BucklingSpring>::Element> bends(const std::vector<std::uni
 int simulate(const Folder& d, const std::string& words) {
   const TriangleMesh sheet = grid(3, 3, 1, 1);
   write_obj(d.path / "sheet.obj", sheet, sheet.positions);
-  d.write("s.toml", "[[cloth]]\nmesh = \"sheet.obj\"\nfabric = \"cotton-poplin\"\n[simulation]\n");
+  d.write("s.toml",
+          "[[cloth]]\nmesh = \"sheet.obj\"\nfabric = \"cotton-poplin\"\nimperfection = 0\n[simulation]\n");
   return d.drape("simulate s.toml --quiet --out o " + words).exit_code;
 }
 }  // namespace

@@ -263,6 +263,16 @@ TEST_CASE("the maps of colours go the usual way", "[picture]") {
   CHECK(longer[0] > longer[2] + 80);
   CHECK(*std::min_element(none.begin(), none.end()) > 240);
   CHECK(colour_of(strain, 7) == colour_of(strain, 0.1));
+  // Compression and extension are as far from white as each other, and blue against red, which a red-green blind
+  // eye tells apart, too.
+  double paler = 3;
+  for (double s = 0.02; s < 0.101; s += 0.02) {
+    const Pixel less = colour_of(strain, -s), more = colour_of(strain, s);
+    CHECK(std::abs(brightness(less) - brightness(more)) < 0.12);  // of 3
+    CHECK(less[2] - less[0] > more[2] - more[0] + 40);
+    CHECK(brightness(more) < paler);
+    paler = brightness(more);
+  }
   CHECK(colour_of(strain, std::nan("")) != none);
   double before = 0;  // faster is lighter
   for (double v = 0; v <= 2; v += 0.25) {

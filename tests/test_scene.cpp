@@ -83,6 +83,32 @@ friction = 0.1
   CHECK(scene.obstacles[1].mesh == std::filesystem::path("folder/body.obj"));
 }
 
+TEST_CASE("a fabric by name is woven, unless constants of connections or the scene say otherwise",
+          "[scene][woven]") {
+  const auto model = [](const std::string& keys) { return read(cloth + keys).cloths[0].model; };
+  const std::string named = "fabric = \"polyester-twill\"\n";
+  CHECK(model("") == "noh-jung");
+  CHECK(model(named) == "woven");
+  CHECK(model(named + "damping = 0.1\nbend = \"3 uN.m\"\n") == "woven");
+  CHECK(model(named + "model = \"noh-jung\"\n") == "noh-jung");
+  for (const char* key : {"stretch_spring = 200\n", "bend_spring = 1e-7\n", "buckling_clamp = 3\n"})
+    CHECK(model(named + key) == "noh-jung");
+}
+
+TEST_CASE("where the warp runs is given, chosen or refused", "[scene][woven]") {
+  const std::string twill = "fabric = \"polyester-twill\"\n", woven = "model = \"woven\"\n",
+                    down = "warp = \"down\"\n";
+  const auto entry = [](const std::string& keys) { return read(cloth + keys).cloths[0]; };
+  CHECK(entry(twill).warp_is_down);
+  CHECK(entry(twill + woven + down).warp_is_down);
+  CHECK_FALSE(entry(twill + "warp = [1, 0, 0]\n").warp_is_down);
+  CHECK((*entry(twill + "rest = \"uv\"\n").warp - Vec3(0, 1, 0)).norm() == 0);
+  CHECK_FALSE(entry(twill + "rest = \"uv\"\n").warp_is_down);
+  CHECK_FALSE(entry(twill + "model = \"noh-jung\"\n" + down).warp_is_down);
+  CHECK_THROWS_WITH(read(cloth + twill + woven), Catch::Contains("warp = \"down\""));
+  CHECK_THROWS_WITH(read(cloth + twill + "warp = \"up\"\n"), Catch::Contains("warp"));
+}
+
 TEST_CASE("the default value of a key of connections is no mistake beside a woven cloth", "[scene][woven]") {
   CHECK_FALSE(
       read(cloth + "model = \"woven\"\nneighbour_weighting = false\n").cloths[0].fabric.neighbour_weighting);

@@ -29,6 +29,7 @@ duration = "80 ms"
 [[cloth]]
 mesh = "sheet.obj"
 fabric = "cotton-poplin"
+model = "noh-jung"
 damping = "0.02 N.s/m"
 pins = [{ vertices = [0, 2] }, { box = [[-1, -1, 0.1], [1, 1, 1]], follow = "hand" },
         { vertices = [3], motion = { velocity = [0.1, 0, 0] } }]

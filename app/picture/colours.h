@@ -1,6 +1,6 @@
 // The colours of a picture. Light is linear; pixels are sRGB (IEC 61966-2-1).
 //   cloths   Okabe & Ito 2008, colours that everybody can tell apart
-//   strain   from blue (shorter) over white to red (longer), ColorBrewer's RdBu; symmetric about 0
+//   strain   from blue (compressed) over white to red (stretched), ColorBrewer's RdBu; symmetric about 0
 //   speed    viridis, from 0
 //   contact  free, slides, sticks: grey, orange, blue
 #pragma once

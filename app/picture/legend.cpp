@@ -35,12 +35,14 @@ void draw_words(Image& image, const PixelBox& strip, const Scale& scale, int siz
 
 }  // namespace
 
-void draw_legend(Image& image, const PixelBox& strip, const Scale& scale, double largest, int size) {
+void draw_legend(Image& image, const PixelBox& strip, const Scale& scale, double least, double largest,
+                 int size) {
   if (scale.field == Field::contact) return draw_words(image, strip, scale, size);
   const bool strain = scale.field == Field::strain;
   const double unit = strain ? 100 : 1;
-  const std::string title =
-      (strain ? "strain of edges, % (largest " : "speed, m/s (largest ") + rounded(unit * largest, 3) + ")";
+  const std::string title = strain ? "strain, % (compressed to " + rounded(unit * least, 3) +
+                                         ", stretched to " + rounded(unit * largest, 3) + ")"
+                                   : "speed, m/s (largest " + rounded(unit * largest, 3) + ")";
   const int middle = static_cast<int>(strip.x + strip.width / 2);
   const int width = static_cast<int>(std::min(0.8 * strip.width, 26.0 * size)), left = middle - width / 2;
   const int top = static_cast<int>(strip.y) + 2 * size, bottom = top + std::max(4, 3 * size / 5);

@@ -10,8 +10,9 @@ namespace drape::app::drawing {
 
 inline constexpr double legend_lines = 4.4;  // height of the legend over the size of its letters
 
-// Draws the legend into the middle of the strip. `size` [pixels] is that of the letters; `largest` is the
-// most extreme value that occurs.
-void draw_legend(Image& image, const PixelBox& strip, const Scale& scale, double largest, int size);
+// Draws the legend into the middle of the strip. `size` [pixels] is that of the letters; `least` and
+// `largest` are the most extreme values that occur, 0 included.
+void draw_legend(Image& image, const PixelBox& strip, const Scale& scale, double least, double largest,
+                 int size);
 
 }  // namespace drape::app::drawing

@@ -111,7 +111,8 @@ void Sheet::survey(const std::vector<SheetPanel>& all) {
       for (double value : part.values) {
         if (!std::isfinite(value)) continue;
         values.push_back(static_cast<float>(value));
-        if (std::abs(value) > std::abs(largest_)) largest_ = value;
+        least_ = std::min(least_, value);
+        largest_ = std::max(largest_, value);
       }
   }
   camera_ = framing.camera();
@@ -140,7 +141,7 @@ Image Sheet::draw(const std::vector<SheetPanel>& panels) const {
               Anchor::middle, ink);
   }
   const PixelBox strip = {0, options_.height - legend_height_, double(options_.width), legend_height_};
-  if (options_.field) draw_legend(image, strip, scale_, largest_, letters_);
+  if (options_.field) draw_legend(image, strip, scale_, least_, largest_, letters_);
   return image;
 }
 

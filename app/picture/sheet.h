@@ -50,7 +50,7 @@ class Sheet {
   Camera camera_;            // of the first panel
   Eigen::AlignedBox3d box_;  // m, of what is framed
   Scale scale_;
-  double largest_ = 0;
+  double least_ = 0, largest_ = 0;
 };
 
 }  // namespace drape::app::drawing

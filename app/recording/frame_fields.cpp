@@ -1,14 +1,11 @@
 #include "app/recording/frame_fields.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "app/recording/touch.h"
 
 namespace drape::app {
 namespace {
-
-constexpr float no_edge = -std::numeric_limits<float>::infinity();
 
 int main_particle(const Embedding& embedding, int vertex) {
   const auto shares = embedding.shares(vertex);
@@ -33,12 +30,7 @@ FrameFields::FrameFields(const std::filesystem::path& folder, const Cloth& cloth
                {cloth.mesh.vertex_count()}) {}
 
 void FrameFields::add(const Cloth& cloth, const State& state, const Constraints& constraints) {
-  particle_strain_.assign(static_cast<std::size_t>(state.particles()), no_edge);
-  for (const RestEdge& e : cloth.edges) {
-    const auto strain =
-        static_cast<float>((state.x.segment<3>(3 * e.j) - state.x.segment<3>(3 * e.i)).norm() / e.L - 1);
-    for (const int i : {e.i, e.j}) particle_strain_[i] = std::max(particle_strain_[i], strain);
-  }
+  particle_strains(cloth, state.x, particle_strain_);
   particle_contact_.assign(static_cast<std::size_t>(state.particles()), 0);
   for (const Contact& contact : constraints.contacts())
     if (contact.active())
@@ -52,7 +44,7 @@ void FrameFields::add(const Cloth& cloth, const State& state, const Constraints&
     for (const double component : v) velocity.push_back(static_cast<float>(component));
   for (int vertex = 0; vertex < vertices; ++vertex) {
     const auto particle = static_cast<std::size_t>(main_particle(cloth.embedding, vertex));
-    strain.push_back(particle_strain_[particle] == no_edge ? 0 : particle_strain_[particle]);
+    strain.push_back(static_cast<float>(particle_strain_[particle]));
     contact.push_back(particle_contact_[particle]);
   }
   velocity_.add(velocity);

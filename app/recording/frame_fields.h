@@ -1,6 +1,7 @@
 // What the vertices of a cloth have besides their positions, frame by frame, as arrays of NumPy:
 //   fields/NAME.velocity.npy   float32 (frames, n, 3)   m/s
-//   fields/NAME.strain.npy     float32 (frames, n)      l / L - 1 of the most stretched edge at the vertex
+//   fields/NAME.strain.npy     float32 (frames, n)      what is stretched or compressed most at the vertex: of woven
+//                                                    cloth a principal strain of a triangle, else an edge's l / L - 1
 //   fields/NAME.contact.npy    uint8   (frames, n)      0 free, 1 slides, 2 sticks
 // A vertex that lies between several particles has the strain and the contact of the particle with the
 // largest weight.
@@ -23,7 +24,7 @@ class FrameFields {
 
  private:
   NpyWriter velocity_, strain_, contact_;
-  std::vector<float> particle_strain_;
+  std::vector<double> particle_strain_;
   std::vector<std::uint8_t> particle_contact_;
 };
 

@@ -138,17 +138,16 @@ std::string list_words(const Json& list, const InWords& in_words) {
 namespace {
 
 // The numbers that the forces are made of, chosen ones included.
-Json weave_json(const ClothEntry& entry) {
+Json weave_json(const ClothEntry& entry, const std::optional<Vec3>& direction) {
   const Membrane::Common membrane = membrane_of(entry.fabric);
   const PlateStiffness plate = plate_of(entry.fabric);
   const PlateFrictionLaw friction = plate_friction_of(entry.fabric);
   const Weave& weave = entry.fabric.weave;
   Json warp;
-  if (entry.warp) warp = Json::List{entry.warp->x(), entry.warp->y(), entry.warp->z()};
+  if (direction) warp = vector_json(*direction);
   Json::Members groups;
   for (const GroupWarp& group : entry.group_warps)
-    groups.emplace_back(group.group,
-                        Json::List{group.direction.x(), group.direction.y(), group.direction.z()});
+    groups.emplace_back(group.group, vector_json(group.direction));
   Json::Members members{{"warp", warp},
                         {"stretch_warp", membrane.warp},
                         {"stretch_weft", membrane.weft},
@@ -169,7 +168,14 @@ Json weave_json(const ClothEntry& entry) {
 
 }  // namespace
 
-Json fabric_json(const ClothEntry& entry) {
+// The direction that the scene gives, or that was chosen when the mesh was loaded.
+std::optional<Vec3> warp_of(const ClothEntry& entry, const Cloth* cloth) {
+  if (entry.warp || !entry.warp_is_down || !cloth || cloth->warp.empty()) return entry.warp;
+  const Vec3& chosen = cloth->warp.front();
+  return chosen.isZero() ? std::nullopt : std::optional(chosen);
+}
+
+Json fabric_json(const ClothEntry& entry, const std::optional<Vec3>& warp) {
   const Fabric& f = entry.fabric;
   const bool woven = entry.model == "woven";
   Json::Members given;
@@ -185,7 +191,7 @@ Json fabric_json(const ClothEntry& entry) {
                        {"damping", f.damping},
                        {"damping_kind", name_of(f.damping_kind)},
                        {"neighbour_weighting", f.neighbour_weighting},
-                       {"weave", woven ? weave_json(entry) : Json()},
+                       {"weave", woven ? weave_json(entry, warp) : Json()},
                        {"given", std::move(given)}};
 }
 
@@ -260,7 +266,9 @@ Json::Members scene_json(const Scene& scene, const Simulation* simulation) {
   Json::List cloths, softs, bodies;
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
     const ClothEntry& entry = scene.cloths[k];
-    Json::Members json = {{"name", entry.name}, {"fabric", fabric_json(entry)}};
+    Json::Members json = {
+        {"name", entry.name},
+        {"fabric", fabric_json(entry, warp_of(entry, simulation ? &simulation->cloths[k] : nullptr))}};
     if (simulation) {
       json.emplace_back("pins", pins_json(entry.pins, simulation->cloths[k]));
       json.emplace_back("seams", seams_json(simulation->cloths[k]));

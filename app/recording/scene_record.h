@@ -10,7 +10,8 @@
 
 namespace drape::app {
 
-Json fabric_json(const ClothEntry& entry);
+// warp: its direction in the rest shape, if it is known.
+Json fabric_json(const ClothEntry& entry, const std::optional<Vec3>& warp);
 Json material_json(const SoftMaterial& material);
 Json pins_json(const std::vector<PinEntry>& pins, const Cloth& cloth);
 Json seams_json(const Cloth& cloth);  // those that are open

@@ -123,6 +123,7 @@ class DropScene {
     Node cloth = Node::of_table("drape drop");
     cloth.members["mesh"] = Node::of_text(options_.cloth.string(), "drape drop");
     cloth.members["fabric"] = Node::of_text(options_.fabric, "--fabric");
+    cloth.members["warp"] = Node::of_text("down", "drape drop");
     if (options_.scale) cloth.members["scale"] = parse_toml_value(*options_.scale, "--scale");
     Node pins = Node::of_list({}, "--pin");
     for (const std::string& group : options_.pinned_groups) {

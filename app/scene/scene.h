@@ -77,10 +77,12 @@ struct ClothEntry {
   std::string model = "noh-jung";
   std::optional<Vec3> warp;            // direction in the rest shape, of model = "woven"
   std::vector<GroupWarp> group_warps;  // the same of groups of the mesh, instead of that
+  bool warp_is_down = false;           // the direction is chosen when the mesh is loaded: down the cloth
   std::optional<double> imperfection;  // m, how far the start is off the mesh; unset: by the model
   std::string fabric_name;             // empty when the scene names none
   Fabric fabric;
   FabricRecord fabric_record;
+  bool has_own_damping = false;  // the scene gives damping, and not only the fabric's file
   std::vector<PinEntry> pins;
   std::string where;
 };

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -182,6 +183,26 @@ PinEntry read_pin(Table& pin, const fs::path& folder) {
 
 constexpr const char* pins_about = "vertices that are held, or led";
 
+constexpr std::array keys_of_connections = {"stretch_spring", "bend_spring", "buckling_clamp",
+                                            "neighbour_weighting"};
+
+// A fabric by name has the numbers of a cloth; a cloth that gives constants of connections wants springs.
+void read_model(Table& table, ClothEntry& cloth) {
+  const Fabric& f = cloth.fabric;
+  const bool springs = std::any_of(keys_of_connections.begin(), keys_of_connections.end(),
+                                   [&](const char* key) { return table.has(key); }) ||
+                       f.stretch_spring || f.bend_spring || f.buckling_clamp || f.neighbour_weighting;
+  if (!cloth.fabric_name.empty() && !springs) cloth.model = "woven";
+  table.read(
+      "model", cloth.model, model_names(),
+      {"noh-jung: springs, of any mesh; choi-ko: springs, of a regular grid of quads (holes and tubes "
+       "are welcome); woven: a membrane and a plate, of any mesh",
+       "\"woven\" with `fabric`, else \"noh-jung\"; constants of connections (`stretch_spring` and the "
+       "like) mean springs"});
+  if (!cloth.seams.empty() && cloth.model == "choi-ko")
+    table.fail("model", "a cloth with seams is no regular grid; expected \"noh-jung\" or \"woven\"");
+}
+
 // "flat", "mesh", or a share between them.
 void read_rest_angle(Table& table, ClothEntry& cloth) {
   const Node* const node = table.take(
@@ -226,22 +247,21 @@ void read_hysteresis(Table& table, ClothEntry& cloth) {
 void check_model(const Table& table, const ClothEntry& cloth) {
   const bool woven = cloth.model == "woven";
   const Fabric& f = cloth.fabric;
-  for (const auto& [key, given] : {std::pair{"stretch_spring", f.stretch_spring.has_value()},
-                                   std::pair{"bend_spring", f.bend_spring.has_value()},
-                                   std::pair{"buckling_clamp", f.buckling_clamp.has_value()},
-                                   std::pair{"neighbour_weighting", f.neighbour_weighting}}) {
-    if (!woven || !given) continue;
+  const std::array given = {f.stretch_spring.has_value(), f.bend_spring.has_value(),
+                            f.buckling_clamp.has_value(), f.neighbour_weighting};
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    if (!woven || !given[k]) continue;
+    const std::string key = keys_of_connections[k];
     const std::string what = "is of connections, and model = \"woven\" has none";
     if (table.has(key)) table.fail(key, what);
-    table.fail("fabric", std::string("its ") + key + " " + what);
+    table.fail("fabric", "its " + key + " " + what);
   }
-  if (woven && needs_warp(cloth.fabric) && !cloth.warp && cloth.group_warps.empty())
+  if (woven && needs_warp(cloth.fabric) && !cloth.warp && cloth.group_warps.empty() && !cloth.warp_is_down)
     table.fail("model",
                "the fabric differs, wrinkles or is viscous along warp and weft; give warp = [x, y, z], the "
-               "direction of the "
-               "warp in the rest shape, or rest = \"uv\", whose v it is");
+               "direction of the warp in the rest shape, warp = \"down\", or rest = \"uv\", whose v it is");
   for (const char* key : {"compression", "viscosity"})
-    if (!woven && table.has(key)) table.fail(key, "goes with model = \"woven\"");
+    if (table.has(key)) refuse_with_springs(table, cloth, key);
 }
 
 void read_fabric_name(Table& table, const fs::path& folder, std::string& name) {
@@ -279,25 +299,21 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
   if (table.has("uv_scale") && !cloth.rest_is_flat) table.fail("uv_scale", "goes with rest = \"uv\"");
   cloth.panels = read_panels(table);
   cloth.seams = read_seams(table);
-  table.read(
-      "model", cloth.model, model_names(),
-      "noh-jung: springs, of any mesh; choi-ko: springs, of a regular grid of quads (holes and tubes are "
-      "welcome); woven: a membrane and a plate, of any mesh");
-  read_warp(table, cloth);
-  table.read(
-      "imperfection", cloth.imperfection, dimension::length, Range::not_negative,
-      {"how far the start is off its own surface, in gentle waves: a cloth that is exactly flat and is "
-       "pushed in its plane would stay in it",
-       "1 um with model = \"woven\", else 0"});
-  if (!cloth.seams.empty() && cloth.model == "choi-ko")
-    table.fail("model", "a cloth with seams is no regular grid; expected \"noh-jung\" or \"woven\"");
   read_fabric_name(table, folder, cloth.fabric_name);
   if (!cloth.fabric_name.empty()) {
     const NamedFabric named = load_fabric(cloth.fabric_name, folder);
     cloth.fabric = named.fabric;
     cloth.fabric_record = named.record;
   }
+  read_model(table, cloth);
+  read_warp(table, cloth);
+  table.read(
+      "imperfection", cloth.imperfection, dimension::length, Range::not_negative,
+      {"how far the start is off its own surface, in gentle waves: a cloth that is exactly flat and is "
+       "pushed in its plane would stay in it",
+       "1 um with model = \"woven\", else 0"});
   read_fabric(table, cloth.fabric, cloth.fabric_record);
+  cloth.has_own_damping = table.has("damping");
   read_rest_angle(table, cloth);
   read_hysteresis(table, cloth);
   check_model(table, cloth);

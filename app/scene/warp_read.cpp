@@ -24,36 +24,50 @@ Vec3 direction(const Node& node, bool rest_is_flat) {
   return {-std::sin(angle), std::cos(angle), 0};
 }
 
-}  // namespace
+bool is_down(const Node& node) { return node.kind == Node::Kind::text && node.text == "down"; }
 
-void read_warp(Table& table, ClothEntry& cloth) {
-  if (table.has("warp") && cloth.model != "woven") table.fail("warp", "goes with model = \"woven\"");
-  if (cloth.rest_is_flat) cloth.warp = Vec3(0, 1, 0);
-  const Node* const node =
-      table.take("warp", "[x, y, z], an angle, or a table of these by group",
-                 {"of model = \"woven\": the direction of the warp in the rest shape, as the file has it; an "
-                  "angle counts "
-                  "from v of the texture coordinates, counterclockwise; by group: { front = \"30 deg\", yoke "
-                  "= [1, 0, 0] }",
-                  "v of the texture coordinates, with rest = \"uv\": the grain of each panel of a pattern"});
-  if (!node) return;
-  if (node->kind != Node::Kind::table) {
-    try {
-      cloth.warp = direction(*node, cloth.rest_is_flat);
-    } catch (const InputError& error) {
-      table.fail("warp", error.what());
-    }
-    return;
-  }
+void read_groups(const Table& table, const Node& node, ClothEntry& cloth) {
   const Table groups = table.inner("warp");
-  if (node->members.empty()) table.fail("warp", "names no group; expected { front = \"30 deg\" }");
-  for (const auto& [name, value] : node->members) {
+  if (node.members.empty()) table.fail("warp", "names no group; expected { front = \"30 deg\" }");
+  for (const auto& [name, value] : node.members) {
     try {
       cloth.group_warps.push_back({name, direction(value, cloth.rest_is_flat)});
     } catch (const InputError& error) {
       groups.fail(name, error.what());
     }
   }
+}
+
+}  // namespace
+
+// Where the scene does not say which model it wants, it need not say where the warp runs.
+void read_warp(Table& table, ClothEntry& cloth) {
+  if (cloth.rest_is_flat) cloth.warp = Vec3(0, 1, 0);
+  const Node* const node =
+      table.take("warp", "[x, y, z], \"down\", an angle, or a table of directions and angles by group",
+                 {"of model = \"woven\": the direction of the warp in the rest shape, as the file has it; "
+                  "\"down\": down the "
+                  "cloth, along y of a mesh that stands and along z of one that lies (a note of the run says "
+                  "which); an angle "
+                  "counts from v of the texture coordinates, counterclockwise; by group: { front = \"30 "
+                  "deg\", yoke = [1, 0, 0] }",
+                  "v of the texture coordinates, with rest = \"uv\": the grain of each panel of a pattern; "
+                  "\"down\" where "
+                  "`model` is not given"});
+  const bool down = node ? is_down(*node) : !table.has("model") && !cloth.warp;
+  cloth.warp_is_down = down && cloth.model == "woven";
+  if (!node || down) return;
+  refuse_with_springs(table, cloth, "warp");
+  if (node->kind == Node::Kind::table) return read_groups(table, *node, cloth);
+  try {
+    cloth.warp = direction(*node, cloth.rest_is_flat);
+  } catch (const InputError& error) {
+    table.fail("warp", error.what());
+  }
+}
+
+void refuse_with_springs(const Table& table, const ClothEntry& cloth, const char* key) {
+  if (cloth.model != "woven" && !table.has("model")) table.fail(key, "goes with model = \"woven\"");
 }
 
 }  // namespace drape::app

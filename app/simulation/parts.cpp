@@ -9,6 +9,7 @@
 #include "mesh/obj/obj.h"
 #include "mesh/pattern/flat_pattern.h"
 #include "mesh/triangles/topology.h"
+#include "solver/forces/woven.h"
 
 namespace drape::app {
 namespace {
@@ -39,6 +40,29 @@ void warn_of_scale(const ClothEntry& entry, const TriangleMesh& mesh, const Tria
                      rounded(entry.uv_scale * std::sqrt(area / flat), 4) + " m)");
 }
 
+// Where the warp runs that nobody gave: y of a mesh that stands, as the grain of a garment does, and z of one that
+// lies. A trace of the other direction says it for triangles that are square to the first.
+Vec3 down_the_cloth(const TriangleMesh& rest) {
+  constexpr double trace = 1e-3;
+  double standing = 0;  // m^2, area that stands less area that lies
+  for (const Triangle& t : rest.triangles) {
+    const auto at = [&](std::size_t k) { return rest.positions[static_cast<std::size_t>(t[k])]; };
+    const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0));
+    if (normal.norm() > 0) standing += 0.5 * normal.norm() - normal.y() * normal.y() / normal.norm();
+  }
+  return standing >= 0 ? Vec3(0, 1, trace) : Vec3(0, trace, 1);
+}
+
+void choose_warp(const ClothEntry& entry, ClothPart& part, Names& messages) {
+  if (!entry.warp_is_down || !needs_warp(part.fabric)) return;
+  part.warp = down_the_cloth(*part.rest);
+  const bool stands = part.warp->y() > part.warp->z();
+  messages.push_back("note: cloth " + entry.name +
+                     ": no direction of the warp is given: it runs down the cloth, along " +
+                     (stands ? "y, for the mesh stands" : "z, for the mesh lies") +
+                     "; set warp = [x, y, z] if it runs otherwise, or rest = \"uv\" if it is v of the uv");
+}
+
 // As the file has it, its panels placed; the rest shape is the flat pattern, or what the file has.
 ClothPart load_cloth(const ClothEntry& entry, Names& messages) {
   require_file(entry.mesh, entry.where);
@@ -60,6 +84,7 @@ ClothPart load_cloth(const ClothEntry& entry, Names& messages) {
     throw InputError(entry.where + ": " + entry.mesh.string() + ": " + error.what());
   }
   warn_of_scale(entry, part.mesh, *part.rest, messages);
+  choose_warp(entry, part, messages);
   place_panels(entry, part.mesh, messages);
   const Placement rest_of_it{.rotation = entry.placement.rotation, .translate = entry.placement.translate};
   part.mesh = placed(std::move(part.mesh), rest_of_it, entry.mesh.string());

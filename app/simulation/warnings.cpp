@@ -55,10 +55,11 @@ void warn_if_heavy(const ClothEntry& entry, Names& messages) {
                      " kg/m^2 is heavier than any cloth: was it meant in g/m^2?");
 }
 
-void tell_of_damping(const Cloth& cloth, Names& messages) {
-  if (cloth.model != ClothModel::woven || cloth.fabric.damping == 0) return;
+// The files of fabrics have damping for models of springs.
+void tell_of_damping(const ClothEntry& entry, Names& messages) {
+  if (entry.model != "woven" || !entry.has_own_damping || entry.fabric.damping == 0) return;
   messages.push_back(
-      "note: cloth " + cloth.name +
+      "note: cloth " + entry.name +
       ": damping is of connections, and model = \"woven\" has none; viscosity calms its folds");
 }
 
@@ -88,13 +89,17 @@ void warn_if_coarse_for_folds(const Cloth& cloth, Names& messages) {
   const Fabric& fabric = cloth.fabric;
   const double bend = std::min(fabric.bend, fabric.weave.bend_weft.value_or(fabric.bend)),
                c = std::cbrt(bend / (9.81 * fabric.area_density));
-  if (cloth.model != ClothModel::woven || cloth.report.median_edge <= c) return;
-  messages.push_back(
-      "warning: cloth " + cloth.name + ": its edges (median " + rounded(1000 * cloth.report.median_edge, 2) +
-      " mm) are longer than the bending length of the fabric, " + rounded(1000 * c, 2) +
-      " mm: folds come out too stiff; subdivide the mesh" +
-      (fabric.weave.compression > 0.1 ? ", or set compression = 0.1, so that it wrinkles finer than the mesh"
-                                      : ""));
+  constexpr double wrinkles =
+      0.1;  // share of compression at which wrinkles finer than the mesh are allowed for
+  if (cloth.model != ClothModel::woven || cloth.report.median_edge <= c ||
+      fabric.weave.compression <= wrinkles)
+    return;
+  messages.push_back("warning: cloth " + cloth.name + ": its edges (median " +
+                     rounded(1000 * cloth.report.median_edge, 2) +
+                     " mm) are longer than the bending length of the fabric, " + rounded(1000 * c, 2) +
+                     " mm: folds come out too stiff; subdivide the mesh, or set compression = 0.1, so that "
+                     "it wrinkles finer "
+                     "than the mesh");
 }
 
 void warn_if_limp(const Cloth& cloth, Names& messages) {
@@ -171,11 +176,11 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
     warn_if_long(cloth, simulation.messages);
     warn_if_limp(cloth, simulation.messages);
     warn_if_coarse_for_folds(cloth, simulation.messages);
-    tell_of_damping(cloth, simulation.messages);
     tell_of_friction(cloth, simulation.messages);
   }
   for (const ClothEntry& cloth : scene.cloths) {
     warn_if_heavy(cloth, simulation.messages);
+    tell_of_damping(cloth, simulation.messages);
     tell_of_directions(cloth, simulation.messages);
   }
   warn_of_vertices_inside(scene, simulation);

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Makes the meshes of this folder again: sheet-958.obj, tablecloth.obj, poncho.obj, flag.obj, net.obj, sheet-625.obj. Not run by the build.
+"""Makes the meshes of this folder again: sheet-958.obj, tablecloth.obj, poncho.obj, flag.obj, net.obj, sheet-625.obj, dress.obj. Not run by the
+build.
 
-    python3 make_meshes.py                       the six generated meshes
+    python3 make_meshes.py                       the seven generated meshes
     python3 make_meshes.py BODY.obj TEE.obj      body.obj and tee.obj, too, from files in metres (see ../README.md)
 
 Needs numpy and scipy (Debian: python3-scipy). The seeds are fixed: it makes the same files every time.
@@ -10,6 +11,7 @@ import pathlib
 import sys
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 from scipy.spatial import Delaunay
 
 here = pathlib.Path(__file__).resolve().parent
@@ -149,6 +151,20 @@ def flag(columns, rows, width, height):
     return points, faces, np.c_[points[:, 0], points[:, 1] + height]
 
 
+def dress(around, rows, length):
+    """A dress without straps, standing, its hem at y = 0: ellipses from the hem over the waist to the bust. Rows from above; quads."""
+    height = [0, 0.55, 0.7, 1.0]  # of the length: hem, hips, waist, bust
+    half_width, half_depth = [0.30, 0.185, 0.145, 0.18], [0.27, 0.135, 0.105, 0.125]  # m
+    smooth = lambda values: PchipInterpolator(height, values)(1 - np.arange(rows + 1) / rows)
+    angle = 2 * np.pi * np.arange(around) / around
+    a, b = smooth(half_width)[:, None], smooth(half_depth)[:, None]
+    y = length * (1 - np.arange(rows + 1) / rows)[:, None] + 0 * angle
+    points = np.stack([a * np.sin(angle), y, b * np.cos(angle)], -1).reshape(-1, 3)
+    faces = [[r * around + c, (r + 1) * around + c, (r + 1) * around + (c + 1) % around, r * around + (c + 1) % around]
+             for r in range(rows) for c in range(around)]
+    return points, faces
+
+
 def main():
     write_flat("sheet-958.obj", ["Square sheet, 1 m x 1 m, 958 vertices, irregular triangles."],
                *first_good(lambda rng: square(rng, 1.0, 28, 958)))
@@ -165,6 +181,9 @@ def main():
     points, faces, uv = flag(24, 24, 1.0, 1.0)
     write("sheet-625.obj", ["Square sheet, 1 m x 1 m, 25 x 25 vertices, quads, in the plane y = 0, normals up.",
                             "Metres, y up. Made by make_meshes.py; CC0 1.0."], np.c_[points[:, 0] - 0.5, points[:, 2], -0.5 - points[:, 1]], faces, uv)
+    points, faces = dress(80, 45, 0.95)
+    write("dress.obj", ["A dress without straps, 95 cm long, 80 x 45 quads, standing, its hem at y = 0.",
+                        "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
     if len(sys.argv) == 3:
         points, faces = read(sys.argv[1])
         write("body.obj", ["CC0 1.0. The base mesh hm08 of MakeHuman (makehumancommunity/makehuman, makehuman/data/3dobjs/base.obj), group",

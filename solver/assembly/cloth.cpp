@@ -29,41 +29,45 @@ double largest_strain(const std::vector<Cloth>& cloths, const VecX& x) {
   return largest;
 }
 
+std::optional<PrincipalStrains> principal_strains(const Cloth& cloth, std::size_t triangle, const VecX& x) {
+  const auto metric = [](const Vec3& a, const Vec3& b, const Vec3& c) {
+    Eigen::Matrix<double, 3, 2> edges;
+    edges << b - a, c - a;
+    return Eigen::Matrix2d(edges.transpose() * edges);
+  };
+  const Triangle &r = cloth.rest.triangles[triangle], &v = cloth.mesh.triangles[triangle];
+  const auto particle = [&](std::size_t k) { return cloth.embedding.particle(v[k]); };
+  if (particle(0) == particle(1) || particle(1) == particle(2) || particle(2) == particle(0)) return {};
+  const auto rest = [&](std::size_t k) { return cloth.rest.positions[static_cast<std::size_t>(r[k])]; };
+  const auto now = [&](std::size_t k) { return Vec3(x.segment<3>(3 * particle(k))); };
+  const Eigen::Matrix2d before = metric(rest(0), rest(1), rest(2)), after = metric(now(0), now(1), now(2));
+  const double twice = before.determinant();
+  if (!(twice > 1e-18 * before.trace() * before.trace())) return {};
+  // The squares of the factors are the eigenvalues of before^-1 after.
+  const double mean =
+      0.5 * (before(1, 1) * after(0, 0) + before(0, 0) * after(1, 1) - 2 * before(0, 1) * after(0, 1)) /
+      twice;
+  const double off = std::sqrt(std::max(0.0, mean * mean - after.determinant() / twice));
+  return PrincipalStrains{.least = std::sqrt(std::max(0.0, mean - off)) - 1,
+                          .largest = std::sqrt(mean + off) - 1,
+                          .area = 0.5 * std::sqrt(std::max(0.0, after.determinant())),
+                          .area_at_rest = 0.5 * std::sqrt(twice)};
+}
+
 TriangleStrains triangle_strains(const std::vector<Cloth>& cloths, const VecX& x,
                                  std::vector<double>& smallest) {
   TriangleStrains all;
   double area = 0, area_at_rest = 0;
   smallest.clear();
   for (const Cloth& cloth : cloths) {
-    if (cloth.soft) continue;
-    for (std::size_t t = 0; t < cloth.mesh.triangles.size(); ++t) {
-      const auto metric = [](const Vec3& a, const Vec3& b, const Vec3& c) {
-        Eigen::Matrix<double, 3, 2> edges;
-        edges << b - a, c - a;
-        return Eigen::Matrix2d(edges.transpose() * edges);
-      };
-      const Triangle &r = cloth.rest.triangles[t], &v = cloth.mesh.triangles[t];
-      const auto particle = [&](std::size_t k) { return cloth.embedding.particle(v[k]); };
-      if (particle(0) == particle(1) || particle(1) == particle(2) || particle(2) == particle(0))
-        continue;  // sewn shut
-      const auto rest = [&](std::size_t k) { return cloth.rest.positions[static_cast<std::size_t>(r[k])]; };
-      const auto now = [&](std::size_t k) { return Vec3(x.segment<3>(3 * particle(k))); };
-      const Eigen::Matrix2d before = metric(rest(0), rest(1), rest(2)),
-                            after = metric(now(0), now(1), now(2));
-      const double twice = before.determinant();
-      if (!(twice > 1e-18 * before.trace() * before.trace())) continue;  // without area at rest
-      const double area_now = 0.5 * std::sqrt(std::max(0.0, after.determinant())),
-                   area_then = 0.5 * std::sqrt(twice);
-      area += area_now;
-      area_at_rest += area_then;
-      all.area_least = std::min(all.area_least, area_now / area_then);
-      // The squares of the factors are the eigenvalues of before^-1 after.
-      const double mean =
-          0.5 * (before(1, 1) * after(0, 0) + before(0, 0) * after(1, 1) - 2 * before(0, 1) * after(0, 1)) /
-          twice;
-      const double off = std::sqrt(std::max(0.0, mean * mean - after.determinant() / twice));
-      smallest.push_back(std::sqrt(std::max(0.0, mean - off)) - 1);
-      all.largest = std::max(all.largest, std::sqrt(mean + off) - 1);
+    for (std::size_t t = 0; !cloth.soft && t < cloth.mesh.triangles.size(); ++t) {
+      const std::optional<PrincipalStrains> strains = principal_strains(cloth, t, x);
+      if (!strains) continue;
+      area += strains->area;
+      area_at_rest += strains->area_at_rest;
+      all.area_least = std::min(all.area_least, strains->area / strains->area_at_rest);
+      smallest.push_back(strains->least);
+      all.largest = std::max(all.largest, strains->largest);
     }
   }
   if (smallest.empty()) return all;
@@ -73,6 +77,26 @@ TriangleStrains triangle_strains(const std::vector<Cloth>& cloths, const VecX& x
   all.least = std::min(0.0, *std::min_element(smallest.begin(), hundredth + 1));
   all.area_kept = area / area_at_rest;
   return all;
+}
+
+void particle_strains(const Cloth& cloth, const VecX& x, std::vector<double>& strain) {
+  strain.assign(static_cast<std::size_t>(x.size() / 3), 0);
+  const auto widen = [&](int particle, double value) {
+    double& here = strain[static_cast<std::size_t>(particle)];
+    if (std::abs(value) > std::abs(here)) here = value;
+  };
+  if (cloth.soft || cloth.model != ClothModel::woven) {
+    for (const RestEdge& e : cloth.edges) {
+      const double value = (x.segment<3>(3 * e.j) - x.segment<3>(3 * e.i)).norm() / e.L - 1;
+      for (const int i : {e.i, e.j}) widen(i, value);
+    }
+    return;
+  }
+  for (std::size_t t = 0; t < cloth.mesh.triangles.size(); ++t)
+    if (const std::optional<PrincipalStrains> strains = principal_strains(cloth, t, x))
+      for (const int vertex : cloth.mesh.triangles[t])
+        for (const double value : {strains->least, strains->largest})
+          widen(cloth.embedding.particle(vertex), value);
 }
 
 std::vector<int> pinned_particles(const PinRule& rule, const Cloth& cloth, const VecX& x) {

@@ -97,8 +97,20 @@ struct Cloth {
 // Largest relative stretch of an edge: max (l - L) / L; 0 when none is stretched.
 double largest_strain(const std::vector<Cloth>& cloths, const VecX& x);
 
-// How the triangles of all cloths are strained. The principal strains of a triangle are the two factors by which
-// its rest shape is stretched, less 1: negative where it is compressed.
+// The two factors by which the rest shape of a triangle is stretched, less 1: negative where it is compressed.
+struct PrincipalStrains {
+  double least, largest;
+  double area, area_at_rest;  // m^2
+};
+// Nothing where the triangle is sewn shut or has no area at rest.
+std::optional<PrincipalStrains> principal_strains(const Cloth& cloth, std::size_t triangle, const VecX& x);
+
+// The strain that every particle of the system is shown with: of a woven cloth, of the principal strains of the
+// triangles there, and of springs, of l / L - 1 of the edges there, the one of larger magnitude, with its sign.
+// 0 where nothing meets.
+void particle_strains(const Cloth& cloth, const VecX& x, std::vector<double>& strain);
+
+// How the triangles of all cloths are strained, by their principal strains.
 struct TriangleStrains {
   double least = 0, largest = 0;  // over all triangles; 0 where none is compressed, or none stretched
   double first_percent = 0;       // one triangle in a hundred is compressed further

@@ -22,7 +22,7 @@ const contact_colours = ["#b9bec6", "#e69f00", "#0072b2"]; // of Okabe and Ito: 
 
 export const modes = {
   plain: { label: "Plain" },
-  strain: { label: "Edge strain", unit: "%", scale: 100, colour: (x) => interpolateRdBu(1 - x), diverging: true },
+  strain: { label: "Strain", unit: "%", scale: 100, colour: (x) => interpolateRdBu(1 - x), diverging: true },
   speed: { label: "Speed", unit: "m/s", scale: 1, colour: interpolateViridis },
   contact: { label: "Contact", names: contact_names, colours: contact_colours },
 };
@@ -30,18 +30,22 @@ export const modes = {
 // So that a few wild vertices do not take the whole scale: what 99.5 % of the values stay below, rounded up.
 function top_of(shapes, field) {
   const sample = [];
+  let least = 0, largest = 0;
   for (const shape of shapes) {
     if (!shape.has(field)) continue;
     const frames = shape.track.frames, stride = Math.max(1, Math.floor((frames * shape.vertices) / 50000));
-    for (let k = 0; k < frames * shape.vertices; k += stride)
-      sample.push(Math.abs(shape.value(field, Math.floor(k / shape.vertices), k % shape.vertices)));
+    for (let k = 0; k < frames * shape.vertices; k += stride) {
+      const value = shape.value(field, Math.floor(k / shape.vertices), k % shape.vertices);
+      sample.push(Math.abs(value));
+      least = Math.min(least, value), largest = Math.max(largest, value);
+    }
   }
   sample.sort((a, b) => a - b);
   const top = sample.length ? sample[Math.floor(0.995 * (sample.length - 1))] : 0;
-  if (!(top > 1e-9)) return { top: modes[field].scale === 100 ? 0.01 : 0.1, beyond: false };
+  if (!(top > 1e-9)) return { top: modes[field].scale === 100 ? 0.01 : 0.1, below: false, beyond: false };
   const unit = 10 ** Math.floor(Math.log10(top));
   const nice = [1, 1.5, 2, 3, 4, 5, 6, 8, 10].find((x) => x * unit >= top * 0.9999) * unit;
-  return { top: nice, beyond: sample[sample.length - 1] > nice * 1.0001 };
+  return { top: nice, below: least < -nice * 1.0001, beyond: largest > nice * 1.0001 };
 }
 
 export class Colouring {
@@ -98,7 +102,7 @@ export class Colouring {
   }
 
   #scale(mode) {
-    const { top, beyond } = this.range(this.mode), low = mode.diverging ? -top : 0;
+    const { top, below, beyond } = this.range(this.mode), low = mode.diverging ? -top : 0;
     const box = document.createElement("div"), bar = document.createElement("div"), ticks = document.createElement("div");
     bar.className = "legend-bar";
     const stops = Array.from({ length: 17 }, (_, i) => mode.colour(i / 16));
@@ -106,7 +110,7 @@ export class Colouring {
     ticks.className = "legend-ticks";
     for (let i = 0; i <= 4; ++i) {
       const tick = document.createElement("span"), value = (low + ((top - low) * i) / 4) * mode.scale;
-      tick.textContent = (i === 4 && beyond ? "≥ " : "") + Number(value.toPrecision(3));
+      tick.textContent = (i === 4 && beyond ? "≥ " : i === 0 && below ? "≤ " : "") + Number(value.toPrecision(3));
       ticks.append(tick);
     }
     box.append(bar, ticks);

@@ -65,7 +65,7 @@ export class VertexPanel {
       const speed = shape.value("speed", frame, vertex), strain = shape.value("strain", frame, vertex);
       const contact = shape.value("contact", frame, vertex);
       rows.push(["speed [m/s]", speed === null ? "not recorded" : short(speed)]);
-      rows.push(["edge strain [%]", strain === null ? "not recorded" : short(100 * strain)]);
+      rows.push(["strain [%]", strain === null ? "not recorded" : short(100 * strain)]);
       rows.push(["contact", contact === null ? "not recorded" : modes.contact.names[Math.round(contact)]]);
     }
     if (this.values.children.length !== 2 * rows.length)
