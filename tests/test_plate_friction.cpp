@@ -327,7 +327,7 @@ struct Falling {
   State state = at_rest(s.mesh);
 
   Falling() {
-    system.add(woven(s.mesh, s.mesh, rubbing(), {}, 0, memory));
+    system.add(woven(s.mesh, s.mesh, rubbing(), std::optional<Vec3>(), 0, memory));
     system.add(Gravity{});
     constraints.pin(s.clamped);
   }
@@ -379,7 +379,7 @@ TEST_CASE("friction goes on where forces are made anew with its memory", "[woven
   Bdf stepper(one.system, one.constraints, make_linear_solver("mpcg+block-ic0"), {}, 1);
   for (int step = 0; step < 10; ++step) REQUIRE(stepper.advance(one.state, 0.02).done);
   System anew(masses(one.s.mesh, rubbing()));
-  anew.add(woven(one.s.mesh, one.s.mesh, rubbing(), {}, 0, one.memory));
+  anew.add(woven(one.s.mesh, one.s.mesh, rubbing(), std::optional<Vec3>(), 0, one.memory));
   anew.add(Gravity{});
   System forgetful(masses(one.s.mesh, rubbing()));
   forgetful.add(woven(one.s.mesh, one.s.mesh, rubbing()));

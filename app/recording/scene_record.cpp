@@ -137,6 +137,13 @@ std::string list_words(const Json& list, const InWords& in_words) {
 
 namespace {
 
+// The direction that the scene gives, or that was chosen when the mesh was loaded.
+std::optional<Vec3> warp_of(const ClothEntry& entry, const Cloth* cloth) {
+  if (entry.warp || !entry.warp_is_down || !cloth || cloth->warp.empty()) return entry.warp;
+  const Vec3& chosen = cloth->warp.front();
+  return chosen.isZero() ? std::nullopt : std::optional(chosen);
+}
+
 // The numbers that the forces are made of, chosen ones included.
 Json weave_json(const ClothEntry& entry, const std::optional<Vec3>& direction) {
   const Membrane::Common membrane = membrane_of(entry.fabric);
@@ -161,6 +168,8 @@ Json weave_json(const ClothEntry& entry, const std::optional<Vec3>& direction) {
                         {"stretch_time", weave.stretch_time},
                         {"shear_time", weave.shear_time},
                         {"bend_time", weave.bend_time},
+                        {"bend_friction_warp", friction.warp},
+                        {"bend_friction_weft", friction.weft},
                         {"rest_angle", weave.rest_angle}};
   if (!groups.empty()) members.emplace_back("group_warps", std::move(groups));
   return members;
@@ -168,14 +177,7 @@ Json weave_json(const ClothEntry& entry, const std::optional<Vec3>& direction) {
 
 }  // namespace
 
-// The direction that the scene gives, or that was chosen when the mesh was loaded.
-std::optional<Vec3> warp_of(const ClothEntry& entry, const Cloth* cloth) {
-  if (entry.warp || !entry.warp_is_down || !cloth || cloth->warp.empty()) return entry.warp;
-  const Vec3& chosen = cloth->warp.front();
-  return chosen.isZero() ? std::nullopt : std::optional(chosen);
-}
-
-Json fabric_json(const ClothEntry& entry, const std::optional<Vec3>& warp) {
+Json fabric_json(const ClothEntry& entry, const Cloth* cloth) {
   const Fabric& f = entry.fabric;
   const bool woven = entry.model == "woven";
   Json::Members given;
@@ -191,7 +193,7 @@ Json fabric_json(const ClothEntry& entry, const std::optional<Vec3>& warp) {
                        {"damping", f.damping},
                        {"damping_kind", name_of(f.damping_kind)},
                        {"neighbour_weighting", f.neighbour_weighting},
-                       {"weave", woven ? weave_json(entry, warp) : Json()},
+                       {"weave", woven ? weave_json(entry, warp_of(entry, cloth)) : Json()},
                        {"given", std::move(given)}};
 }
 
@@ -266,9 +268,8 @@ Json::Members scene_json(const Scene& scene, const Simulation* simulation) {
   Json::List cloths, softs, bodies;
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
     const ClothEntry& entry = scene.cloths[k];
-    Json::Members json = {
-        {"name", entry.name},
-        {"fabric", fabric_json(entry, warp_of(entry, simulation ? &simulation->cloths[k] : nullptr))}};
+    Json::Members json = {{"name", entry.name},
+                          {"fabric", fabric_json(entry, simulation ? &simulation->cloths[k] : nullptr)}};
     if (simulation) {
       json.emplace_back("pins", pins_json(entry.pins, simulation->cloths[k]));
       json.emplace_back("seams", seams_json(simulation->cloths[k]));

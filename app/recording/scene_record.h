@@ -10,8 +10,8 @@
 
 namespace drape::app {
 
-// warp: its direction in the rest shape, if it is known.
-Json fabric_json(const ClothEntry& entry, const std::optional<Vec3>& warp);
+// cloth: the same, made ready to run; null when it is not, and then a warp that is chosen by its mesh is not known.
+Json fabric_json(const ClothEntry& entry, const Cloth* cloth);
 Json material_json(const SoftMaterial& material);
 Json pins_json(const std::vector<PinEntry>& pins, const Cloth& cloth);
 Json seams_json(const Cloth& cloth);  // those that are open

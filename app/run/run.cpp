@@ -107,7 +107,7 @@ void Run::describe() {
                                material_json(scene.softs[k - scene.cloths.size()].material), pins});
     else
       record_.cloths.push_back({c.name, c.mesh.vertex_count(), c.mesh.triangle_count(), c.report.edges,
-                                c.report.diagonals, fabric_json(scene.cloths[k], c.warp), pins, seams_json(c),
+                                c.report.diagonals, fabric_json(scene.cloths[k], &c), pins, seams_json(c),
                                 c.imperfection});
   }
 }
