@@ -47,7 +47,8 @@ class Multigrid final : public Preconditioner {
 
   bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
     fallen_back_ = false;
-    reused_ = works_ && count_ > 1 && serial_ == A.pattern().serial();
+    reused_ = works_ && count_ > 1 && fill_ == A.fill() && serial_ == A.pattern().serial();
+    fill_ = A.fill();
     works_ = false;  // until the levels are built
     const ProjectedBlocks projected(A, filter);
     for (int r = 0; r < A.rows(); ++r)
@@ -167,7 +168,7 @@ class Multigrid final : public Preconditioner {
   Galerkin galerkin_;
   Mirror below_;                                       // of the pattern
   std::optional<Eigen::LLT<Eigen::MatrixXd>> coarse_;  // of the last level; empty: that is only smoothed
-  std::uint64_t serial_ = 0;
+  std::uint64_t serial_ = 0, fill_ = 0;
   bool works_ = false, reused_ = false, fallen_back_ = false;
   std::unique_ptr<Preconditioner> block_jacobi_ = make_block_jacobi();
   std::optional<double> rate_when_new_;  // iterations a decade; unknown before a solve of at least one

@@ -29,6 +29,7 @@ BlockMatrix::BlockMatrix(std::shared_ptr<const BlockPattern> pattern,
       values_(9 * static_cast<std::size_t>(pattern_->blocks() + overlay_->blocks()) + 3, 0.0) {}
 
 void BlockMatrix::set_to_mass(const std::vector<double>& mass) {
+  fill_ = next_pattern_serial();
   const auto base = 9 * static_cast<std::size_t>(pattern_->blocks());
   values_.resize(base + 9 * static_cast<std::size_t>(overlay_->blocks()) + 3);
   std::fill(values_.begin() + static_cast<std::ptrdiff_t>(base), values_.end(), 0.0);

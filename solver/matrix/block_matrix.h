@@ -48,6 +48,10 @@ class BlockMatrix {
   // rubs in another way needs no new assembly. A row may occur once at most.
   void set_diagonal_additions(std::span<const DiagonalBlock> additions);
 
+  // Differs between any two calls of set_to_mass() in a process. What was assembled after the same call
+  // differs by the additions to the diagonal alone.
+  std::uint64_t fill() const { return fill_; }
+
   void multiply(const VecX& x, VecX& y) const;  // y = A x, in row order
 
  private:
@@ -56,6 +60,7 @@ class BlockMatrix {
 
   std::shared_ptr<const BlockPattern> pattern_;
   std::shared_ptr<const BlockOverlay> overlay_;
+  std::uint64_t fill_ = 0;
   std::vector<double> values_;  // 9 a block, and 3 more, so that the last column can be read four wide
   // The slots of the diagonal blocks that have additions, and these blocks without them.
   std::vector<std::pair<int, Mat3>> assembled_;

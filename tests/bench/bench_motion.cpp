@@ -1,0 +1,118 @@
+// Whole runs in motion: what a simulated second costs, and where its time goes.
+//   hung      a sheet of 1 m that begins horizontal and swings down from two of its corners
+//   dropped   the same sheet, let go 1 cm above a ball of 0.3 m radius, friction 0.3
+// 0.2 kg/m^2, 1000 N/m, 10 uN.m, h = 10 ms, tolerance 1e-4. Arguments: SIDE ... (vertices along an edge; 32 and
+// 100 unless given), --steps N (100), --solver NAME, --threads N, --model noh-jung|woven, --scene hung|dropped.
+// Without a model, a scene or a number of threads each of them is measured in turn.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mesh/base/threads.h"
+#include "solver/drape.h"
+#include "tests/bench/bench.h"
+
+namespace {
+
+using namespace drape;
+using namespace drape::bench;
+
+struct Run {
+  int side, threads;
+  std::string scene, model, solver;
+};
+
+struct Cost {
+  double seconds = 0;  // for a simulated second
+  double iterations = 0, solves = 0, newton = 0, most_iterations = 0;
+  double assemble = 0, solve = 0, collide = 0;  // shares of the time of a step
+  int not_converged = 0;
+};
+
+Cost measure(const Run& run, int steps) {
+  set_threads(run.threads);
+  TriangleMesh sheet = grid(run.side, run.side, 1, 1);
+  const bool dropped = run.scene == "dropped";
+  if (dropped)
+    for (Vec3& x : sheet.positions) x.y() += 0.31;
+  const Fabric fabric{.area_density = 0.2, .stretch = 1000, .bend = 1e-5};
+  System system(lumped_mass(sheet, fabric.area_density));
+  system.add(run.model == "woven" ? woven(sheet, sheet, fabric) : noh_jung(sheet, fabric));
+  system.add(Gravity{});
+  Constraints constraints;
+  if (dropped)
+    constraints.add(Obstacle{.shape = Sphere{Vec3::Zero(), 0.3}, .friction = 0.3});
+  else
+    constraints.pin({0, run.side - 1});
+  ImplicitEuler stepper(system, constraints, make_linear_solver(run.solver), {.tolerance = 1e-4});
+  State state = at_rest(sheet);
+  StepReport sum;
+  Cost cost;
+  sum.step_ms = 0;
+  for (int k = 0; k < steps; ++k) {
+    const StepReport r = stepper.advance(state, 0.01);
+    sum.step_ms += r.step_ms;
+    sum.assemble_ms += r.assemble_ms;
+    sum.solve_ms += r.solve_ms;
+    sum.collide_ms += r.collide_ms;
+    cost.iterations += static_cast<double>(r.linear_iterations) / steps;
+    cost.solves += static_cast<double>(r.linear_solves) / steps;
+    cost.newton += static_cast<double>(r.newton_iterations) / steps;
+    cost.most_iterations = std::max(cost.most_iterations, static_cast<double>(r.linear_iterations));
+    cost.not_converged += !r.converged;
+    if (!r.done) std::printf("step %d is not done: %s\n", k, r.failure.what.c_str());
+  }
+  cost.seconds = sum.step_ms / steps / 10;
+  cost.assemble = sum.assemble_ms / sum.step_ms;
+  cost.solve = sum.solve_ms / sum.step_ms;
+  cost.collide = sum.collide_ms / sum.step_ms;
+  return cost;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  std::vector<int> sides, thread_counts = {1, 2};
+  std::vector<std::string> scenes = {"hung", "dropped"}, models = {"noh-jung", "woven"};
+  std::string solver = "ppcg+multigrid";
+  int steps = 100;
+  for (int k = 1; k < count; ++k) {
+    const std::string name = arguments[k];
+    if (name.rfind("--", 0) != 0) {
+      sides.push_back(std::atoi(arguments[k]));
+      continue;
+    }
+    if (++k == count) return std::fprintf(stderr, "error: %s needs a value\n", name.c_str()), 2;
+    if (name == "--steps") steps = std::atoi(arguments[k]);
+    if (name == "--solver") solver = arguments[k];
+    if (name == "--threads") thread_counts = {std::atoi(arguments[k])};
+    if (name == "--model") models = {arguments[k]};
+    if (name == "--scene") scenes = {arguments[k]};
+  }
+  if (sides.empty()) sides = {32, 100};
+  std::printf("%s, %d steps\n", solver.c_str(), steps);
+  std::printf("%-8s %-9s %8s %7s %10s %8s %11s %6s %7s %9s %6s %8s %9s\n", "scene", "model", "vertices",
+              "threads", "s a second", "exponent", "iterations", "most", "solves", "assembly", "solve",
+              "contact", "unsettled");
+  for (const std::string& scene : scenes)
+    for (const std::string& model : models) {
+      std::map<int, double> before;  // threads -> s a simulated second, of the smaller sheet
+      for (std::size_t s = 0; s < sides.size(); ++s)
+        for (int threads : thread_counts) {
+          const Cost c = measure({sides[s], threads, scene, model, solver}, steps);
+          const double growth =
+              s == 0 ? NAN
+                     : std::log(c.seconds / before[threads]) / (2 * std::log(1.0 * sides[s] / sides[s - 1]));
+          before[threads] = c.seconds;
+          std::printf("%-8s %-9s %8d %7d %10.2f %8.2f %11.1f %6.0f %7.1f %8.0f%% %5.0f%% %7.0f%% %9d\n",
+                      scene.c_str(), model.c_str(), sides[s] * sides[s], threads, c.seconds, growth,
+                      c.iterations, c.most_iterations, c.solves, 100 * c.assemble, 100 * c.solve,
+                      100 * c.collide, c.not_converged);
+          std::fflush(stdout);
+        }
+    }
+  return 0;
+}
