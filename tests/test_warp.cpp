@@ -128,7 +128,8 @@ TEST_CASE("a scene gives the warp by vector, by angle and by group", "[scene][wa
     CHECK_THAT(run.err, Contains("scene.toml:") && Contains(mistake.said));
     CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
   }
-  std::string needle = two_squares;  // the ear of the left square has its three vt in a line, but for rounding
+  std::string needle =
+      two_squares;  // the ear of the left square has its three vt in a line, but for rounding
   needle.replace(needle.find("vt 1 2\n"), 7, "vt 2 1.0000000001\n");
   folder.write("squares.obj", needle);
   folder.write("scene.toml", scene_of_squares + uv);

@@ -189,9 +189,7 @@ void add_fabric(py::module_& m) {
           "from 0 to 1, of a drape test of the fabric; None: not known")
       .def_property_readonly(
           "measured_drape_nodes",
-          [](const NamedFabric& named) {
-            return named.tests.drape ? named.tests.drape->nodes : Given();
-          },
+          [](const NamedFabric& named) { return named.tests.drape ? named.tests.drape->nodes : Given(); },
           "folds that were counted in it; None: not known")
       .def_property_readonly("fabric", [](const NamedFabric& named) { return Fabric(named.fabric); })
       .def("__repr__", [](const NamedFabric& named) {

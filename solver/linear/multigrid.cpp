@@ -3,11 +3,12 @@
 //   level: x = smooth down (r);  x += P V(P^T (r - A x));  x = smooth up (r, x);    next level: A_c = P^T A P
 // It is our own because it was faster than PETSc's GAMG on these matrices (tests/bench measures both): it has
 // blocks of whole vertices, kept in float, and threads that do not change a bit of the result. The finest
-// level is made for every system, because it contains what is held. The coarser levels are kept from step to
-// step while they work well enough: while a solve takes at most 4/3 n + 4 iterations, where n iterations gave
-// the same number of decades of the residual (at least one) when the levels were new. When they no longer do,
-// even in the middle of a solve, they are built anew. (Waiting longer, for as many iterations as a set-up
-// takes time, was slower in every gallery scene.)
+// level is made for every system, because it contains what is held. The coarser levels are new for every matrix
+// that is assembled: a step makes a tenth of the couplings ten times stiffer or softer, and old levels took twice
+// the iterations. Among the systems of one matrix, which differ in what is held, they are kept while they work
+// well enough: while a solve takes at most 4/3 n + 4 iterations, where n iterations gave the same number of
+// decades of the residual (at least one) when the levels were new. When they no longer do, even in the middle of
+// a solve, they are built anew.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
