@@ -15,8 +15,6 @@ using Catch::Contains;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 // Two squares of 1 m side by side, which share the corners 2 and 3, and an ear whose corners are all in both groups.
 const std::string two_squares =
     "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\nv 1 2 0\n"
