@@ -84,10 +84,10 @@ class FabricFile {
   // What the numbers were fitted to: for a rigidity the tests that bend, for the shear those that do not, if
   // there are any.
   std::string fit_comment(bool bend) const {
-    const std::vector<Comparison>& all = fitting_->comparisons;
-    const bool flat = std::any_of(all.begin(), all.end(), [](const Comparison& c) { return !c.bends; });
+    const std::vector<FittedValue>& all = fitting_->comparisons;
+    const bool flat = std::any_of(all.begin(), all.end(), [](const FittedValue& c) { return !c.bends; });
     std::string text;
-    for (const Comparison& c : all) {
+    for (const FittedValue& c : all) {
       if (c.bends != (bend || !flat)) continue;
       const auto amount = [&](double value) { return rounded(value / c.unit.in_si, 4); };
       text += (text.empty() ? "fitted: " : ", ") + c.name + " " + amount(c.found) + " " + c.unit.name +

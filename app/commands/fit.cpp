@@ -48,7 +48,7 @@ void print_misfit(const Fitting& fitting) {
     names.push_back(p.name);
     values.push_back(parameter_text(p));
   }
-  for (const Comparison& c : fitting.comparisons)
+  for (const FittedValue& c : fitting.comparisons)
     if (!c.met())
       missed.push_back(c.name + " comes out as " + rounded(c.found / c.unit.in_si, 4) + " " + c.unit.name +
                        " and not " + rounded(c.measured / c.unit.in_si, 4));

@@ -186,10 +186,10 @@ std::vector<FittedParameter> fitted(const Unknowns& unknowns, const Fabric& fabr
 
 }  // namespace
 
-bool Comparison::met() const { return std::abs(found - measured) <= tolerance; }
+bool FittedValue::met() const { return std::abs(found - measured) <= tolerance; }
 
 bool Fitting::met() const {
-  return std::all_of(comparisons.begin(), comparisons.end(), [](const Comparison& c) { return c.met(); });
+  return std::all_of(comparisons.begin(), comparisons.end(), [](const FittedValue& c) { return c.met(); });
 }
 
 Names parameters_to_fit(const NamedFabric& fabric) {
@@ -263,7 +263,7 @@ std::string parameter_text(const FittedParameter& p) { return p.name + " " + ben
 std::string fitting_text(const Fitting& fitting, const std::string& from) {
   std::string text =
       from + ", fitted by virtual tests on a mesh of " + millimetres(fitting.specimens.edge) + "\n";
-  for (const Comparison& c : fitting.comparisons) {
+  for (const FittedValue& c : fitting.comparisons) {
     text += "  " + c.name + ": measured " + rounded(c.measured / c.unit.in_si, 4) + " ± " +
             amount(c.tolerance, c.unit) + ", found " + amount(c.found, c.unit) +
             (c.beside.empty() ? "" : "; " + c.beside) + "\n";
@@ -279,7 +279,7 @@ std::string fitting_text(const Fitting& fitting, const std::string& from) {
         "  bend is that of a fabric which is the same along warp and weft: nothing here tells them apart\n";
   const double c = std::cbrt(fitting.fabric.bend / (fitting.fabric.area_density * standard_gravity));
   const bool bends = std::any_of(fitting.comparisons.begin(), fitting.comparisons.end(),
-                                 [](const Comparison& comparison) { return comparison.bends; });
+                                 [](const FittedValue& value) { return value.bends; });
   if (bends && fitting.specimens.edge > 0.6 * c)
     text += "  this mesh is too coarse for a bending length of " + millimetres(c) + "; take --mesh " +
             millimetres(0.5 * c) + " or finer\n";

@@ -16,7 +16,7 @@ struct FittedParameter {
   double uncertainty;  // relative, if every measurement is off by its tolerance
 };
 
-struct Comparison {
+struct FittedValue {
   std::string name;
   Unit unit;
   double measured, found, tolerance;  // SI
@@ -28,7 +28,7 @@ struct Comparison {
 struct Fitting {
   Fabric fabric;
   std::vector<FittedParameter> parameters;
-  std::vector<Comparison> comparisons;
+  std::vector<FittedValue> comparisons;
   int tests = 0;      // virtual tests that were run
   int rounds = 0;     // of the method
   std::string ended;  // why it stopped
