@@ -61,6 +61,7 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
   }
   step_.x = x;
   step_.v = v;
+  step_.inertia = masses;
   for (MovingBody& body : bodies_) body.begin_step(t, h);
   pins_.move(bodies_, step_);
   if (!bodies_.empty()) {

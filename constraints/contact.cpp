@@ -1,6 +1,7 @@
 #include "constraints/contact.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -44,6 +45,17 @@ Mat3 Contact::locked_directions() const {
   return Q;
 }
 
+void let_go(Contact& contact, int plane) {
+  const auto begin = contact.plane.begin();
+  std::rotate(begin + plane, begin + plane + 1, begin + contact.planes);
+  --contact.planes;
+}
+
+void hold_again(Contact& contact, int plane) {
+  std::swap(contact.plane[plane], contact.plane[contact.planes]);
+  ++contact.planes;
+}
+
 void add_plane(Contact& contact, const ContactPlane& plane) {
   // `rest` is the part of the normal that the planes already held do not span. Where it is too small, the new
   // plane adds no constraint.
@@ -55,6 +67,7 @@ void add_plane(Contact& contact, const ContactPlane& plane) {
     return;
   }
   contact.plane[contact.planes++] = plane;
+  contact.known = contact.planes;
   for (auto k = static_cast<std::size_t>(contact.planes) - 1;
        k > 0 && contact.plane[k].gap < contact.plane[k - 1].gap; --k)
     std::swap(contact.plane[k], contact.plane[k - 1]);

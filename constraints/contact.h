@@ -8,14 +8,23 @@
 //            gap <  0: it moves with the body, v.n = v_b.n, and comes out by y.n = min(-gap, recovery speed
 //            x h) [BW98, 6]
 //   release  a contact ends where the constraint would pull: r.n < 0
+//   catch    a plane that was let go holds again where the motion would pass through it, and a particle that
+//            would pass through a body is held by it. The first begins to slide, without friction in the first
+//            solve: if it stuck, it might be let go again. The second begins as if its particle were alone.
 //   stick    where |r_T| <= mu_s r.n: the particle is locked in all directions
-//   slide    otherwise: the particle is locked along n, and mu_k r.n rubs against the sliding direction. The
-//            friction is the damper c = mu_k (r.n / h) / |v_T|, taken implicitly: it can stop the motion and
-//            never turn it round. In the step in which the particle comes loose, friction is the impulse
-//            mu_k (r.n) r_T/|r_T|. Before the first solve of a step r.n is taken from the last step, with its
-//            arrival impulse replaced by that of this step: otherwise an impact would rub twice.
+//   slide    otherwise: the particle is locked along n, and mu_k r.n rubs against the slip s, its velocity along
+//            the surface as seen by the body. This is Coulomb's law, linearised at the slip s_0 of the solve
+//            before, t = s_0 / |s_0|: an impulse against t, and a damper across it,
+//                p = -mu_k (r.n) (t + (I - t t^T) s / |s_0|)
+//            After the solve it is linearised anew at p - w s, which would stop a particle that meets the
+//            inertia w: where that is at most mu_k r.n the particle sticks, otherwise s_0 points against it and
+//            |s_0| = (|p - w s| - mu_k r.n) / w.            [Hueber, Stadler & Wohlmuth 2008, section 3]
+//   brake    before the first solve of a step s_0 is not known, so friction is the damper mu_k (r.n) / |s_e| in all
+//            directions, with the slip s_e that is expected: it cannot turn the motion round. r.n is taken from
+//            the last step, with its arrival impulse replaced by that of this step: otherwise an impact would
+//            rub twice. A contact that has come loose too often ends as one that is braked.
 //   stop     where friction can stop all that slides on a body within a step, and it slows down, the step
-//            begins with it as sticking; where |r_T| > mu_k r.n it slides on, rubbed as above
+//            begins with it as sticking
 // r = A dv - b [N s] is the impulse of the constraint on the particle.
 //                                           [Baraff & Witkin 1998 (BW98), section 5.2; Noh & Jung, section 4]
 #pragma once
@@ -34,19 +43,20 @@ struct ContactPlane {
   Vec3 body_velocity;  // m/s
 };
 
-enum class Grip { stick, breaking_loose, slide };
+enum class Grip { stick, slide, brake };  // what is braked slides, too
 
 struct Contact {
   int particle;
-  int planes = 0;                     // 1 to 3; 0: the contact was released in this step
-  std::array<ContactPlane, 3> plane;  // the deepest first
+  int planes = 0;  // that hold the particle: 1 to 3; 0: it was let go in this step
+  int known = 0;   // those that hold it, and behind them those that were let go in this step
+  std::array<ContactPlane, 3> plane;  // of those that hold, the deepest first
   Grip grip = Grip::stick;
   int changes = 0;                       // how often the grip has changed within this step
   double normal_impulse = 0;             // sum over the planes [N s], of the last solve
   double arrival_impulse = 0;            // the part that stops the approach to the planes that hold [N s]
-  Vec3 friction_impulse = Vec3::Zero();  // impulse of friction while breaking loose [N s]
-  Vec3 slip = Vec3::Zero();  // tangential velocity against the body, expected at the end of this step [m/s]
-  Vec3 last_slip = Vec3::Zero();  // the same at the end of the step before [m/s]
+  Vec3 friction_impulse = Vec3::Zero();  // -mu_k (r.n) t of what slides [N s]
+  Vec3 slip = Vec3::Zero();              // s_0 of what slides, s_e of what is braked [m/s]
+  Vec3 last_slip = Vec3::Zero();         // the same at the end of the step before [m/s]
 
   bool active() const { return planes > 0; }
   // The directions that the planes lock: orthonormal, one in a column; the remaining columns are zero.
@@ -58,6 +68,10 @@ struct Contact {
 // a small lift do not release it.
 inline double touching_range(double margin) { return std::max(0.5 * margin, 1e-6); }
 
+// Lets the plane with this number go, and remembers it behind those that hold.
+void let_go(Contact& contact, int plane);
+// Lets the plane with this number, which was let go, hold again.
+void hold_again(Contact& contact, int plane);
 // Adds a plane unless the planes that are there imply it already; keeps the deepest first.
 void add_plane(Contact& contact, const ContactPlane& plane);
 

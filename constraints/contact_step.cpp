@@ -1,7 +1,7 @@
 #include "constraints/contact_step.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 namespace drape {
 
@@ -80,14 +80,25 @@ void ContactStep::receive_faces(const VecX& v) {
   }
 }
 
-ContactChange ContactStep::judge(const VecX& v, const VecX& r, const VecX& x_new, double noise) {
+ContactImbalance ContactStep::imbalance(const VecX& v, const VecX& r, const VecX& x_new) {
+  const StepMotion& step = constraints_->step_;
+  ParticleContacts& contacts = constraints_->contacts_;
+  contacts.look_on_path(constraints_->bodies_, step, x_new);
+  ContactImbalance found{.wrong = contacts.imbalance(constraints_->bodies_, step, v, r, x_new)};
+  if (step.foresight == Foresight::ahead)
+    found.wrong = std::hypot(found.wrong, constraints_->faces_.imbalance(step.h, x_new));
+  for (const Contact& c : touching())
+    if (c.active()) found.borne += r.segment<3>(3 * c.particle).squaredNorm();
+  found.borne = std::sqrt(found.borne);
+  return found;
+}
+
+ContactChange ContactStep::react(const VecX& v, const VecX& r, const VecX& x_new, double noise) {
   const StepMotion& step = constraints_->step_;
   ParticleContacts& contacts = constraints_->contacts_;
   ContactChange change;
-  change.caught = contacts.find_on_path(constraints_->bodies_, step, x_new);
-  // While particles fall through a body, what their neighbours bear is all noise: nothing comes loose by it.
-  const double too_small = change.caught ? std::numeric_limits<double>::infinity() : noise;
-  change.grip = contacts.react(constraints_->bodies_, step, v, r, too_small);
+  change.grip = contacts.react(constraints_->bodies_, step, v, r, x_new, noise);
+  change.caught = contacts.catch_on_path(constraints_->bodies_, step, x_new);
   if (step.foresight == Foresight::ahead) change.faces = constraints_->faces_.react(x_new, v);
   return change;
 }

@@ -2,9 +2,9 @@
 // has to respect (filter, friction, correction), solves, and hands over the solution; the answer says whether
 // the contacts have changed. A step that is not finished leaves the contacts of the last finished step as
 // they are.
-//   judge    takes the result of a solve, v [m/s] and the reaction r [N s]: a contact that pulls is let go,
-//            one that sticks or slides otherwise than assumed is changed, and a particle that would pass
-//            through a body is caught
+//   imbalance   says how wrong the contacts are that a solve assumed, from its v [m/s] and reaction r [N s]
+//   react    changes them: a contact that pulls is let go, one that sticks or slides otherwise than assumed is
+//            changed, and a particle that would pass through a body is caught
 //   move_bodies   is called when no contact changes any more: bodies that react move as the impulses make
 //                 them, and contacts, faces and pins go with them
 //   finish   guards the final motion (no particle crosses a surface) and commits the contacts
@@ -13,6 +13,7 @@
 // x [m], v [m/s], h [s].
 #pragma once
 
+#include <algorithm>
 #include <string_view>
 
 #include "constraints/constraints.h"
@@ -25,6 +26,18 @@ struct ContactChange {
   bool caught = false;  // particles that were free touch a body
   bool faces = false;   // other faces push, so a force has changed
   bool any() const { return grip || caught || faces; }
+};
+
+// How far the contacts are from agreeing with a solve.
+struct ContactImbalance {
+  // The norm of all impulses that are wrong [N s]: what pulls a particle towards a body, what would keep one from
+  // passing through, and friction beyond what the coefficient allows.
+  double wrong = 0;
+  double borne = 0;  // the norm of the impulses of all contacts [N s]
+  // What is wrong, as a share of the reference [N s] or of what the contacts bear, whichever is more.
+  double relative_to(double reference) const {
+    return wrong > 0 ? wrong / std::max({reference, borne, wrong}) : 0;
+  }
 };
 
 class ContactStep {
@@ -40,11 +53,20 @@ class ContactStep {
   const std::vector<FaceContact>& touching_faces() const;
   const std::vector<MovingPin>& moving_pins() const { return constraints_->pins_.moving(); }
 
+  // The momentum that a particle takes up for 1 m/s when it is pushed alone, its neighbours staying behind [kg]:
+  // at least its mass, which is taken where this is not called.
+  void set_inertia(int particle, double inertia) { constraints_->step_.inertia[particle] = inertia; }
   // Gives the impulses of a solve to the bodies that react, and counts the work of bodies and pins.
   void receive(const VecX& v, const VecX& r);
-  // Takes the same v and r, and the motion x_new that they make; impulses below `noise` [N s] count as
-  // round-off.
-  ContactChange judge(const VecX& v, const VecX& r, const VecX& x_new, double noise);
+  // How far the contacts are from agreeing with the same v and r, and with the motion x_new that they make.
+  ContactImbalance imbalance(const VecX& v, const VecX& r, const VecX& x_new);
+  // Changes the contacts to what the v, r and x_new of the last call of imbalance() ask for. An impulse counts
+  // as round-off when it changes the velocity of its particle by less than `noise` [m/s].
+  ContactChange react(const VecX& v, const VecX& r, const VecX& x_new, double noise);
+  // Ends the rounds: the contacts stay as the solve with this v and r had them.
+  void settle(const VecX& v, const VecX& r) {
+    constraints_->contacts_.settle(constraints_->bodies_, constraints_->step_, v, r);
+  }
   // True when a body that reacts does not move as was assumed: the step must then be solved again.
   bool move_bodies(double noise);
   // True when the bodies that react move as the impulses make them. `share` [-] is the difference allowed,

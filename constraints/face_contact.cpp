@@ -212,6 +212,14 @@ void FaceContacts::follow(const std::vector<MovingBody>& bodies) {
   }
 }
 
+double FaceContacts::imbalance(double h, const VecX& x_new) const {
+  double squares = 0;
+  for (const FaceContact& c : touching_)
+    if (const double gap = c.gap_at(x_new); c.active != (gap < 0))
+      squares += std::pow(h * c.stiffness * gap, 2);
+  return std::sqrt(squares);
+}
+
 bool FaceContacts::react(const VecX& x_new, const VecX& v_new) {
   bool changed = false;
   for (FaceContact& c : touching_) {

@@ -84,6 +84,8 @@ class FaceContacts {
   // sliding within a few steps of h [s] and never throw it back, however many faces share a particle.
   void limit_dampers(const std::vector<double>& masses, double h);
   void follow(const std::vector<MovingBody>& bodies);  // takes over a changed motion of the bodies
+  // The norm of the impulses of springs that pull, and of those that are missing, after a solve [N s].
+  double imbalance(double h, const VecX& x_new) const;
   // Finds after a solve which contacts act; true when that has changed.
   bool react(const VecX& x_new, const VecX& v_new);
   void end_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new);

@@ -93,7 +93,7 @@ void ParticleContacts::find(const Bodies& bodies, const StepMotion& step) {
 }
 
 void ParticleContacts::take_found(double h) {
-  for (const auto& found : found_) {
+  for (auto& found : found_) {
     for (const Contact& c : found) {
       contact_of_[c.particle] = static_cast<int>(trial_.size());
       trial_.push_back(c);
@@ -104,6 +104,7 @@ void ParticleContacts::take_found(double h) {
       }
       correction_.segment<3>(3 * c.particle) = along_planes(c, out);
     }
+    found.clear();
   }
 }
 
@@ -137,12 +138,17 @@ void ParticleContacts::look_for(int particle, const Bodies& bodies, const StepMo
   found.push_back(contact);
 }
 
-bool ParticleContacts::find_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new) {
+void ParticleContacts::look_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new) {
   for (auto& found : found_) found.clear();
   for_free(step, [&](int i, std::size_t k) {
     if (contact_of_[i] < 0) look_along(i, bodies, step, x_new.segment<3>(3 * i), found_[k]);
   });
+}
+
+bool ParticleContacts::catch_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new) {
   const std::size_t before = trial_.size();
+  for (auto& found : found_)
+    for (Contact& c : found) catch_grip(bodies, step, c, mean_velocity(step, c.particle, x_new));
   take_found(step.h);
   return trial_.size() != before;
 }
@@ -164,7 +170,7 @@ void ParticleContacts::look_along(int particle, const Bodies& bodies, const Step
 void ParticleContacts::follow(const Bodies& bodies, const StepMotion& step) {
   for (Contact& c : trial_) {
     c.changes = 0;
-    for (int k = 0; k < c.planes; ++k) {
+    for (int k = 0; k < c.known; ++k) {
       ContactPlane& p = c.plane[k];
       p.body_velocity = bodies[p.obstacle].velocity(step.place(c.particle));
     }
@@ -206,7 +212,8 @@ void ParticleContacts::commit() {
     if (!c.active()) continue;
     committed_of_[c.particle] = static_cast<int>(committed_.size());
     committed_.push_back(c);
-    if (c.grip == Grip::breaking_loose) committed_.back().grip = Grip::slide;
+    committed_.back().known = c.planes;
+    if (c.grip == Grip::brake) committed_.back().grip = Grip::slide;
   }
 }
 

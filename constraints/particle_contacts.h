@@ -56,11 +56,21 @@ class ParticleContacts {
 
   // Finds the particles that touch a body in the predicted motion.
   void find(const Bodies& bodies, const StepMotion& step);
-  // Finds the particles that would pass through a body in the motion x_new; true when there are any.
-  bool find_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new);
-  // Takes the reaction r [N s] of a solve that gave v [m/s]; impulses below `noise` [N s] count as round-off.
-  // True when a contact is let go, or sticks or slides otherwise than the solve assumed.
-  bool react(const Bodies& bodies, const StepMotion& step, const VecX& v, const VecX& r, double noise);
+  // Looks for the particles that would pass through a body in the motion x_new.
+  void look_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new);
+  // How wrong the contacts are as a solve assumed them, which gave v [m/s], the motion x_new and the reaction r [N s]: the norm
+  // of the impulses that should not be, those of particles found on the path among them [N s].
+  double imbalance(const Bodies& bodies, const StepMotion& step, const VecX& v, const VecX& r,
+                   const VecX& x_new);
+  // Takes in those that were found on the path; true when there are any.
+  bool catch_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new);
+  // Changes contacts to what such a solve asks for. An impulse counts as round-off when it changes the velocity
+  // of its particle by less than `noise` [m/s]. True when a contact is let go or caught again, or sticks or
+  // slides otherwise than the solve assumed.
+  bool react(const Bodies& bodies, const StepMotion& step, const VecX& v, const VecX& r, const VecX& x_new,
+             double noise);
+  // Takes over what bears on each contact from a solve with which the contacts agree.
+  void settle(const Bodies& bodies, const StepMotion& step, const VecX& v, const VecX& r);
   // Updates the contacts when the bodies do not move as was assumed.
   void follow(const Bodies& bodies, const StepMotion& step);
 
@@ -96,8 +106,17 @@ class ParticleContacts {
   void take_found(double h);
   void start_grip(const Bodies& bodies, const StepMotion& step, Contact& contact,
                   const Contact* before) const;
-  bool update_grip(const Bodies& bodies, const StepMotion& step, Contact& contact, const VecX& v,
+  Vec3 mean_velocity(const StepMotion& step, int particle, const VecX& x_new) const;
+  double sticking(const Contact& contact, const Friction& mu) const;
+  void catch_grip(const Bodies& bodies, const StepMotion& step, Contact& contact, const Vec3& v) const;
+  static double wrong_normal(const StepMotion& step, const Contact& contact, const Vec3& v, const Vec3& r);
+  double wrong_friction(const Bodies& bodies, const StepMotion& step, const Contact& contact, const Vec3& v,
+                        const Vec3& r) const;
+  bool catch_again(const StepMotion& step, Contact& contact, const Vec3& v, double noise) const;
+  bool update_grip(const Bodies& bodies, const StepMotion& step, Contact& contact, const Vec3& v,
                    const Vec3& r, double noise) const;
+  bool update_friction(const Bodies& bodies, const StepMotion& step, Contact& contact, const Vec3& v,
+                       const Vec3& r, double noise) const;
   void guard(int particle, const Bodies& bodies, const StepMotion& step, VecX& x_new, VecX& v_new,
              int& guarded);
   void respond(ContactMode mode, int particle, const Bodies& bodies, const StepMotion& step,
@@ -114,7 +133,8 @@ class ParticleContacts {
   std::vector<int> contact_of_, committed_of_;  // particle -> its place in those; -1: none
   // By body and particle: a distance within which there was no surface of the body [m].
   std::vector<double> clearance_;
-  VecX correction_;  // m
+  VecX correction_;       // m
+  double unsettled_ = 0;  // root mean square of the wrong impulses along the normals, of the last solve [N s]
   std::vector<ContactFriction> friction_;
   // By chunk of particles, so that threads do not share them.
   std::vector<std::vector<Contact>> found_;

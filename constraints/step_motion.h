@@ -20,11 +20,12 @@ struct StepMotion {
   double t = 0, h = 0;  // s
   double last_h = 0;    // length of the last completed step [s]
   Foresight foresight = Foresight::ahead;
-  double work = 0;             // work of moving bodies and pins on the particles [J]
-  VecX x, v;                   // at the start [m], [m/s]
-  VecX x_end;                  // where the last completed step ended [m]
-  std::vector<double> masses;  // kg
-  std::vector<char> held;      // per particle: it is pinned, or it has no mass
+  double work = 0;              // work of moving bodies and pins on the particles [J]
+  VecX x, v;                    // at the start [m], [m/s]
+  VecX x_end;                   // where the last completed step ended [m]
+  std::vector<double> masses;   // kg
+  std::vector<double> inertia;  // kg, see ContactStep::set_inertia
+  std::vector<char> held;       // per particle: it is pinned, or it has no mass
 
   bool is_held(int particle) const { return held[particle] != 0; }
   double mass(int particle) const { return masses[particle]; }

@@ -438,7 +438,7 @@ TEST_CASE("a contact may change its mind, and comes to a decision within a step"
     ContactStep contacts = constraints.begin_step(x, VecX(Vec3(1, 0, 0)), {1.0}, 0, 0.01);
     int changes = 0;
     for (int round = 0; round < 50; ++round)
-      changes += contacts.judge(VecX(Vec3(-1, 0, 0)), VecX(Vec3(-10, 1, 0)), x, 0).any();
+      changes += contacts.react(VecX(Vec3(-1, 0, 0)), VecX(Vec3(-10, 1, 0)), x, 0).any();
     CHECK(changes >= 2);
     CHECK(changes <= 10);
   }

@@ -135,6 +135,7 @@ TEST_CASE("momentum of cloth and body together is kept in a collision", "[reacti
         const int steps = static_cast<int>(std::lround(0.05 / step));
         for (int n = 0; n < steps; ++n) {
           const StepReport report = stepper->advance(cloth.state, step);
+          INFO(report.failure.what);
           REQUIRE(report.done);
         }
         CHECK(cloth.body().velocity()[1] > -1.99);  // they met

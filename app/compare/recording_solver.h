@@ -13,7 +13,7 @@ struct LinearSystem {
   VecX b;
   Filter filter;
   LinearOptions options;
-  VecX guess;     // m/s, in row order, as the integrator gave it
+  VecX guess;     // m/s, in row order, as the integrator gave it for the first solve with this matrix
   VecX solution;  // m/s, from the solver that the run goes on with
 };
 
@@ -35,7 +35,9 @@ class RecordingSolver final : public LinearSolver {
                      VecX& dv) override {
     if (!recording_.on || (recording_.keep_first && recording_.last))
       return solver_->solve(A, b, filter, options, dv);
-    recording_.last = LinearSystem{A, b, filter, options, dv, {}};
+    const bool same_matrix = recording_.last && recording_.last->A.fill() == A.fill();
+    VecX guess = same_matrix ? recording_.last->guess : dv;
+    recording_.last = LinearSystem{A, b, filter, options, std::move(guess), {}};
     recording_.last->options.history = nullptr;
     LinearReport report = solver_->solve(A, b, filter, options, dv);
     recording_.last->solution = dv;

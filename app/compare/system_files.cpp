@@ -17,7 +17,7 @@ constexpr Part allowed_file{
 constexpr Part given_file{"z.mtx", "z [m/s], the change that is given in the other directions"};
 constexpr Part projected_file{"A-projected.mtx", "S A S + I - S, symmetric, positive definite"};
 constexpr Part projected_right_file{"b-projected.mtx", "S (b - A z) [N s]"};
-constexpr Part guess_file{"guess.mtx", "dv [m/s] from which the step's own solver started"};
+constexpr Part guess_file{"guess.mtx", "dv [m/s] from which the first solve of the step started"};
 constexpr Part solution_file{"dv.mtx", "dv [m/s] that the step's own solver found, to the tolerance"};
 constexpr Part parts[] = {matrix_file,    right_file,           allowed_file, given_file,
                           projected_file, projected_right_file, guess_file,   solution_file};

@@ -33,6 +33,7 @@ void check(const StepOptions& o) {
   require(o.tolerance > 0 && o.tolerance < 1,
           "tolerance: expected a part of the residual, greater than 0 and less than 1");
   require(o.max_linear_iterations >= 0, "max_linear_iterations: expected 0 or more");
+  require(contact_tolerance(o) > 0, "contact_tolerance: expected a number greater than zero");
   require(o.max_contact_solves >= 1, "max_contact_solves: expected 1 or more");
   require(o.max_halvings >= 0, "max_halvings: expected 0 or more");
 }
@@ -93,13 +94,14 @@ void add_options(py::module_& m) {
   py::class_<StepOptions>(m, "StepOptions", "How a step is taken.")
       .def(py::init([](int newton_iterations, double newton_tolerance, double tolerance,
                        int max_linear_iterations, const std::optional<std::string>& contact,
-                       int max_contact_solves, int max_halvings) {
+                       std::optional<double> contact_tolerance, int max_contact_solves, int max_halvings) {
              StepOptions options;
              options.newton_iterations = newton_iterations;
              options.newton_tolerance = newton_tolerance;
              options.tolerance = tolerance;
              options.max_linear_iterations = max_linear_iterations;
              options.contact = contact_mode_of(contact);
+             options.contact_tolerance = contact_tolerance;
              options.max_contact_solves = max_contact_solves;
              options.max_halvings = max_halvings;
              check(options);
@@ -108,14 +110,20 @@ void add_options(py::module_& m) {
            py::kw_only(), "newton_iterations"_a = usual.newton_iterations,
            "newton_tolerance"_a = usual.newton_tolerance, "tolerance"_a = usual.tolerance,
            "max_linear_iterations"_a = usual.max_linear_iterations, "contact"_a = py::none(),
-           "max_contact_solves"_a = usual.max_contact_solves, "max_halvings"_a = usual.max_halvings,
+           "contact_tolerance"_a = py::none(), "max_contact_solves"_a = usual.max_contact_solves,
+           "max_halvings"_a = usual.max_halvings,
            "newton_iterations: linear solves per step, 1 is Baraff & Witkin's step; tolerance: relative "
            "residual of\n"
-           "each; contact: 'constraint', 'velocity', 'restitution' or None, what the integrator does best.")
+           "each; contact: 'constraint', 'velocity', 'restitution' or None, what the integrator does best; "
+           "contact_tolerance:\n"
+           "of the impulses of contacts, relative to the weight; None: ten times tolerance.")
       .def_readonly("newton_iterations", &StepOptions::newton_iterations, "linear solves per step")
       .def_readonly("newton_tolerance", &StepOptions::newton_tolerance, "of the nonlinear residual")
       .def_readonly("tolerance", &StepOptions::tolerance, "of the linear solve")
       .def_readonly("max_linear_iterations", &StepOptions::max_linear_iterations, "0: chosen by size")
+      .def_property_readonly(
+          "contact_tolerance", [](const StepOptions& o) { return contact_tolerance(o); },
+          "of the impulses of contacts that are wrong, relative to the weight")
       .def_readonly("max_contact_solves", &StepOptions::max_contact_solves)
       .def_readonly("max_halvings", &StepOptions::max_halvings, "of a step that failed")
       .def("__repr__", [](const StepOptions& o) {

@@ -59,8 +59,11 @@ void add_reports_of_steps(py::module_& m) {
       .def_readonly("guarded", &StepReport::guarded, "particles stopped at a surface outside the equations")
       .def_readonly("residual", &StepReport::residual,
                     "relative, the worst of the solves that the step ended with")
-      .def_readonly("converged", &StepReport::converged, "every solve reached its tolerance")
+      .def_readonly("converged", &StepReport::converged,
+                    "every solve reached its tolerance, and the contacts have settled")
       .def_readonly("contacts", &StepReport::contacts, "particles in contact at the end")
+      .def_readonly("contact_residual", &StepReport::contact_residual,
+                    "impulses of contacts that are wrong, relative to the weight")
       .def_readonly("penetration", &StepReport::penetration, "m, deepest particle inside a body at the start")
       .def_readonly("assemble_ms", &StepReport::assemble_ms)
       .def_readonly("solve_ms", &StepReport::solve_ms)

@@ -118,6 +118,7 @@ std::string run_json(const RunRecord& record) {
       {"area_min", record.strains.area_least},
       {"area_kept", record.strains.area_kept},
       {"max_penetration", record.max_penetration},
+      {"contact_residual", record.contact_residual},
       {"largest_speed", record.largest_speed},
       {"largest_edge_strain", record.largest_edge_strain},
       {"substeps_max", record.substeps_max},

@@ -68,6 +68,7 @@ struct RunRecord {
   double largest_speed = 0, largest_edge_strain = 0;                   // of the whole run
   TriangleStrains strains;                                             // at the end
   double max_penetration = 0;                                          // m, of the whole run
+  double contact_residual = 0;                                         // the largest of the whole run
   bool settled = false, interrupted = false;
   std::string state_hash;
   std::string frames;               // how they were written: pc2, obj, none

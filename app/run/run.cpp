@@ -180,6 +180,7 @@ void Run::record_step(const StepRow& row) {
   record_.largest_speed = std::max(record_.largest_speed, row.max_speed);
   record_.largest_edge_strain = std::max(record_.largest_edge_strain, row.max_edge_strain);
   record_.max_penetration = std::max(record_.max_penetration, report.penetration);
+  record_.contact_residual = std::max(record_.contact_residual, report.contact_residual);
   record_.substeps_max = std::max(record_.substeps_max, report.substeps);
   const std::string at = "warning: step " + std::to_string(row.step) + " (" + rounded(row.time, 4) + " s) ";
   if (report.substeps > 1) {
@@ -189,9 +190,10 @@ void Run::record_step(const StepRow& row) {
   }
   if (!report.converged) {
     ++record_.steps_not_converged;
-    tell_once(told_not_converged_,
-              at + "had a solve that ended before it reached its tolerance; further ones are "
-                   "counted in run.json (steps_not_converged)");
+    tell_once(
+        told_not_converged_,
+        at + "had a solve that ended before it reached its tolerance, or contacts that had not settled "
+             "(contact_residual of steps.csv); further ones are counted in run.json (steps_not_converged)");
   }
 }
 

@@ -25,7 +25,8 @@ std::string hints(const RunRecord& record) {
             std::to_string(record.substeps_max) + " pieces: a smaller time step is steadier\n";
   if (record.steps_not_converged > 0)
     text += "hint: " + counted(record.steps_not_converged, "step") +
-            " ended before the solve reached its tolerance\n";
+            " ended before the solve reached its tolerance or the contacts had settled (by up to " +
+            rounded(100 * record.contact_residual, 2) + " % of the weight)\n";
   if (record.state() == "moving" && !record.interrupted)
     text += "hint: it still moves: give it a longer duration\n";
   return text;

@@ -40,6 +40,10 @@ void read_step(Table& table, StepOptions& step) {
       "max_linear_iterations", step.max_linear_iterations, 0,
       "0: chosen by size, and reaching it is a failure; given: the solve stops there and the step counts "
       "as not converged");
+  table.read(
+      "contact_tolerance", step.contact_tolerance, dimension::number, Range::positive,
+      {"the contacts have settled when the impulses that are wrong come to this, relative to the weight",
+       "ten times `tolerance`"});
   table.read("max_contact_solves", step.max_contact_solves, 1,
              "how often a step is solved again because a contact changed");
   table.read("max_halvings", step.max_halvings, 0, "how often a step that fails is halved");

@@ -39,14 +39,19 @@ StepReport Bdf::advance(State& state, double h) {
 // last loose one. Bodies that react are moved only after that solve, and then the contacts may change again.
 class Bdf::ContactSolve {
  public:
-  ContactSolve(Bdf& bdf, const State& state, Stiffness stiffness, ContactStep& contacts, StepReport& report)
+  ContactSolve(Bdf& bdf, const State& state, const NewtonLoop& newton, ContactStep& contacts,
+               StepReport& report)
       : bdf_(bdf),
         state_(state),
-        stiffness_(stiffness),
+        stiffness_(newton.stiffness()),
+        first_(newton.first()),
         contacts_(contacts),
         report_(report),
         wanted_(bdf.options_.tolerance),
-        tolerance_(contacts.bodies() ? std::max(wanted_, std::sqrt(wanted_)) : wanted_) {}
+        tolerance_(contacts.bodies() ? std::max(wanted_, std::sqrt(wanted_)) : wanted_) {
+    for (int i = 0; i < bdf.system_.particles(); ++i)
+      contacts.set_inertia(i, bdf.A_.inertia(i) / bdf.k().scale[i]);
+  }
 
   bool solve() {
     const Stopwatch watch(report_.solve_ms);
@@ -68,14 +73,22 @@ class Bdf::ContactSolve {
     for (const MovingPin& p : contacts_.moving_pins()) unscale(p.particle);
     bdf_.end_.v = bdf_.p_.v + bdf_.dv_;
     bdf_.end_.x = bdf_.k().x_bar + bdf_.k().c * bdf_.end_.v;
-    return {bdf_.end_.v, bdf_.end_.x, bdf_.r_, 2 * bdf_.linear_.residual_impulse};
+    const double residual = bdf_.linear_.residual_impulse;
+    return {bdf_.end_.v, bdf_.end_.x, bdf_.r_, 2 * residual, bdf_.merit_.speed_noise(residual), reference()};
+  }
+
+  bool worth_settling() {
+    if (!first_) return true;
+    first_ = false;
+    bdf_.end_.v = bdf_.p_.v + bdf_.dv_;
+    return bdf_.falls(contacts_);
   }
 
   void release() {}  // a particle that is let go moves in the next solve
 
-  bool refine() {
+  bool refine(double imbalance) {
     if (bdf_.linear_.residual <= wanted_ || tolerance_ <= wanted_) return false;
-    tolerance_ = wanted_;
+    tolerance_ = std::clamp(0.1 * imbalance, wanted_, tolerance_);
     return true;
   }
 
@@ -89,11 +102,16 @@ class Bdf::ContactSolve {
   }
 
  private:
+  double reference() const {
+    const LinearReport& linear = bdf_.linear_;
+    return linear.residual > 0 ? linear.residual_impulse / linear.residual : bdf_.merit_.weight_impulse();
+  }
   void linearise() { bdf_.linearise(state_, stiffness_, contacts_, report_); }
 
   Bdf& bdf_;
   const State& state_;
   Stiffness stiffness_;
+  bool first_;  // the next solve is the first of the step
   ContactStep& contacts_;
   StepReport& report_;
   double wanted_, tolerance_;
@@ -108,8 +126,8 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
     if (newton.may_stop() && residual(contacts) <= residual_wanted()) break;
     if (!newton.first()) dv_.setZero();
     // Solve S (A dv - b) = 0 within the contacts, until the contacts agree with dv.    [BW98, 5.1 to 5.3]
-    ContactSolve solve(*this, state, newton.stiffness(), contacts, report);
-    if (!settle_contacts(contacts, options_.max_contact_solves, solve, report) || !good(linear_))
+    ContactSolve solve(*this, state, newton, contacts, report);
+    if (!settle_contacts(contacts, options_, solve, report) || !good(linear_))
       return fail(report, "linear solve: " + std::string(drape::name(linear_.reason)));
     const bool full = descend(contacts, newton.first());  // v += dv, as far as Phi falls         [NW06, 3.1]
     p_.x = k().x_bar + k().c * p_.v;                      // x = x_bar + c v
@@ -208,14 +226,23 @@ void Bdf::add_friction(const std::vector<ContactFriction>& friction) {
       [&](std::size_t f) { return Mat3(k().h * friction[f].damping); });
 }
 
-bool Bdf::descend(ContactStep& contacts, bool first) {
+bool Bdf::falls(ContactStep& contacts) {
+  set_base(contacts, true);
+  return merit_.falls(k(), friction(contacts), v_base_, end_.v);
+}
+
+// Sets the velocity towards which a step goes back when it is too long.
+void Bdf::set_base(ContactStep& contacts, bool first) {
   v_base_ = p_.v;
-  if (first) {  // standing still, except for what is prescribed
-    contacts.filter(p_.v, filter_);
-    v_base_ = -p_.v;
-    filter_.impose(v_base_);
-    v_base_ += p_.v;
-  }
+  if (!first) return;
+  contacts.filter(p_.v, filter_);  // standing still, except for what is prescribed
+  v_base_ = -p_.v;
+  filter_.impose(v_base_);
+  v_base_ += p_.v;
+}
+
+bool Bdf::descend(ContactStep& contacts, bool first) {
+  set_base(contacts, first);
   return merit_.descend(k(), friction(contacts), v_base_, dv_, p_.v);
 }
 
@@ -223,7 +250,7 @@ void Bdf::finish(State& state, ContactStep& contacts, StepReport& report) {
   end_ = p_;
   end_step(contacts, end_.x, end_.v, report);
   report.residual = std::max(report.residual, linear_.residual);
-  report.converged = report.converged && linear_.reason == StopReason::converged;
+  report.converged = report.converged && linear_.reason == StopReason::converged && settled(report, options_);
   history_.remember(state, end_, contacts);
   system_.end_step(end_.x);
   state.x = end_.x;

@@ -45,6 +45,8 @@ class Bdf final : public Integrator {
   double residual(ContactStep& contacts);  // N s
   double residual_wanted() const;          // N s
   bool makes_energy(const State& start, const ContactStep& contacts, double h) const;
+  bool falls(ContactStep& contacts);  // whether the first solve of a step will be taken whole
+  void set_base(ContactStep& contacts, bool first);
   bool descend(ContactStep& contacts, bool first);
   void finish(State& state, ContactStep& contacts, StepReport& report);
   bool good(const LinearReport& linear) const;

@@ -4,6 +4,8 @@
 //   A contact that would pull is let go, one that is pushed along the surface harder than it sticks slides,
 //   and a particle that would pass through a body is caught. Then bodies that react move as the impulses make
 //   them.
+// This is a primal-dual active set with inexact solves: every round decides all contacts, and is solved only as
+// accurately as the contacts are settled.                    [Hintermueller, Ito & Kunisch 2002]
 #pragma once
 
 #include "constraints/contact_step.h"
@@ -14,40 +16,57 @@ namespace drape::internal {
 
 // What a solve within the contacts gave; the loop reads it, the solver owns it.
 struct ContactTrial {
-  const VecX& v;  // m/s, at the end of the step
-  const VecX& x;  // the motion that v makes [m]
-  const VecX& r;  // impulses with which the constraints held the particles [N s]
-  double noise;   // an impulse below this may be round-off of the solve [N s]
+  const VecX& v;       // m/s, at the end of the step
+  const VecX& x;       // the motion that v makes [m]
+  const VecX& r;       // impulses with which the constraints held the particles [N s]
+  double noise;        // an impulse on a body below this may be round-off of the solve [N s]
+  double speed_noise;  // a change of a particle's velocity below this may be round-off of the solve [m/s]
+  double reference;    // the impulse of the weight, or a larger one that acts [N s]
 };
 
 // An Attempt offers
 //   bool solve()                     solves within the contacts as they are; false: it failed, and so does
 //                                    the loop
+//   bool worth_settling()            false: the step will be cut short and solved anew, so that the contacts need
+//                                    not agree with it
 //   ContactTrial trial()             returns what the solve gave
-//   void release()                   moves on what is not held any more, before the contacts are judged
-//   bool refine()                    makes the next solve more accurate; false: it was accurate already
+//   void release()                   moves on what is not held any more, before the contacts are looked at
+//   bool refine(imbalance)           makes the next solve more accurate, if this one was less accurate than
+//                                    contacts with this imbalance [-] need; false: it was accurate enough
 //   void changed(ContactChange)      the contacts have changed: makes anew what depends on them
 //   void bodies_moved()              the same for bodies that react
-// At most `most` solves are answered by other contacts, for each motion that is tried for a body that reacts.
+// The contacts have settled when the imbalance of impulses is at most contact_tolerance(options) of the
+// reference. At most max_contact_solves solves are answered by other contacts, for each motion that is tried for
+// a body that reacts.
 template <class Attempt>
-bool settle_contacts(ContactStep& contacts, int most, Attempt& attempt, StepReport& report) {
+bool settle_contacts(ContactStep& contacts, const StepOptions& options, Attempt& attempt,
+                     StepReport& report) {
   for (int round = 0;; ++round) {
     if (!attempt.solve()) return false;
     if (!contacts.holds_anything()) return true;
     const Stopwatch watch(report.collide_ms);
     const ContactTrial trial = attempt.trial();
     contacts.receive(trial.v, trial.r);
-    if (!contacts.bodies()) return true;
+    if (!contacts.bodies() || !attempt.worth_settling()) return true;
     attempt.release();
-    const ContactChange change =
-        round < most ? contacts.judge(trial.v, trial.r, trial.x, trial.noise) : ContactChange{};
-    if (change.any()) {
-      attempt.changed(change);
-    } else if (!attempt.refine()) {
-      if (!contacts.move_bodies(trial.noise)) return true;
-      round = 0;
-      attempt.bodies_moved();
+    const ContactImbalance found = contacts.imbalance(trial.v, trial.r, trial.x);
+    const double imbalance = found.relative_to(trial.reference);
+    if (imbalance > contact_tolerance(options) && round < options.max_contact_solves) {
+      if (const ContactChange change = contacts.react(trial.v, trial.r, trial.x, trial.speed_noise);
+          change.any()) {
+        attempt.refine(imbalance);
+        attempt.changed(change);
+        continue;
+      }
     }
+    if (attempt.refine(0)) continue;
+    if (!contacts.move_bodies(trial.noise)) {
+      contacts.settle(trial.v, trial.r);
+      report.contact_residual = imbalance;
+      return true;
+    }
+    round = 0;
+    attempt.bodies_moved();
   }
 }
 

@@ -64,9 +64,15 @@ class HeldMotion::ContactSolve {
     motion_.move_within_constraints(state_, x_, h_);
     return true;
   }
-  ContactTrial trial() { return {motion_.v_new_, motion_.x_new_, motion_.r_, motion_.impulse_noise(h_)}; }
+  ContactTrial trial() {
+    const double noise = 1e-9 * h_ * motion_.system_.gravity_acceleration().norm();
+    return {motion_.v_new_, motion_.x_new_,
+            motion_.r_,     motion_.impulse_noise(h_),
+            noise,          motion_.weight_impulse(h_)};
+  }
+  bool worth_settling() { return true; }
   void release() { motion_.let_go(x_, v_); }
-  bool refine() { return false; }
+  bool refine(double) { return false; }
   void changed(const ContactChange&) {}
   void bodies_moved() {}
 
@@ -90,7 +96,8 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
     if (contact_ == ContactMode::constraint) {
       set_free(v);
       ContactSolve solve(*this, state, x, v, h);
-      settle_contacts(*contacts_, options.max_contact_solves, solve, report);
+      settle_contacts(*contacts_, options, solve, report);
+      report.converged = report.converged && settled(report, options);
     } else {
       const Stopwatch watch(report.collide_ms);
       contacts_->respond(contact_, x, v, pulled_, x_new_, v_new_, impulse_noise(h));
@@ -124,7 +131,7 @@ void HeldMotion::set_free(const VecX& v) {
 // explicit: where the cloth is stiff and h long, that is far more than the particle would gain.
 void HeldMotion::let_go(const VecX& x, const VecX& v) {
   for (const Contact& c : contacts_->touching()) {
-    if (c.active() && c.grip != Grip::breaking_loose) continue;
+    if (c.active() && c.grip == Grip::stick) continue;
     const auto held = std::find_if(held_.entries().begin(), held_.entries().end(),
                                    [&](const FilterEntry& e) { return e.particle == c.particle; });
     if (held == held_.entries().end() || (c.active() && !held->S.isZero(0))) continue;
@@ -145,6 +152,12 @@ double HeldMotion::impulse_noise(double h) const {
   double heaviest = 0;
   for (double m : system_.masses()) heaviest = std::max(heaviest, m);
   return 1e-9 * heaviest * h * system_.gravity_acceleration().norm();
+}
+
+double HeldMotion::weight_impulse(double h) const {
+  double squares = 0;
+  for (double m : system_.masses()) squares += m * m;
+  return h * system_.gravity_acceleration().norm() * std::sqrt(squares);
 }
 
 // Solves S (A dv - b) = 0 within the filter, one particle at a time; A = m + h D, where D is the damper of

@@ -47,6 +47,7 @@ class HeldMotion {
   class ContactSolve;
 
   double impulse_noise(double h) const;
+  double weight_impulse(double h) const;  // h |m g| [N s]
   void set_free(const VecX& v);
   void move_within_constraints(const State& state, const VecX& x, double h);
   void let_go(const VecX& x, const VecX& v);

@@ -23,9 +23,12 @@ struct StepOptions {
   // failure. When a limit is given, the solve stops there, and the report says so.
   int max_linear_iterations = 0;
   std::optional<ContactMode> contact = {};  // unset: the mode that suits the integrator best
+  // The contacts have settled when the impulses that are wrong (see ContactStep::imbalance) come to at most this
+  // much, relative to h |m g| or to a larger impulse that acts. Unset: ten times `tolerance`.
+  std::optional<double> contact_tolerance = {};
   // How often a step may be solved again because a contact changed. The count starts again for every motion
   // that is tried for a body that reacts.
-  int max_contact_solves = 8;
+  int max_contact_solves = 30;
   int max_rescues = 20;  // further Newton iterations when a full one would raise the incremental potential
   int max_halvings = 6;  // how often a failed step may be halved before it is given up
   // For the integrators with inner steps (cvode-, arkode-): the error of an inner step may be
@@ -44,6 +47,10 @@ struct StepFailure {
   std::string force;  // the force that causes it, when that is known
 };
 
+inline double contact_tolerance(const StepOptions& options) {
+  return options.contact_tolerance.value_or(10 * options.tolerance);
+}
+
 struct StepReport {
   bool done = true;           // false: the state is as before the step, but bodies that react may not be
   StepFailure failure;        // of a step that is not done
@@ -53,14 +60,19 @@ struct StepReport {
   int newton_iterations = 0;  // this and the next counts are sums over the substeps
   int linear_solves = 0;
   int linear_iterations = 0;
-  int rescues = 0;         // Newton iterations that had to be cut short, so that no energy is made
-  int guarded = 0;         // particles that were stopped at a surface outside the equations
-  double residual = 0;     // relative: the worst of the solves that the substeps ended with
-  bool converged = true;   // every solve reached its tolerance
-  int contacts = 0;        // particles in contact at the end
-  double penetration = 0;  // m: how far the deepest particle was inside a body at the start
+  int rescues = 0;              // Newton iterations that had to be cut short, so that no energy is made
+  int guarded = 0;              // particles that were stopped at a surface outside the equations
+  double residual = 0;          // relative: the worst of the solves that the substeps ended with
+  bool converged = true;        // every solve reached its tolerance, and the contacts have settled
+  int contacts = 0;             // particles in contact at the end
+  double contact_residual = 0;  // how far they were from settled, see StepOptions::contact_tolerance
+  double penetration = 0;       // m: how far the deepest particle was inside a body at the start
   double assemble_ms = 0, solve_ms = 0, collide_ms = 0, step_ms = 0;
 };
+
+inline bool settled(const StepReport& report, const StepOptions& options) {
+  return report.contact_residual <= contact_tolerance(options);
+}
 
 class Integrator {
  public:

@@ -97,9 +97,9 @@ class NewtonKinsol final : public Integrator {
   Filter filter_, held_;  // at the velocity at the start of the solve; the same with z = 0
   std::vector<ContactFriction> friction_;
   Search search_;
-  double h_ = 0, scale_ = 0;  // s, N s
-  RoundOff noise_;            // at the point where A was assembled last
-  bool solved_ = false;       // whether the last equation was solved to its tolerance
+  double h_ = 0, scale_ = 0, mass_ = 0;  // s, N s, norm of all masses [kg]
+  RoundOff noise_;                       // at the point where A was assembled last
+  bool solved_ = false;                  // whether the last equation was solved to its tolerance
   VecX x_, x_bar_, v_, v_n_, v_here_, F_, f_scale_, one_, b_, dv_, minus_F_;
 };
 
@@ -132,10 +132,14 @@ class NewtonKinsol::ContactSolve {
   }
   ContactTrial trial() {  // the equation leaves the reaction in the locked directions
     kinsol_.equation(kinsol_.v_);
-    return {kinsol_.v_, kinsol_.x_, kinsol_.F_, 2 * kinsol_.report_.residual * kinsol_.scale_};
+    const double noise = 2 * kinsol_.report_.residual * kinsol_.scale_;
+    for (int i = 0; i < kinsol_.system_.particles(); ++i)
+      kinsol_.contacts_->set_inertia(i, kinsol_.newton_.inertia(i));
+    return {kinsol_.v_, kinsol_.x_, kinsol_.F_, noise, noise / kinsol_.mass_, kinsol_.scale_};
   }
+  bool worth_settling() { return true; }
   void release() {}
-  bool refine() { return false; }  // every solve is to the tolerance already
+  bool refine(double) { return false; }  // every solve is to the tolerance already
   void changed(const ContactChange&) {}
   void bodies_moved() {}
 
@@ -148,11 +152,11 @@ bool NewtonKinsol::attempt(State& state, const Piece& piece) {
   const double h = piece.h;
   h_ = h;
   v_n_ = state.v;
-  scale_ = 0;
+  mass_ = 0;
   const VecX f = system_.force(state.x, state.v);
-  for (int i = 0; i < system_.particles(); ++i)  // the impulse of gravity is known to act
-    scale_ += std::pow(system_.masses()[i] * system_.gravity_acceleration().norm(), 2);
-  scale_ = h * std::max({std::sqrt(scale_), 1e-3 * std::sqrt(dot(f, f)), 1e-12});
+  for (double m : system_.masses()) mass_ += m * m;
+  mass_ = std::sqrt(mass_);  // the impulse of gravity on it is known to act
+  scale_ = h * std::max({mass_ * system_.gravity_acceleration().norm(), 1e-3 * std::sqrt(dot(f, f)), 1e-12});
   f_scale_.setConstant(1 / scale_);
   {
     const Stopwatch watch(report_.collide_ms);
@@ -162,12 +166,12 @@ bool NewtonKinsol::attempt(State& state, const Piece& piece) {
   v_ = state.v;
   for (int i = 0; i < system_.particles(); ++i) v_.segment<3>(3 * i) += h * system_.gravity_acceleration();
   ContactSolve solve(*this, state);
-  if (!settle_contacts(*contacts_, options_.max_contact_solves, solve, report_)) return false;
+  if (!settle_contacts(*contacts_, options_, solve, report_)) return false;
   if (!contacts_->bodies_agree() && !piece.shortest)  // in the shortest piece the report says it instead
     return fail("the motion of a body that reacts and that of the cloth do not agree");
   x_ = x_bar_ + h * v_;
   if (!x_.allFinite()) return fail("the new positions are not finite numbers");
-  report_.converged = report_.converged && solved_;
+  report_.converged = report_.converged && solved_ && settled(report_, options_);
   end_step(*contacts_, x_, v_, report_);
   system_.end_step(x_);
   state.x = x_;

@@ -38,12 +38,18 @@ double potential_of_forces(const System& system, const std::vector<ContactFricti
 
 void Merit::begin(double h) {
   const double fall = h * system_.gravity_acceleration().norm();
-  weight_impulse_ = fall_energy_ = 0;
+  mass_ = fall_energy_ = 0;
   for (double m : system_.masses()) {
-    weight_impulse_ += m * m;
+    mass_ += m * m;
     fall_energy_ += m * fall * fall;
   }
-  weight_impulse_ = fall * std::sqrt(weight_impulse_);
+  mass_ = std::sqrt(mass_);
+  weight_impulse_ = fall * mass_;
+}
+
+double Merit::speed_noise(double residual) const {
+  const double evenly = 2 * residual / mass_;
+  return weight_impulse_ > 0 ? std::min(evenly, 0.02 * weight_impulse_ / mass_) : evenly;
 }
 
 void Merit::measure(const BlockMatrix& A, const Point& p, double c) { noise_ = round_off(A, p.x, p.v, c); }
@@ -64,12 +70,22 @@ double Merit::potential(const StepCoefficients& k, const std::vector<ContactFric
   return inertia + potential_of_forces(system_, friction, x_, v, k.c, k.h);
 }
 
+// The largest Phi that counts as not above `start`. A tenth of the energy that the fall of one step brings may
+// come from a solve that ends at its tolerance.
+double Merit::most(double start) const {
+  return start + 1e-9 * std::abs(start) + 0.05 * fall_energy_ + noise_.energy(start);
+}
+
+bool Merit::falls(const StepCoefficients& k, const std::vector<ContactFriction>& friction, const VecX& v_base,
+                  const VecX& v) {
+  const double allowed = most(potential(k, friction, v_base));
+  return potential(k, friction, v) <= allowed;
+}
+
 bool Merit::descend(const StepCoefficients& k, const std::vector<ContactFriction>& friction,
                     const VecX& v_base, const VecX& dv, VecX& v) {
   v += dv;
-  const double start = potential(k, friction, v_base);
-  // A tenth of the energy that the fall of one step brings may come from a solve that ends at its tolerance.
-  const double allowed = start + 1e-9 * std::abs(start) + 0.05 * fall_energy_ + noise_.energy(start);
+  const double allowed = most(potential(k, friction, v_base));
   for (int halvings = 0; halvings < 12; ++halvings) {
     if (potential(k, friction, v) <= allowed) return halvings == 0;
     v = 0.5 * (v + v_base);

@@ -37,9 +37,15 @@ class Merit {
   void begin(double h);                                          // begins a step of h [s]
   void measure(const BlockMatrix& A, const Point& p, double c);  // measures the round-off at p
   double weight_impulse() const { return weight_impulse_; }      // h |m g| [N s]
-  double noise_impulse() const { return noise_.impulse; }        // round-off of a residual [N s]
+  // The change of a particle's velocity that a residual of this norm [N s] makes, if it is spread evenly; at most
+  // a fiftieth of what gravity changes it by, so that a coarse solve decides contacts, too [m/s].
+  double speed_noise(double residual) const;
+  double noise_impulse() const { return noise_.impulse; }  // round-off of a residual [N s]
 
   double potential(const StepCoefficients& k, const std::vector<ContactFriction>& friction, const VecX& v);
+  // True when Phi at v is not above its value at v_base, but for what solves and round-off change.
+  bool falls(const StepCoefficients& k, const std::vector<ContactFriction>& friction, const VecX& v_base,
+             const VecX& v);
   // v <- v + dv where that does not raise Phi above its value at v_base; otherwise v goes back towards v_base
   // by halves until that is so. True when the step was taken whole.
   bool descend(const StepCoefficients& k, const std::vector<ContactFriction>& friction, const VecX& v_base,
@@ -50,6 +56,8 @@ class Merit {
 
  private:
   const System& system_;
+  double mass_ = 0;  // the norm of all masses [kg]
+  double most(double start) const;
   double weight_impulse_ = 0;  // h |m g| [N s]
   double fall_energy_ = 0;     // sum of m (h g)^2 [J]
   RoundOff noise_;             // at the point where it was measured last

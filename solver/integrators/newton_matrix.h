@@ -37,6 +37,9 @@ class NewtonMatrix {
   // Sets r = A dv - b of the last solve: the impulse with which the constraints hold the particles [N s].
   void reaction(VecX& r);
 
+  // What a particle that is pushed alone takes up for 1 m/s, a third of the trace of its block [kg].
+  double inertia(int particle) const { return A_->at(A_->pattern().diagonal(row(particle))).trace() / 3; }
+
   const BlockMatrix& matrix() const { return *A_; }
   // The force with the largest stiffness at a particle, or one that is not finite there: to be named when a
   // solve failed at that particle. Overwrites the matrix.
