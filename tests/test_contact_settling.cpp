@@ -71,7 +71,8 @@ TEST_CASE("settled contacts obey Signorini's and Coulomb's laws, whatever the li
           const StepReport report = stepper->advance(cloth.state, h);
           REQUIRE(report.done);
           if (!report.converged || report.guarded > 0 || report.substeps > 1) continue;
-          if (report.newton_iterations == most_newton) continue;  // Newton's iteration has left something over
+          if (report.newton_iterations == most_newton)
+            continue;  // Newton's iteration has left something over
           VecX f = VecX::Zero(before.x.size());
           for (const auto& force : cloth.system.forces()) force->add_force(cloth.state.x, cloth.state.v, f);
           std::vector<const Contact*> touches(static_cast<std::size_t>(before.particles()), nullptr);
