@@ -258,7 +258,7 @@ void check_model(const Table& table, const ClothEntry& cloth) {
     const std::string key = keys_of_connections[k];
     const std::string what = "is of connections, and model = \"woven\" has none";
     if (table.has(key)) table.fail(key, what);
-    table.fail("fabric", "its " + key + " " + what);
+    table.fail("fabric", std::string("its ").append(key).append(" ").append(what));
   }
   if (woven && needs_warp(cloth.fabric) && !cloth.warp && cloth.group_warps.empty() && !cloth.warp_is_down)
     table.fail("model",
