@@ -66,7 +66,7 @@ TEST_CASE("settled contacts obey Signorini's and Coulomb's laws, whatever the li
                                               .max_contact_solves = 60});
         int exact = 0;
         const double tiny = 1e-6 * cloth.weight_impulse(h);
-        for (int step = 0; step < 25; ++step) {
+        for (int n = 0; n < 25; ++n) {
           const State before = cloth.state;
           const StepReport report = stepper->advance(cloth.state, h);
           REQUIRE(report.done);
@@ -97,7 +97,7 @@ TEST_CASE("settled contacts obey Signorini's and Coulomb's laws, whatever the li
             for (int k = 0; k < c.planes; ++k) along[k] = c.plane[k].normal.dot(r);
             rubbed = std::max(rubbed, (r - along_planes(c, along)).norm() - friction * sum);
           }
-          INFO("step " << step);
+          INFO("step " << n);
           CHECK(pulled <= tiny + 10 * free);  // what Newton's iteration has left over stands in all of them
           CHECK(rubbed <= tiny + 10 * free);
           exact += free <= tiny;
@@ -118,7 +118,7 @@ TEST_CASE("contacts settle within the tolerance in nearly every step, in few sol
                                              make_linear_solver("mpcg+block-ic0"), options);
         int unsettled = 0, solves = 0, newton = 0;
         constexpr int steps = 60;
-        for (int step = 0; step < steps; ++step) {
+        for (int n = 0; n < steps; ++n) {
           const StepReport report = stepper->advance(cloth.state, 0.01);
           REQUIRE(report.done);
           CHECK(report.converged == (report.residual <= 1.01e-4 && settled(report, options)));
