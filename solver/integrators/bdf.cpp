@@ -127,7 +127,7 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
     if (!newton.first()) dv_.setZero();
     // Solve S (A dv - b) = 0 within the contacts, until the contacts agree with dv.    [BW98, 5.1 to 5.3]
     ContactSolve solve(*this, state, newton, contacts, report);
-    if (!settle_contacts(contacts, options_, solve, report) || !good(linear_))
+    if (!settle_contacts(contacts, options_, solve, report, imbalance_) || !good(linear_))
       return fail(report, "linear solve: " + std::string(drape::name(linear_.reason)));
     const bool full = descend(contacts, newton.first());  // v += dv, as far as Phi falls         [NW06, 3.1]
     p_.x = k().x_bar + k().c * p_.v;                      // x = x_bar + c v
@@ -250,7 +250,8 @@ void Bdf::finish(State& state, ContactStep& contacts, StepReport& report) {
   end_ = p_;
   end_step(contacts, end_.x, end_.v, report);
   report.residual = std::max(report.residual, linear_.residual);
-  report.converged = report.converged && linear_.reason == StopReason::converged && settled(report, options_);
+  report.converged = report.converged && linear_.reason == StopReason::converged;
+  note_contacts(imbalance_, options_, report);
   history_.remember(state, end_, contacts);
   system_.end_step(end_.x);
   state.x = end_.x;

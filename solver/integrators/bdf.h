@@ -63,10 +63,11 @@ class Bdf final : public Integrator {
   StepHistory history_;
   NewtonMatrix A_;
   Merit merit_;
-  Point p_;              // the current point of Newton's iteration
-  VecX dv_;              // m/s: before a solve its guess, afterwards its solution
-  LinearReport linear_;  // of the last solve
-  State before_;         // the state to which a step that fails half-way returns
+  Point p_;               // the current point of Newton's iteration
+  VecX dv_;               // m/s: before a solve its guess, afterwards its solution
+  double imbalance_ = 0;  // of the contacts after the last solve, relative
+  LinearReport linear_;   // of the last solve
+  State before_;          // the state to which a step that fails half-way returns
 
   // Scratch of a step.
   Point end_;

@@ -38,9 +38,11 @@ struct ContactTrial {
 // The contacts have settled when the imbalance of impulses is at most contact_tolerance(options) of the
 // reference. At most max_contact_solves solves are answered by other contacts, for each motion that is tried for
 // a body that reacts.
+// `imbalance` [-] is how far the contacts are from settled in the end.
 template <class Attempt>
-bool settle_contacts(ContactStep& contacts, const StepOptions& options, Attempt& attempt,
-                     StepReport& report) {
+bool settle_contacts(ContactStep& contacts, const StepOptions& options, Attempt& attempt, StepReport& report,
+                     double& imbalance) {
+  imbalance = 0;
   for (int round = 0;; ++round) {
     if (!attempt.solve()) return false;
     if (!contacts.holds_anything()) return true;
@@ -50,7 +52,7 @@ bool settle_contacts(ContactStep& contacts, const StepOptions& options, Attempt&
     if (!contacts.bodies() || !attempt.worth_settling()) return true;
     attempt.release();
     const ContactImbalance found = contacts.imbalance(trial.v, trial.r, trial.x);
-    const double imbalance = found.relative_to(trial.reference);
+    imbalance = found.relative_to(trial.reference);
     if (imbalance > contact_tolerance(options) && round < options.max_contact_solves) {
       if (const ContactChange change = contacts.react(trial.v, trial.r, trial.x, trial.speed_noise);
           change.any()) {
@@ -62,7 +64,6 @@ bool settle_contacts(ContactStep& contacts, const StepOptions& options, Attempt&
     if (attempt.refine(0)) continue;
     if (!contacts.move_bodies(trial.noise)) {
       contacts.settle(trial.v, trial.r);
-      report.contact_residual = imbalance;
       return true;
     }
     round = 0;

@@ -96,8 +96,9 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
     if (contact_ == ContactMode::constraint) {
       set_free(v);
       ContactSolve solve(*this, state, x, v, h);
-      settle_contacts(*contacts_, options, solve, report);
-      report.converged = report.converged && settled(report, options);
+      double imbalance = 0;
+      settle_contacts(*contacts_, options, solve, report, imbalance);
+      note_contacts(imbalance, options, report);
     } else {
       const Stopwatch watch(report.collide_ms);
       contacts_->respond(contact_, x, v, pulled_, x_new_, v_new_, impulse_noise(h));

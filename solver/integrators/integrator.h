@@ -2,6 +2,7 @@
 // where it failed.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -65,10 +66,16 @@ struct StepReport {
   double residual = 0;          // relative: the worst of the solves that the substeps ended with
   bool converged = true;        // every solve reached its tolerance, and the contacts have settled
   int contacts = 0;             // particles in contact at the end
-  double contact_residual = 0;  // how far they were from settled, see StepOptions::contact_tolerance
+  double contact_residual = 0;  // how far they were from settled in the worst of the pieces, see StepOptions
   double penetration = 0;       // m: how far the deepest particle was inside a body at the start
   double assemble_ms = 0, solve_ms = 0, collide_ms = 0, step_ms = 0;
 };
+
+// Takes over how far the contacts of a piece of the step are from settled.
+inline void note_contacts(double imbalance, const StepOptions& options, StepReport& report) {
+  report.contact_residual = std::max(report.contact_residual, imbalance);
+  report.converged = report.converged && imbalance <= contact_tolerance(options);
+}
 
 inline bool settled(const StepReport& report, const StepOptions& options) {
   return report.contact_residual <= contact_tolerance(options);

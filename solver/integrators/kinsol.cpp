@@ -166,12 +166,14 @@ bool NewtonKinsol::attempt(State& state, const Piece& piece) {
   v_ = state.v;
   for (int i = 0; i < system_.particles(); ++i) v_.segment<3>(3 * i) += h * system_.gravity_acceleration();
   ContactSolve solve(*this, state);
-  if (!settle_contacts(*contacts_, options_, solve, report_)) return false;
+  double imbalance = 0;
+  if (!settle_contacts(*contacts_, options_, solve, report_, imbalance)) return false;
   if (!contacts_->bodies_agree() && !piece.shortest)  // in the shortest piece the report says it instead
     return fail("the motion of a body that reacts and that of the cloth do not agree");
   x_ = x_bar_ + h * v_;
   if (!x_.allFinite()) return fail("the new positions are not finite numbers");
-  report_.converged = report_.converged && solved_ && settled(report_, options_);
+  report_.converged = report_.converged && solved_;
+  note_contacts(imbalance, options_, report_);
   end_step(*contacts_, x_, v_, report_);
   system_.end_step(x_);
   state.x = x_;

@@ -55,9 +55,10 @@ class Merit {
   bool makes_energy(const State& before, const Point& after, double work) const;
 
  private:
-  const System& system_;
-  double mass_ = 0;  // the norm of all masses [kg]
   double most(double start) const;
+
+  const System& system_;
+  double mass_ = 0;            // the norm of all masses [kg]
   double weight_impulse_ = 0;  // h |m g| [N s]
   double fall_energy_ = 0;     // sum of m (h g)^2 [J]
   RoundOff noise_;             // at the point where it was measured last
