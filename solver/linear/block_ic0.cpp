@@ -2,26 +2,152 @@
 // float.
 //   A_jk <- A_jk - A_ij^T D_i^-1 A_ik for every i < j <= k whose block (j, k) is in the pattern, D_i = A_ii;
 //   L_ji = A_ij^T D_i^-1.                                                    [Meijerink & van der Vorst 1977]
+// The rows of all even chunks of the matrix come before those of all odd ones, as in its product. Two chunks of
+// one kind have no coupling, so that they are factorised and solved at the same time, and the number of threads
+// does not change a bit. Which blocks take part in which sum is listed once for a pattern.
 // Where a pivot is not positive, the matrix is shifted to A + a diag(A), and a grows until the factor exists
-// [Manteuffel 1980]; the report says so. Block rows of A's upper triangle take the place of the columns of L.
+// [Manteuffel 1980]; the report says so.
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <optional>
+#include <span>
+#include <vector>
 
+#include "mesh/base/parallel.h"
+#include "solver/linear/mirror.h"
 #include "solver/linear/preconditioner.h"
 #include "solver/linear/projected_block.h"
+#include "solver/linear/row_sum.h"
 
 namespace drape::internal {
 namespace {
 
-using Mat3f = Eigen::Matrix3f;
-using Vec3f = Eigen::Vector3f;
+// The upper triangle of the matrix in the order of elimination.
+class EliminationOrder {
+ public:
+  struct Block {
+    int column;   // in the order of elimination
+    int slot;     // of the matrix
+    bool turned;  // the matrix stores the transpose of this block
+  };
+  // A_jk -= (L_ji A_ik), by the places of the three blocks.
+  struct Update {
+    int factor, from, to;
+  };
+
+  explicit EliminationOrder(const BlockPattern& A);
+
+  int rows() const { return static_cast<int>(row_.size()); }
+  int row(int i) const { return row_[i]; }  // of the matrix
+  const std::vector<Block>& blocks() const { return block_; }
+  // The blocks of row i are those from start(i), its diagonal, to start(i + 1).
+  int start(int i) const { return start_[i]; }
+  const Mirror& below() const { return below_; }  // the blocks of each column above its diagonal
+  std::span<const Update> updates(int j) const {
+    return {update_.data() + update_start_[j], update_.data() + update_start_[j + 1]};
+  }
+  // Calls f(begin, end) for every even chunk of rows, then for every odd one; backwards the other way round.
+  template <class F>
+  void for_chunks(bool backwards, const F& f) const {
+    for (const int parity : {backwards ? 1 : 0, backwards ? 0 : 1}) {
+      const int first = parity == 0 ? 0 : even_rows_, last = parity == 0 ? even_rows_ : rows();
+      parallel_for((last - first + chunk_rows_ - 1) / chunk_rows_, rows() < serial_below,
+                   [&](int k) { f(first + k * chunk_rows_, std::min(last, first + (k + 1) * chunk_rows_)); });
+    }
+  }
+
+ private:
+  void list_updates();
+
+  int chunk_rows_, even_rows_ = 0;
+  std::vector<int> row_, start_{0};
+  std::vector<Block> block_;
+  Mirror below_;
+  std::vector<int> update_start_{0};
+  std::vector<Update> update_;
+};
+
+EliminationOrder::EliminationOrder(const BlockPattern& A)
+    : chunk_rows_(std::max(A.chunk_rows(), (A.rows() + 8 - 1) / 8)) {
+  for (const int parity : {0, 1}) {
+    for (int r = 0; r < A.rows(); ++r)
+      if (r / chunk_rows_ % 2 == parity) row_.push_back(r);
+    if (parity == 0) even_rows_ = rows();
+  }
+  std::vector<int> place(row_.size());
+  for (int i = 0; i < rows(); ++i) place[row_[i]] = i;
+  const Mirror left = below_diagonal(A);
+  block_.reserve(static_cast<std::size_t>(A.blocks()));
+  for (int i = 0; i < rows(); ++i) {
+    const auto first = static_cast<std::ptrdiff_t>(block_.size());
+    const auto add = [&](int column, int slot, bool turned) {
+      if (place[column] >= i) block_.push_back({place[column], slot, turned});
+    };
+    left.in_column(row_[i], [&](int r, int slot) { add(r, slot, true); });
+    for (int s = A.diagonal(row_[i]); s < A.row_start()[row_[i] + 1]; ++s) add(A.column()[s], s, false);
+    std::sort(block_.begin() + first, block_.end(),
+              [](const Block& a, const Block& b) { return a.column < b.column; });
+    start_.push_back(static_cast<int>(block_.size()));
+  }
+  below_.build(rows(), rows(), [&](int i, const auto& f) {
+    for (int k = start(i) + 1; k < start(i + 1); ++k) f(block_[k].column, k);
+  });
+  list_updates();
+}
+
+void EliminationOrder::list_updates() {
+  for (int j = 0; j < rows(); ++j) {
+    below_.in_column(j, [&](int i, int factor) {
+      int to = start(j);
+      for (int from = factor; from < start(i + 1); ++from) {
+        while (to < start(j + 1) && block_[to].column < block_[from].column) ++to;
+        if (to < start(j + 1) && block_[to].column == block_[from].column)
+          update_.push_back({factor, from, to});
+      }
+    });
+    update_start_.push_back(static_cast<int>(update_.size()));
+  }
+}
+
+// The fourth number of each column is zero.
+void widen(const double* b, WideBlock& wide) {
+  for (int c = 0; c < 3; ++c) wide.column[c] = Four{b[3 * c], b[3 * c + 1], b[3 * c + 2], 0};
+}
+void widen_transpose(const double* b, WideBlock& wide) {
+  for (int c = 0; c < 3; ++c) wide.column[c] = Four{b[c], b[3 + c], b[6 + c], 0};
+}
+
+Mat3 narrow(const WideBlock& wide) {
+  Mat3 b;
+  wide.store(b.data());
+  return b;
+}
+
+typedef float FourFloats __attribute__((vector_size(16), aligned(4)));
+
+FourFloats floats(const float* p) { return *reinterpret_cast<const FourFloats*>(p); }
+FourFloats times(const float* block, const FourFloats& x) {
+  return floats(block) * x[0] + floats(block + 3) * x[1] + floats(block + 6) * x[2];
+}
+
+// The sums of the lanes of each vector, and a fourth number that means nothing.
+FourFloats sums(const FourFloats& p, const FourFloats& q, const FourFloats& t) {
+  const FourFloats pq = __builtin_shufflevector(p, q, 0, 4, 2, 6) + __builtin_shufflevector(p, q, 1, 5, 3, 7);
+  const FourFloats tt = t + __builtin_shufflevector(t, t, 1, 0, 3, 2);
+  return __builtin_shufflevector(pq, tt, 0, 1, 4, 5) + __builtin_shufflevector(pq, tt, 2, 3, 6, 7);
+}
 
 class BlockIc0 final : public Preconditioner {
  public:
   std::string_view name() const override { return "block-ic0"; }
 
   bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
-    if (serial_ != A.pattern().serial()) shift_ = 0;
+    if (serial_ != A.pattern().serial()) {
+      shift_ = 0;
+      order_.emplace(A.pattern());
+    }
     serial_ = A.pattern().serial();
-    pattern_ = &A.pattern();
     shift_ = shift_ > first_shift ? shift_ / 4 : 0;  // the matrix of the last step needed four times this
     return build(A, filter, report);
   }
@@ -34,24 +160,31 @@ class BlockIc0 final : public Preconditioner {
   }
 
   void apply(const VecX& r, VecX& s) override {
-    const std::vector<int>&start = pattern_->row_start(), &column = pattern_->column();
-    const int rows = pattern_->rows();
     const double size = r.cwiseAbs().maxCoeff();  // scales r so that floats neither vanish nor overflow
     if (size == 0) return s.setZero(), void();
-    y_ = (r / size).cast<float>();
-    for (int i = 0; i < rows; ++i) {  // solves L y = r column by column; y <- D^-1 y as soon as it is known
-      const Vec3f yi = y_.segment<3>(3 * i);
-      for (int k = first(start, i) + 1; k < first(start, i + 1); ++k)
-        y_.segment<3>(3 * column[k]).noalias() -= at(k).transpose() * yi;
-      y_.segment<3>(3 * i).noalias() = at(first(start, i)) * yi;
-    }
-    for (int i = rows - 1; i >= 0; --i) {  // solves L^T s = y
-      Vec3f sum = y_.segment<3>(3 * i);
-      for (int k = first(start, i) + 1; k < first(start, i + 1); ++k)
-        sum.noalias() -= at(k) * y_.segment<3>(3 * column[k]);
-      y_.segment<3>(3 * i) = sum;
-    }
-    s = size * y_.cast<double>();
+    order_->for_chunks(false, [&](int begin, int end) {  // L y = r
+      for (int j = begin; j < end; ++j) {
+        const double* rj = r.data() + 3 * static_cast<std::ptrdiff_t>(order_->row(j));
+        FourFloats sum = __builtin_convertvector((Four{rj[0], rj[1], rj[2], 0} / size), FourFloats);
+        order_->below().in_column(j, [&](int i, int k) { sum -= times(lower(k), floats(y(i))); });
+        set_y(j, sum);
+      }
+    });
+    order_->for_chunks(true, [&](int begin, int end) {  // L^T s = D^-1 y
+      for (int i = end - 1; i >= begin; --i) {
+        const int first = order_->start(i);
+        FourFloats p = {0, 0, 0, 0}, q = p, t = p;
+        for (int k = order_->start(i + 1) - 1; k > first; --k) {  // the one that was solved last comes last
+          const FourFloats yj = floats(y(order_->blocks()[k].column));
+          p += floats(lower(k)) * yj;
+          q += floats(lower(k) + 3) * yj;
+          t += floats(lower(k) + 6) * yj;
+        }
+        set_y(i, times(lower(first), floats(y(i))) - sums(p, q, t));
+        double* si = s.data() + 3 * static_cast<std::ptrdiff_t>(order_->row(i));
+        for (int k = 0; k < 3; ++k) si[k] = size * static_cast<double>(y(i)[k]);
+      }
+    });
   }
 
  private:
@@ -61,7 +194,12 @@ class BlockIc0 final : public Preconditioner {
 
   bool build(const BlockMatrix& A, const Filter& filter, LinearReport& report) {
     const ProjectedBlocks projected(A, filter);
-    while (!factorise(A, projected, shift_)) {
+    const std::size_t blocks = order_->blocks().size();
+    values_.resize(blocks);
+    factors_.resize(blocks);
+    lower_.resize(9 * blocks + 1);  // one more, so that the last column can be read four wide
+    y_.resize(4 * static_cast<std::size_t>(A.rows()));
+    while (!factorise(A, projected)) {
       raise_shift();
       if (shift_ > largest_shift) {
         shift_ = 0;
@@ -71,60 +209,73 @@ class BlockIc0 final : public Preconditioner {
     if (shift_ > 0)
       report.note =
           "incomplete Cholesky broke down; it was built for A + " + std::to_string(shift_) + " diag(A)";
-    lower_.resize(values_.size());
-    for (std::size_t s = 0; s < values_.size(); ++s) lower_[s] = values_[s].cast<float>();
-    y_.resize(3 * static_cast<Eigen::Index>(A.rows()));
     return true;
   }
 
-  static int first(const std::vector<int>& start, int row) { return start[row]; }
-  const Mat3f& at(int slot) const { return lower_[slot]; }
-  Mat3& value(int slot) { return values_[slot]; }
+  const float* y(int i) const { return y_.data() + 4 * static_cast<std::ptrdiff_t>(i); }
+  void set_y(int i, FourFloats v) {
+    v[3] = 0;
+    *reinterpret_cast<FourFloats*>(y_.data() + 4 * static_cast<std::ptrdiff_t>(i)) = v;
+  }
+  const float* lower(int k) const { return lower_.data() + 9 * static_cast<std::ptrdiff_t>(k); }
 
-  // Leaves D_i^-1 on the diagonal and D_i^-1 A_ij beside it. False when a pivot is not positive.
-  bool factorise(const BlockMatrix& A, const ProjectedBlocks& projected, double shift) {
-    const std::vector<int>&start = pattern_->row_start(), &column = pattern_->column();
-    values_.resize(static_cast<std::size_t>(pattern_->blocks()));
-    for (int i = 0; i < A.rows(); ++i) {
-      for (int k = first(start, i); k < first(start, i + 1); ++k) value(k) = projected.block(k, i, column[k]);
-      value(first(start, i)).diagonal() *= 1 + shift;
+  // False when a pivot is not positive.
+  bool factorise(const BlockMatrix& A, const ProjectedBlocks& projected) {
+    std::atomic<bool> sound = true;
+    order_->for_chunks(false, [&](int begin, int end) {
+      for (int j = begin; j < end && sound; ++j)
+        if (!factorise_row(j, A, projected)) sound = false;
+    });
+    return sound;
+  }
+
+  bool factorise_row(int j, const BlockMatrix& A, const ProjectedBlocks& projected) {
+    const int first = order_->start(j), end = order_->start(j + 1);
+    for (int k = first; k < end; ++k) {
+      const EliminationOrder::Block& block = order_->blocks()[k];
+      const int row = order_->row(j), column = order_->row(block.column);
+      Mat3 held;
+      const double* b = A.block(block.slot);
+      if (!projected.free(row) || !projected.free(column)) {
+        held = block.turned ? projected.block(block.slot, column, row)
+                            : projected.block(block.slot, row, column);
+        b = held.data();
+      }
+      block.turned ? widen_transpose(b, values_[k]) : widen(b, values_[k]);
     }
-    for (int i = 0; i < A.rows(); ++i) {
-      const int begin = first(start, i), end = first(start, i + 1);
-      // A pivot that has lost nearly all of its size is no better than a negative one.
-      constexpr double least = 1e-3;
-      const Mat3 original = projected.block(begin, i, i);
-      if (!positive_definite(value(begin)) ||
-          value(begin).determinant() < least * least * least * original.determinant())
-        return false;
-      value(begin) = value(begin).inverse().eval();
-      for (int k = begin + 1; k < end; ++k) eliminate(value(begin), k, end, column);
-      for (int k = begin + 1; k < end; ++k) value(k) = (value(begin) * value(k)).eval();
+    const Mat3 original = narrow(values_[first]);
+    for (int e = 0; e < 3; ++e) values_[first].column[e][e] *= 1 + shift_;
+    for (const EliminationOrder::Update& u : order_->updates(j)) {
+      const Four *factor = factors_[u.factor].column, *from = values_[u.from].column;
+      for (int c = 0; c < 3; ++c)
+        values_[u.to].column[c] -= factor[0] * from[c][0] + factor[1] * from[c][1] + factor[2] * from[c][2];
+    }
+    // A pivot that has lost nearly all of its size is no better than a negative one.
+    constexpr double least = 1e-3;
+    const Mat3 pivot = narrow(values_[first]);
+    if (!positive_definite(pivot) || pivot.determinant() < least * least * least * original.determinant())
+      return false;
+    const Mat3 inverse = pivot.inverse();
+    store(first, inverse);
+    for (int k = first + 1; k < end; ++k) {
+      const Mat3 factor = narrow(values_[k]).transpose() * inverse;
+      widen(factor.data(), factors_[k]);
+      store(k, factor);
     }
     return true;
   }
 
-  // Subtracts A_ij^T D_i^-1 A_il from row j = column[k] of the matrix, for every l >= j of row i. Both rows
-  // ascend.
-  void eliminate(const Mat3& inverse, int k, int end, const std::vector<int>& column) {
-    const int j = column[k];
-    const Mat3 factor = value(k).transpose() * inverse;
-    int slot = pattern_->diagonal(j);
-    const int last = first(pattern_->row_start(), j + 1);
-    for (int l = k; l < end; ++l) {
-      const int target = column[l];
-      while (slot < last && column[slot] < target) ++slot;
-      if (slot == last) return;
-      if (column[slot] == target) value(slot).noalias() -= factor * value(l);
-    }
+  void store(int k, const Mat3& b) {
+    Eigen::Map<Eigen::Matrix3f>(lower_.data() + 9 * static_cast<std::ptrdiff_t>(k)) = b.cast<float>();
   }
 
-  const BlockPattern* pattern_ = nullptr;
   std::uint64_t serial_ = 0;
+  std::optional<EliminationOrder> order_;  // of the pattern
   double shift_ = 0;
-  std::vector<Mat3> values_;  // scratch of the factorisation, by slot
-  std::vector<Mat3f> lower_;
-  Eigen::VectorXf y_;
+  std::vector<WideBlock> values_,
+      factors_;               // scratch of the factorisation: A_jk, and L_kj beside the diagonal
+  std::vector<float> lower_;  // D_j^-1, and L_kj beside the diagonal
+  std::vector<float> y_;      // four a row, the fourth is zero
 };
 
 }  // namespace
