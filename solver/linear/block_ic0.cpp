@@ -31,9 +31,9 @@ class EliminationOrder {
     int slot;     // of the matrix
     bool turned;  // the matrix stores the transpose of this block
   };
-  // A_jk -= (L_ji A_ik), by the places of the three blocks.
+  // The places of the blocks L_ji and A_ik, whose product is subtracted from A_jk.
   struct Update {
-    int factor, from, to;
+    int factor, from;
   };
 
   explicit EliminationOrder(const BlockPattern& A);
@@ -43,9 +43,9 @@ class EliminationOrder {
   const std::vector<Block>& blocks() const { return block_; }
   // The blocks of row i are those from start(i), its diagonal, to start(i + 1).
   int start(int i) const { return start_[i]; }
-  const Mirror& below() const { return below_; }  // the blocks of each column above its diagonal
-  std::span<const Update> updates(int j) const {
-    return {update_.data() + update_start_[j], update_.data() + update_start_[j + 1]};
+  const Mirror& below() const { return below_; }      // the blocks of each column above its diagonal
+  std::span<const Update> updates(int place) const {  // of the block A_jk that stands there, i ascending
+    return {update_.data() + update_start_[place], update_.data() + update_start_[place + 1]};
   }
   // Calls f(begin, end) for every even chunk of rows, then for every odd one; backwards the other way round.
   template <class F>
@@ -97,16 +97,16 @@ EliminationOrder::EliminationOrder(const BlockPattern& A)
 }
 
 void EliminationOrder::list_updates() {
+  std::vector<int> factor_of(row_.size(), -1);  // row i -> place of A_ij, for one j
   for (int j = 0; j < rows(); ++j) {
-    below_.in_column(j, [&](int i, int factor) {
-      int to = start(j);
-      for (int from = factor; from < start(i + 1); ++from) {
-        while (to < start(j + 1) && block_[to].column < block_[from].column) ++to;
-        if (to < start(j + 1) && block_[to].column == block_[from].column)
-          update_.push_back({factor, from, to});
-      }
-    });
-    update_start_.push_back(static_cast<int>(update_.size()));
+    below_.in_column(j, [&](int i, int place) { factor_of[i] = place; });
+    for (int to = start(j); to < start(j + 1); ++to) {
+      below_.in_column(block_[to].column, [&](int i, int from) {
+        if (i < j && factor_of[i] >= 0) update_.push_back({factor_of[i], from});
+      });
+      update_start_.push_back(static_cast<int>(update_.size()));
+    }
+    below_.in_column(j, [&](int i, int) { factor_of[i] = -1; });
   }
 }
 
@@ -148,7 +148,9 @@ class BlockIc0 final : public Preconditioner {
       order_.emplace(A.pattern());
     }
     serial_ = A.pattern().serial();
-    shift_ = shift_ > first_shift ? shift_ / 4 : 0;  // the matrix of the last step needed four times this
+    // A new matrix may need less than the last one; what is held or rubbed changes little.
+    if (fill_ != A.fill()) shift_ = shift_ > first_shift ? shift_ / 4 : 0;
+    fill_ = A.fill();
     return build(A, filter, report);
   }
 
@@ -245,10 +247,16 @@ class BlockIc0 final : public Preconditioner {
     }
     const Mat3 original = narrow(values_[first]);
     for (int e = 0; e < 3; ++e) values_[first].column[e][e] *= 1 + shift_;
-    for (const EliminationOrder::Update& u : order_->updates(j)) {
-      const Four *factor = factors_[u.factor].column, *from = values_[u.from].column;
-      for (int c = 0; c < 3; ++c)
-        values_[u.to].column[c] -= factor[0] * from[c][0] + factor[1] * from[c][1] + factor[2] * from[c][2];
+    for (int k = first; k < end; ++k) {
+      Four c0 = values_[k].column[0], c1 = values_[k].column[1], c2 = values_[k].column[2];
+      for (const EliminationOrder::Update& u : order_->updates(k)) {
+        const Four *factor = factors_[u.factor].column, *from = values_[u.from].column;
+        const Four f0 = factor[0], f1 = factor[1], f2 = factor[2];
+        c0 -= f0 * from[0][0] + f1 * from[0][1] + f2 * from[0][2];
+        c1 -= f0 * from[1][0] + f1 * from[1][1] + f2 * from[1][2];
+        c2 -= f0 * from[2][0] + f1 * from[2][1] + f2 * from[2][2];
+      }
+      values_[k] = {c0, c1, c2};
     }
     // A pivot that has lost nearly all of its size is no better than a negative one.
     constexpr double least = 1e-3;
@@ -269,7 +277,7 @@ class BlockIc0 final : public Preconditioner {
     Eigen::Map<Eigen::Matrix3f>(lower_.data() + 9 * static_cast<std::ptrdiff_t>(k)) = b.cast<float>();
   }
 
-  std::uint64_t serial_ = 0;
+  std::uint64_t serial_ = 0, fill_ = 0;
   std::optional<EliminationOrder> order_;  // of the pattern
   double shift_ = 0;
   std::vector<WideBlock> values_,
