@@ -79,7 +79,7 @@ TEST_CASE("the library sews the poncho as the scene does, to the bit", "[sewing]
                        .seams = declared_seam_plans(flat, 0.2)});
   const auto body = std::make_shared<const SurfaceDistance>(read_obj(data / "meshes/body.obj"));
   poncho.constraints->add(Obstacle{.shape = body, .friction = 0.4, .margin = 0.003});
-  poncho.use("implicit-euler", "mpcg", {.tolerance = 1e-4});
+  poncho.use("implicit-euler", "auto", {.tolerance = 1e-4});
 
   Simulation scene = make_simulation(read_scene(data / "scenes/poncho-sewn.toml", {}));
   const auto same = [](const State& a, const State& b) { return a.x == b.x && a.v == b.v; };

@@ -86,7 +86,7 @@ TEST_CASE("a path that fails, an interrupt, a full disk", "[compare]") {
   Desk desk;
   const std::string scene = "'" + on_ball + "' --out o ";
   CHECK(desk.run(scene + "--steps 3 --set cloth.0.stretch=1e300") == 1);
-  CHECK_THAT(desk.err, Contains("error: step 1 of the run with mpcg+block-ic0 failed: "));
+  CHECK_THAT(desk.err, Contains("error: step 1 of the run with auto failed: "));
   CHECK(desk.json()["failure"].is_string());
   CHECK(desk.json()["agree"] == false);
   fs::remove_all(desk.path / "o");

@@ -53,6 +53,8 @@ void add_reports_of_steps(py::module_& m) {
       .def_readonly("inner_rejected", &StepReport::inner_rejected, "inner steps tried in vain")
       .def_readonly("newton_iterations", &StepReport::newton_iterations)
       .def_readonly("linear_solves", &StepReport::linear_solves)
+      .def_readonly("multigrid_solves", &StepReport::multigrid_solves,
+                    "solves for which the linear solver 'auto' took ppcg+multigrid")
       .def_readonly("linear_iterations", &StepReport::linear_iterations)
       .def_readonly("rescues", &StepReport::rescues,
                     "Newton iterations cut short, so that energy is not made")

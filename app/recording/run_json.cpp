@@ -84,6 +84,7 @@ Json failure_json(const Failure& f) {
 std::string run_json(const RunRecord& record) {
   const Distribution step_ms = distribution(record.step_ms),
                      iterations = distribution(record.linear_iterations),
+                     solves = distribution(record.linear_solves),
                      inner_steps = distribution(record.inner_steps);
   Json::Members json = {
       {"drape_version", DRAPE_VERSION},
@@ -108,6 +109,9 @@ std::string run_json(const RunRecord& record) {
                                   {"write", record.write_ms}}},
       {"linear_iterations",
        Json::Members{{"mean", iterations.mean}, {"max", static_cast<long>(iterations.max)}}},
+      {"linear_solves", Json::Members{{"mean", solves.mean},
+                                      {"max", static_cast<long>(solves.max)},
+                                      {"by_multigrid", record.multigrid_solves}}},
       {"state", record.state()},
       {"interrupted", record.interrupted},
       {"max_speed", record.max_speed},

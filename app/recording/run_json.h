@@ -61,8 +61,9 @@ struct RunRecord {
   Json settings = {};
   long steps = 0, steps_cut = 0, steps_not_converged = 0;
   int substeps_max = 1;
-  long inner_rejected = 0;                                             // inner steps of the whole run
-  std::vector<double> step_ms, linear_iterations, inner_steps;         // of each step
+  long inner_rejected = 0;                                                     // inner steps of the whole run
+  std::vector<double> step_ms, linear_iterations, linear_solves, inner_steps;  // of each step
+  long multigrid_solves = 0;  // of the whole run, by the linear solver "auto"
   double assemble_ms = 0, solve_ms = 0, collide_ms = 0, write_ms = 0;  // of the whole run
   double max_speed = 0, max_edge_strain = 0;                           // at the end [m/s], [-]
   double largest_speed = 0, largest_edge_strain = 0;                   // of the whole run

@@ -169,6 +169,8 @@ void Run::record_step(const StepRow& row) {
   record_.steps = loop_.done();
   record_.step_ms.push_back(report.step_ms);
   record_.linear_iterations.push_back(report.linear_iterations);
+  record_.linear_solves.push_back(report.linear_solves);
+  record_.multigrid_solves += report.multigrid_solves;
   record_.inner_steps.push_back(report.inner_steps);
   record_.inner_rejected += report.inner_rejected;
   record_.assemble_ms += report.assemble_ms;

@@ -32,6 +32,17 @@ std::string hints(const RunRecord& record) {
   return text;
 }
 
+// "auto" says which share of the solves went to multigrid.
+std::string solver_text(const RunRecord& record) {
+  if (record.linear_solver != "auto") return record.linear_solver;
+  double solves = 0;
+  for (const double of_step : record.linear_solves) solves += of_step;
+  const double share = solves > 0 ? 100 * static_cast<double>(record.multigrid_solves) / solves : 0;
+  return share == 0     ? "auto (mpcg+block-ic0)"
+         : share == 100 ? "auto (ppcg+multigrid)"
+                        : "auto (" + rounded(share, 2) + " % of the solves by ppcg+multigrid)";
+}
+
 }  // namespace
 
 std::string summary(const RunRecord& record, const Output& output) {
@@ -48,7 +59,7 @@ std::string summary(const RunRecord& record, const Output& output) {
     text += s.name + ": " + counted(s.particles, "particle") + ", " +
             counted(s.springs.structural + s.springs.shear + s.springs.bend, "spring") + ", " +
             counted(s.triangles, "triangle") + "\n";
-  text += record.integrator + ", " + record.linear_solver + ", " + counted(record.threads, "thread") + ": " +
+  text += record.integrator + ", " + solver_text(record) + ", " + counted(record.threads, "thread") + ": " +
           rounded(ms.median, 3) + " ms a step (95 % below " + rounded(ms.p95, 3) + "), " +
           rounded(iterations.mean, 3) + " linear iterations a step\n";
   text += "state: " + record.state() + ", largest speed " + rounded(record.max_speed, 2) +

@@ -140,7 +140,7 @@ struct SimulationOptions {
   Vec3 gravity = {0, -9.81, 0};  // m/s^2
   std::optional<Air> air;        // unset: there is none
   std::string integrator = "implicit-euler";
-  std::string linear_solver = "mpcg+block-ic0";  // docs/solvers.md compares the solvers
+  std::string linear_solver = "auto";  // docs/solvers.md compares the solvers
   StepOptions step;
   ContactOptions contact;
   int threads = 0;                 // 0: the number of processors

@@ -2,7 +2,7 @@
 //   Assembly all;                                  gravity and options of contact, the usual ones by default
 //   all.add(...)                                   every cloth and soft body
 //   all.constraints->add(...), all.pin(...)        bodies and pins, in any order
-//   all.use("implicit-euler", "mpcg+block-ic0")    makes the system, and may change the integrator later
+//   all.use("implicit-euler", "auto")              makes the system, and may change the integrator later
 //   all.advance(h)                                 steps, as often as you like
 // Where two particles are merged their masses and momenta are added. Positions are averaged by mass, so that
 // the centre of mass stays; a pinned particle stays where its first pin holds it. Then the system and the

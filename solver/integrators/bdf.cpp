@@ -60,8 +60,7 @@ class Bdf::ContactSolve {
     const LinearOptions options{tolerance_, bdf_.options_.max_linear_iterations,
                                 bdf_.merit_.weight_impulse()};
     bdf_.linear_ = bdf_.A_.solve(bdf_.b_rubbed_, bdf_.filter_, options, bdf_.dv_);
-    ++report_.linear_solves;
-    report_.linear_iterations += bdf_.linear_.iterations;
+    count_solve(bdf_.linear_, report_);
     return bdf_.linear_.reason != StopReason::indefinite && bdf_.linear_.reason != StopReason::not_finite;
   }
 

@@ -61,6 +61,7 @@ struct StepReport {
   int newton_iterations = 0;  // this and the next counts are sums over the substeps
   int linear_solves = 0;
   int linear_iterations = 0;
+  int multigrid_solves = 0;     // the solves for which the linear solver "auto" took ppcg+multigrid
   int rescues = 0;              // Newton iterations that had to be cut short, so that no energy is made
   int guarded = 0;              // particles that were stopped at a surface outside the equations
   double residual = 0;          // relative: the worst of the solves that the substeps ended with
@@ -70,6 +71,12 @@ struct StepReport {
   double penetration = 0;       // m: how far the deepest particle was inside a body at the start
   double assemble_ms = 0, solve_ms = 0, collide_ms = 0, step_ms = 0;
 };
+
+inline void count_solve(const LinearReport& linear, StepReport& report) {
+  ++report.linear_solves;
+  report.linear_iterations += linear.iterations;
+  report.multigrid_solves += linear.method == "ppcg+multigrid";
+}
 
 // Takes over how far the contacts of a piece of the step are from settled.
 inline void note_contacts(double imbalance, const StepOptions& options, StepReport& report) {

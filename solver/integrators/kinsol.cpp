@@ -304,8 +304,7 @@ int NewtonKinsol::solve_linear(N_Vector dv, N_Vector minus_F) {
   const double tolerance = std::max(options_.tolerance, std::min(wanted, 1e-2));
   const LinearReport linear =
       newton_.solve(minus_F_, held_, {tolerance, options_.max_linear_iterations, 0}, dv_);
-  ++report_.linear_solves;
-  report_.linear_iterations += linear.iterations;
+  count_solve(linear, report_);
   if (linear.reason == StopReason::indefinite || linear.reason == StopReason::not_finite) return -1;
   dv_ *= step_length(v_here_, dv_, -dot(minus_F_, dv_));
   sundials::numbers(dv) = dv_;

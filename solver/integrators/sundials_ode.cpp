@@ -334,8 +334,7 @@ int SundialsOde::solve_linear(N_Vector d, N_Vector r) {
   }
   const LinearReport linear =
       newton_.solve(b_, filter, {options_.tolerance, options_.max_linear_iterations, 0}, dv_);
-  ++report_.linear_solves;
-  report_.linear_iterations += linear.iterations;
+  count_solve(linear, report_);
   report_.residual = std::max(report_.residual, linear.residual);
   sundials::numbers(d).tail(n) = dv_;
   sundials::numbers(d).head(n) = rx + g * dv_;

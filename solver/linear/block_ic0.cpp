@@ -2,113 +2,22 @@
 // float.
 //   A_jk <- A_jk - A_ij^T D_i^-1 A_ik for every i < j <= k whose block (j, k) is in the pattern, D_i = A_ii;
 //   L_ji = A_ij^T D_i^-1.                                                    [Meijerink & van der Vorst 1977]
-// The rows of all even chunks of the matrix come before those of all odd ones, as in its product. Two chunks of
-// one kind have no coupling, so that they are factorised and solved at the same time, and the number of threads
-// does not change a bit. Which blocks take part in which sum is listed once for a pattern.
+// Rows are eliminated in chunks of which several go at the same time (elimination_order.h); the number of threads
+// does not change a bit.
 // Where a pivot is not positive, the matrix is shifted to A + a diag(A), and a grows until the factor exists
 // [Manteuffel 1980]; the report says so.
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <optional>
-#include <span>
 #include <vector>
 
-#include "mesh/base/parallel.h"
-#include "solver/linear/mirror.h"
+#include "solver/linear/elimination_order.h"
 #include "solver/linear/preconditioner.h"
 #include "solver/linear/projected_block.h"
 #include "solver/linear/row_sum.h"
 
 namespace drape::internal {
 namespace {
-
-// The upper triangle of the matrix in the order of elimination.
-class EliminationOrder {
- public:
-  struct Block {
-    int column;   // in the order of elimination
-    int slot;     // of the matrix
-    bool turned;  // the matrix stores the transpose of this block
-  };
-  // The places of the blocks L_ji and A_ik, whose product is subtracted from A_jk.
-  struct Update {
-    int factor, from;
-  };
-
-  explicit EliminationOrder(const BlockPattern& A);
-
-  int rows() const { return static_cast<int>(row_.size()); }
-  int row(int i) const { return row_[i]; }  // of the matrix
-  const std::vector<Block>& blocks() const { return block_; }
-  // The blocks of row i are those from start(i), its diagonal, to start(i + 1).
-  int start(int i) const { return start_[i]; }
-  const Mirror& below() const { return below_; }      // the blocks of each column above its diagonal
-  std::span<const Update> updates(int place) const {  // of the block A_jk that stands there, i ascending
-    return {update_.data() + update_start_[place], update_.data() + update_start_[place + 1]};
-  }
-  // Calls f(begin, end) for every even chunk of rows, then for every odd one; backwards the other way round.
-  template <class F>
-  void for_chunks(bool backwards, const F& f) const {
-    for (const int parity : {backwards ? 1 : 0, backwards ? 0 : 1}) {
-      const int first = parity == 0 ? 0 : even_rows_, last = parity == 0 ? even_rows_ : rows();
-      parallel_for((last - first + chunk_rows_ - 1) / chunk_rows_, rows() < serial_below,
-                   [&](int k) { f(first + k * chunk_rows_, std::min(last, first + (k + 1) * chunk_rows_)); });
-    }
-  }
-
- private:
-  void list_updates();
-
-  int chunk_rows_, even_rows_ = 0;
-  std::vector<int> row_, start_{0};
-  std::vector<Block> block_;
-  Mirror below_;
-  std::vector<int> update_start_{0};
-  std::vector<Update> update_;
-};
-
-EliminationOrder::EliminationOrder(const BlockPattern& A)
-    : chunk_rows_(std::max(A.chunk_rows(), (A.rows() + 8 - 1) / 8)) {
-  for (const int parity : {0, 1}) {
-    for (int r = 0; r < A.rows(); ++r)
-      if (r / chunk_rows_ % 2 == parity) row_.push_back(r);
-    if (parity == 0) even_rows_ = rows();
-  }
-  std::vector<int> place(row_.size());
-  for (int i = 0; i < rows(); ++i) place[row_[i]] = i;
-  const Mirror left = below_diagonal(A);
-  block_.reserve(static_cast<std::size_t>(A.blocks()));
-  for (int i = 0; i < rows(); ++i) {
-    const auto first = static_cast<std::ptrdiff_t>(block_.size());
-    const auto add = [&](int column, int slot, bool turned) {
-      if (place[column] >= i) block_.push_back({place[column], slot, turned});
-    };
-    left.in_column(row_[i], [&](int r, int slot) { add(r, slot, true); });
-    for (int s = A.diagonal(row_[i]); s < A.row_start()[row_[i] + 1]; ++s) add(A.column()[s], s, false);
-    std::sort(block_.begin() + first, block_.end(),
-              [](const Block& a, const Block& b) { return a.column < b.column; });
-    start_.push_back(static_cast<int>(block_.size()));
-  }
-  below_.build(rows(), rows(), [&](int i, const auto& f) {
-    for (int k = start(i) + 1; k < start(i + 1); ++k) f(block_[k].column, k);
-  });
-  list_updates();
-}
-
-void EliminationOrder::list_updates() {
-  std::vector<int> factor_of(row_.size(), -1);  // row i -> place of A_ij, for one j
-  for (int j = 0; j < rows(); ++j) {
-    below_.in_column(j, [&](int i, int place) { factor_of[i] = place; });
-    for (int to = start(j); to < start(j + 1); ++to) {
-      below_.in_column(block_[to].column, [&](int i, int from) {
-        if (i < j && factor_of[i] >= 0) update_.push_back({factor_of[i], from});
-      });
-      update_start_.push_back(static_cast<int>(update_.size()));
-    }
-    below_.in_column(j, [&](int i, int) { factor_of[i] = -1; });
-  }
-}
 
 // The fourth number of each column is zero.
 void widen(const double* b, WideBlock& wide) {

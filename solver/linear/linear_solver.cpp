@@ -9,6 +9,9 @@ namespace drape {
 
 using namespace internal;
 
+namespace internal {
+std::unique_ptr<LinearSolver> make_auto();
+}
 std::unique_ptr<LinearSolver> make_eigen_ldlt();
 std::unique_ptr<LinearSolver> make_eigen_cg();
 #ifdef DRAPE_HAVE_CHOLMOD
@@ -31,9 +34,11 @@ struct Entry {
 
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> all = {
+      {{"auto", "mpcg+block-ic0 or ppcg+multigrid, by the iterations that the run took (default)"},
+       make_auto},
       {{"mpcg", "modified conjugate gradient of Baraff & Witkin, 3x3 block-Jacobi"},
        [] { return make_pcg("mpcg", false, make_block_jacobi()); }},
-      {{"mpcg+block-ic0", "the same with incomplete Cholesky on 3x3 blocks (default)"},
+      {{"mpcg+block-ic0", "the same with incomplete Cholesky on 3x3 blocks"},
        [] { return make_pcg("mpcg+block-ic0", false, make_block_ic0()); }},
       {{"ppcg", "prefiltered conjugate gradient of Tamstorf et al., 3x3 block-Jacobi"},
        [] { return make_pcg("ppcg", true, make_block_jacobi()); }},

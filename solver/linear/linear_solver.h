@@ -40,6 +40,7 @@ struct LinearReport {
   double solve_ms = 0;  // time of everything else [ms]
   int analyses = 0;     // how often the pattern was analysed; 0 while it does not change
   std::string note;     // what the user should know: a shifted factor, slow kernels of a library
+  std::string_view method = {};  // the name of the solver that "auto" took; empty for the others
 };
 
 class LinearSolver {

@@ -1,0 +1,91 @@
+// Takes incomplete Cholesky or multigrid, whichever costs less in the run as it goes.
+//   Costs are counted, never timed, so that the same input gives the same bits: in iterations with block-ic0, as they
+//   were measured on sheets of 10 k vertices. What is compared is the cost of all systems of one assembled matrix,
+//   because contacts ask for several short solves with it, for which the levels of multigrid do not pay.
+// A run begins with block-ic0. Where that costs more than multigrid usually does, multigrid has the next matrix on
+// trial, and goes on when it cost less. The other method has a trial again after 8 matrices, after each lost one
+// twice as many, up to 64; and after 8 when the cost has grown by half since the last trial, as when cloth arrives
+// at a body.
+#include <algorithm>
+#include <array>
+
+#include "solver/linear/linear_solver.h"
+#include "solver/linear/pcg.h"
+
+namespace drape::internal {
+namespace {
+
+struct Price {  // in iterations with block-ic0
+  double iteration, system, levels;
+};
+constexpr Price ic0_price = {1, 8, 0}, multigrid_price = {2.1, 5, 19};
+// A solve with multigrid usually takes 16 iterations.
+constexpr double usual_multigrid = 16 * 2.1 + 5 + 19;
+
+class Auto final : public LinearSolver {
+ public:
+  std::string_view name() const override { return "auto"; }
+
+  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
+                     VecX& dv) override {
+    if (fill_ != A.fill()) begin_matrix();
+    fill_ = A.fill();
+    LinearReport report = solver_[now_]->solve(A, b, filter, options, dv);
+    const Price& price = now_ == ic0 ? ic0_price : multigrid_price;
+    cost_ += price.iteration * report.iterations + price.system + price.levels * std::min(report.analyses, 1);
+    ++solves_;
+    report.method = solver_[now_]->name();
+    return report;
+  }
+
+ private:
+  enum Method { ic0, multigrid };
+  static constexpr int shortest_wait = 8, longest_wait = 64;
+
+  void begin_matrix() {
+    if (solves_ > 0) decide();
+    cost_ = 0;
+    solves_ = 0;
+  }
+
+  void decide() {
+    if (on_trial_) {
+      on_trial_ = false;
+      waited_ = 0;
+      if (cost_ < usual_) {
+        usual_ = at_trial_ = cost_;
+        wait_ = shortest_wait;
+      } else {
+        now_ = other();
+        wait_ = std::clamp(2 * wait_, shortest_wait, longest_wait);
+      }
+      return;
+    }
+    usual_ = usual_ > 0 ? 0.7 * usual_ + 0.3 * cost_ : cost_;
+    ++waited_;
+    if (at_trial_ > 0 && usual_ > 1.5 * at_trial_) wait_ = shortest_wait;
+    const bool may_be_dear = now_ == multigrid || usual_ > usual_multigrid * solves_;
+    if (!may_be_dear || waited_ < wait_) return;
+    at_trial_ = usual_;
+    on_trial_ = true;
+    now_ = other();
+  }
+
+  Method other() const { return now_ == ic0 ? multigrid : ic0; }
+
+  std::array<std::unique_ptr<LinearSolver>, 2> solver_ = {
+      make_pcg("mpcg+block-ic0", false, make_block_ic0()), make_pcg("ppcg+multigrid", true, make_multigrid())};
+  Method now_ = ic0;
+  bool on_trial_ = false;
+  int wait_ = 0, waited_ = 0;  // matrices until the next trial, and since the last
+  // Costs in iterations with block-ic0: of the matrix so far, of a matrix on average, and that at the last trial.
+  double cost_ = 0, usual_ = 0, at_trial_ = 0;
+  int solves_ = 0;  // with this matrix
+  std::uint64_t fill_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_auto() { return std::make_unique<Auto>(); }
+
+}  // namespace drape::internal

@@ -1,0 +1,130 @@
+// The linear solver "auto": it solves as the method that it names, and takes the cheaper one of the two.
+#include <map>
+
+#include "mesh/base/threads.h"
+#include "solver/forces/woven.h"
+#include "tests/integrators.h"
+#include "tests/shapes.h"
+
+using namespace drape;
+using namespace drape::test;
+
+namespace {
+
+// A sheet of 1 m that begins horizontal and swings down from two corners, or falls on a ball.
+struct MovingSheet {
+  TriangleMesh mesh;
+  System system;
+  Constraints constraints;
+  State state;
+
+  MovingSheet(int side, bool on_ball, bool as_woven)
+      : mesh(grid(side, side, 1, 1)), system(lumped_mass(mesh, 0.2)), state(at_rest(mesh)) {
+    const Fabric fabric{.area_density = 0.2, .stretch = 1000, .bend = 1e-5};
+    system.add(as_woven ? woven(mesh, mesh, fabric) : noh_jung(mesh, fabric));
+    system.add(Gravity{});
+    if (on_ball) {
+      constraints.add(Obstacle{.shape = Sphere{Vec3(0, -0.301, 0), 0.3}, .friction = 0.3});
+    } else {
+      constraints.pin({0, side - 1});
+    }
+  }
+};
+
+// What a run costs, in iterations with block-ic0 (solver/linear/auto.cpp).
+struct Cost {
+  double total = 0;
+  int solves = 0, by_multigrid = 0;
+
+  void add(const LinearReport& report, bool multigrid) {
+    total += multigrid ? 2.1 * report.iterations + 5 + 19 * std::min(report.analyses, 1) : report.iterations + 8;
+    ++solves;
+    by_multigrid += multigrid;
+  }
+};
+
+// Solves by the solver of that name and counts what it costs. "auto" is checked against a solver of its own for
+// each of its methods, which gets the same systems in the same order.
+class CountingSolver final : public LinearSolver {
+ public:
+  CountingSolver(std::string_view name, Cost& cost) : solver_(make_linear_solver(name)), cost_(cost) {}
+
+  std::string_view name() const override { return solver_->name(); }
+
+  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
+                     VecX& dv) override {
+    VecX same = dv;
+    const LinearReport report = solver_->solve(A, b, filter, options, dv);
+    if (name() == "auto") {
+      auto& method = methods_[std::string(report.method)];
+      if (!method) method = make_linear_solver(report.method);
+      CHECK(method->solve(A, b, filter, options, same).iterations == report.iterations);
+      CHECK(same == dv);
+    }
+    cost_.add(report, (name() == "auto" ? report.method : name()) == "ppcg+multigrid");
+    return report;
+  }
+
+ private:
+  std::unique_ptr<LinearSolver> solver_;
+  std::map<std::string, std::unique_ptr<LinearSolver>> methods_;
+  Cost& cost_;
+};
+
+struct Run {
+  Cost cost;
+  int by_multigrid = 0;  // as the reports of the steps have it
+  State end;
+};
+
+Run run(int side, bool on_ball, bool as_woven, std::string_view solver, int steps) {
+  MovingSheet sheet(side, on_ball, as_woven);
+  Run result;
+  ImplicitEuler stepper(sheet.system, sheet.constraints, std::make_unique<CountingSolver>(solver, result.cost),
+                        {.tolerance = 1e-4});
+  for (int k = 0; k < steps; ++k) {
+    const StepReport report = stepper.advance(sheet.state, 0.01);
+    REQUIRE(report.done);
+    result.by_multigrid += report.multigrid_solves;
+  }
+  result.end = sheet.state;
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("auto costs little more than the better of its methods, and tells which it took", "[solvers]") {
+  struct Scene {
+    int side, steps;
+    bool on_ball;
+  };
+  for (const Scene scene : {Scene{16, 30, false}, Scene{60, 25, false}, Scene{40, 25, true}})
+    for (const bool as_woven : {false, true}) {
+      INFO(scene.side << " vertices a side, on a ball " << scene.on_ball << ", woven " << as_woven);
+      const auto cost = [&](std::string_view solver) {
+        return run(scene.side, scene.on_ball, as_woven, solver, scene.steps).cost.total;
+      };
+      const Run by_auto = run(scene.side, scene.on_ball, as_woven, "auto", scene.steps);
+      const double ic0 = cost("mpcg+block-ic0"), multigrid = cost("ppcg+multigrid");
+      INFO("auto " << by_auto.cost.total << ", block-ic0 " << ic0 << ", multigrid " << multigrid << ", "
+                   << by_auto.cost.by_multigrid << " of " << by_auto.cost.solves << " solves by multigrid");
+      CHECK(by_auto.cost.total < 1.2 * std::min(ic0, multigrid));
+      CHECK(by_auto.by_multigrid == by_auto.cost.by_multigrid);
+      if (scene.side == 60) CHECK(by_auto.by_multigrid > 10);
+      if (scene.side != 60) CHECK(by_auto.by_multigrid == 0);
+    }
+}
+
+TEST_CASE("auto takes the same methods on any number of threads", "[solvers]") {
+  const ThreadsRestored restored;
+  set_threads(1);
+  const Run one = run(60, false, false, "auto", 12);
+  CHECK(one.by_multigrid > 0);
+  for (const int threads : {2, 7}) {
+    set_threads(threads);
+    const Run other = run(60, false, false, "auto", 12);
+    CHECK(other.end.x == one.end.x);
+    CHECK(other.end.v == one.end.v);
+    CHECK(other.by_multigrid == one.by_multigrid);
+  }
+}
