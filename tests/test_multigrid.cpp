@@ -54,7 +54,8 @@ TEST_CASE("what floats lose of a row's sum stands in the smoother's diagonal", "
   const FallingSheet sheet(33, 5, 2e6);
   const BlockMatrix& A = sheet.stepper.matrix();
   const Filter none;
-  const ProjectedBlocks blocks(A, none);
+  std::vector<int> entry_of_row;
+  const ProjectedBlocks blocks(A, none, entry_of_row);
   const Mirror below = below_diagonal(A.pattern());
   const ProjectedRows rows(A, blocks, below);
   Smoother smoother;

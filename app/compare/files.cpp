@@ -40,7 +40,7 @@ Json::Members members_of(const SolverRow& row) {
           {"stopped", name(report.reason)},
           {"agrees", row.agrees},
           {"verdict", row.verdict},
-          {"note", report.note}};
+          {"note", remark(report)}};
 }
 
 // One run, keys as in compare-integrators.csv.

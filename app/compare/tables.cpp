@@ -46,7 +46,8 @@ ReportTable table_of(std::vector<SolverRow>::const_iterator first,
                   "allowed m/s", "stopped",    "verdict"};
   for (auto row = first; row != last; ++row) {
     table.rows.push_back(row_of(*row));
-    if (!row->report.note.empty()) table.notes.push_back(row->solver + ": " + row->report.note);
+    if (const std::string text = remark(row->report); !text.empty())
+      table.notes.push_back(row->solver + ": " + text);
   }
   return table;
 }

@@ -170,7 +170,11 @@ void add_reports(py::module_& m) {
       .def_readonly("setup_ms", &SolveReport::setup_ms, "projection, preconditioner or factor")
       .def_readonly("solve_ms", &SolveReport::solve_ms, "all else")
       .def_readonly("analyses", &SolveReport::analyses, "how often the pattern was looked at anew")
-      .def_readonly("note", &SolveReport::note, "what the user should know")
+      .def_property_readonly(
+          "method", [](const SolveReport& r) { return std::string(r.method); },
+          "the solver that 'auto' took; empty for the others")
+      .def_property_readonly(
+          "note", [](const SolveReport& r) { return remark(r); }, "what the user should know")
       .def_property_readonly(
           "history", [](const SolveReport& r) { return copied(r.history); },
           "the relative residual of every iteration, from 0; empty for a direct solver")

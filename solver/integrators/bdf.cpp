@@ -87,7 +87,8 @@ class Bdf::ContactSolve {
 
   bool refine(double imbalance) {
     if (bdf_.linear_.residual <= wanted_ || tolerance_ <= wanted_) return false;
-    tolerance_ = std::clamp(0.1 * imbalance, wanted_, tolerance_);
+    // A solve that is nearly as accurate as wanted would only be followed by another one.
+    tolerance_ = imbalance > 15 * wanted_ ? std::min(0.1 * imbalance, tolerance_) : wanted_;
     return true;
   }
 

@@ -73,8 +73,8 @@ class Auto final : public LinearSolver {
 
   Method other() const { return now_ == ic0 ? multigrid : ic0; }
 
-  std::array<std::unique_ptr<LinearSolver>, 2> solver_ = {
-      make_pcg("mpcg+block-ic0", false, make_block_ic0()), make_pcg("ppcg+multigrid", true, make_multigrid())};
+  std::array<std::unique_ptr<LinearSolver>, 2> solver_ = {make_pcg("mpcg+block-ic0", false, make_block_ic0()),
+                                                          make_pcg("ppcg+multigrid", true, make_multigrid())};
   Method now_ = ic0;
   bool on_trial_ = false;
   int wait_ = 0, waited_ = 0;  // matrices until the next trial, and since the last

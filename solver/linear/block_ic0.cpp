@@ -104,7 +104,7 @@ class BlockIc0 final : public Preconditioner {
   void raise_shift() { shift_ = shift_ == 0 ? first_shift : 4 * shift_; }
 
   bool build(const BlockMatrix& A, const Filter& filter, LinearReport& report) {
-    const ProjectedBlocks projected(A, filter);
+    const ProjectedBlocks projected(A, filter, entry_of_row_);
     const std::size_t blocks = order_->blocks().size();
     values_.resize(blocks);
     factors_.resize(blocks);
@@ -117,9 +117,7 @@ class BlockIc0 final : public Preconditioner {
         return false;
       }
     }
-    if (shift_ > 0)
-      report.note =
-          "incomplete Cholesky broke down; it was built for A + " + std::to_string(shift_) + " diag(A)";
+    report.shift = shift_;
     return true;
   }
 
@@ -189,6 +187,7 @@ class BlockIc0 final : public Preconditioner {
   std::uint64_t serial_ = 0, fill_ = 0;
   std::optional<EliminationOrder> order_;  // of the pattern
   double shift_ = 0;
+  std::vector<int> entry_of_row_;  // scratch of ProjectedBlocks
   std::vector<WideBlock> values_,
       factors_;               // scratch of the factorisation: A_jk, and L_kj beside the diagonal
   std::vector<float> lower_;  // D_j^-1, and L_kj beside the diagonal

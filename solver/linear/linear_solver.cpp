@@ -80,6 +80,12 @@ std::string_view name(StopReason reason) {
   return "";
 }
 
+std::string remark(const LinearReport& report) {
+  if (report.shift == 0) return report.note;
+  return "incomplete Cholesky broke down; it was built for A + " + std::to_string(report.shift) + " diag(A)" +
+         (report.note.empty() ? "" : "; ") + report.note;
+}
+
 std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name) {
   std::string known;
   for (const Entry& entry : entries()) {

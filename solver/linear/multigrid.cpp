@@ -56,7 +56,7 @@ class Multigrid final : public Preconditioner {
     reused_ = works_ && count_ > 1 && serial_ == A.pattern().serial() && may_be_old;
     fill_ = A.fill();
     works_ = false;  // until the levels are built
-    const ProjectedBlocks projected(A, filter);
+    const ProjectedBlocks projected(A, filter, entry_of_row_);
     for (int r = 0; r < A.rows(); ++r)
       if (!positive_definite(projected.block(A.pattern().diagonal(r), r, r))) return false;
     if (serial_ != A.pattern().serial()) below_ = below_diagonal(A.pattern());
@@ -171,6 +171,7 @@ class Multigrid final : public Preconditioner {
 
   std::array<Level, most_levels> levels_;  // the first count_ are in use
   int count_ = 0;
+  std::vector<int> entry_of_row_;  // scratch of ProjectedBlocks
   Galerkin galerkin_;
   Mirror below_;                                       // of the pattern
   std::optional<Eigen::LLT<Eigen::MatrixXd>> coarse_;  // of the last level; empty: that is only smoothed

@@ -84,7 +84,8 @@ class Petsc final : public LinearSolver {
 
   void hand_over(const BlockMatrix& A, const Filter& filter, LinearReport& report) {
     const BlockPattern& pattern = A.pattern();
-    const ProjectedBlocks projected(A, filter);
+    std::vector<int> entry_of_row;
+    const ProjectedBlocks projected(A, filter, entry_of_row);
     for (int r = 0; r < A.rows(); ++r)
       if (!positive_definite(projected.block(pattern.diagonal(r), r, r)))
         report.reason = StopReason::indefinite;

@@ -12,7 +12,10 @@ namespace drape::internal {
 
 class ProjectedBlocks {
  public:
-  ProjectedBlocks(const BlockMatrix& A, const Filter& filter) : A_(A), filter_(filter) {
+  // Writes into `entry_of_row`, which has to live as long as this; who keeps it for the next system saves memory from
+  // being allocated.
+  ProjectedBlocks(const BlockMatrix& A, const Filter& filter, std::vector<int>& entry_of_row)
+      : A_(A), filter_(filter), entry_(entry_of_row) {
     entry_.assign(static_cast<std::size_t>(A.rows()), -1);
     for (std::size_t e = 0; e < filter.entries().size(); ++e)
       entry_[filter.entries()[e].particle] = static_cast<int>(e);
@@ -38,7 +41,7 @@ class ProjectedBlocks {
 
   const BlockMatrix& A_;
   const Filter& filter_;
-  std::vector<int> entry_;  // row -> entry of the filter, -1: free
+  std::vector<int>& entry_;  // row -> entry of the filter, -1: free
 };
 
 // The blocks below the diagonal of the base, by rows: the place of an entry is the slot of its transpose.

@@ -76,7 +76,7 @@ void print(const char* name, const char* what, const LinearSystem& system, doubl
   if (r.report) std::snprintf(residual, sizeof residual, "%.1e", r.report->residual);
   std::printf("%9d %-8s %7d %9.0e %16s %11s %11.2f %11.2f %9.2f %10s  %s\n", system.A.rows(), what, threads(),
               tolerance, name, r.report ? std::to_string(r.report->iterations).c_str() : "-", r.fresh,
-              r.again, r.fresh / mpcg, residual, r.report ? r.report->note.c_str() : "");
+              r.again, r.fresh / mpcg, residual, r.report ? remark(*r.report).c_str() : "");
   std::fflush(stdout);
 }
 
@@ -125,6 +125,7 @@ void bench_case(const char* what, const LinearSystem& system, double tolerance) 
   double mpcg = 0;
   for (const LinearSolverInfo& info : linear_solvers()) {
     const bool direct = info.name.starts_with("eigen") || info.name == "cholmod";
+    if (info.name == "auto") continue;  // for a single system it is mpcg+block-ic0
     const bool like_mpcg = info.name == "ppcg" || info.name == "ppcg+block-ic0";  // to the digit
     const bool slow = direct || like_mpcg || info.name.starts_with("sundials") || info.name == "petsc";
     if (slow && (vertices > (direct ? 15000 : 50000) || what != std::string("hung"))) continue;

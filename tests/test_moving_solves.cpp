@@ -1,4 +1,5 @@
-// The linear solver "auto": it solves as the method that it names, and takes the cheaper one of the two.
+// Linear solvers over moving runs. "auto" solves as the method that it names, and takes the cheaper one of the two;
+// multigrid needs few iterations in every step.
 #include <map>
 
 #include "mesh/base/threads.h"
@@ -34,11 +35,14 @@ struct MovingSheet {
 // What a run costs, in iterations with block-ic0 (solver/linear/auto.cpp).
 struct Cost {
   double total = 0;
-  int solves = 0, by_multigrid = 0;
+  int solves = 0, by_multigrid = 0, iterations = 0, most_iterations = 0;  // the most of a solve
 
   void add(const LinearReport& report, bool multigrid) {
-    total += multigrid ? 2.1 * report.iterations + 5 + 19 * std::min(report.analyses, 1) : report.iterations + 8;
+    total +=
+        multigrid ? 2.1 * report.iterations + 5 + 19 * std::min(report.analyses, 1) : report.iterations + 8;
     ++solves;
+    iterations += report.iterations;
+    most_iterations = std::max(most_iterations, report.iterations);
     by_multigrid += multigrid;
   }
 };
@@ -80,8 +84,8 @@ struct Run {
 Run run(int side, bool on_ball, bool as_woven, std::string_view solver, int steps) {
   MovingSheet sheet(side, on_ball, as_woven);
   Run result;
-  ImplicitEuler stepper(sheet.system, sheet.constraints, std::make_unique<CountingSolver>(solver, result.cost),
-                        {.tolerance = 1e-4});
+  ImplicitEuler stepper(sheet.system, sheet.constraints,
+                        std::make_unique<CountingSolver>(solver, result.cost), {.tolerance = 1e-4});
   for (int k = 0; k < steps; ++k) {
     const StepReport report = stepper.advance(sheet.state, 0.01);
     REQUIRE(report.done);
@@ -113,6 +117,18 @@ TEST_CASE("auto costs little more than the better of its methods, and tells whic
       if (scene.side == 60) CHECK(by_auto.by_multigrid > 10);
       if (scene.side != 60) CHECK(by_auto.by_multigrid == 0);
     }
+}
+
+TEST_CASE("multigrid takes few iterations in every step of a moving sheet, whatever its size", "[solvers]") {
+  for (const bool on_ball : {false, true})
+    for (const bool as_woven : {false, true})
+      for (const int side : {32, 100}) {
+        const Cost cost = run(side, on_ball, as_woven, "ppcg+multigrid", 30).cost;
+        INFO(side << " vertices a side, on a ball " << on_ball << ", woven " << as_woven << ": "
+                  << cost.iterations << " iterations in " << cost.solves << " solves");
+        CHECK(cost.iterations <= 22 * cost.solves);
+        CHECK(cost.most_iterations <= 40);
+      }
 }
 
 TEST_CASE("auto takes the same methods on any number of threads", "[solvers]") {
