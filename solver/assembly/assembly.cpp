@@ -138,7 +138,7 @@ void add_edges(const std::vector<LatticePair>& pairs, const std::vector<Vec3>& p
 }  // namespace
 
 Assembly::Assembly(const Vec3& gravity, ContactOptions contact, std::optional<Air> air)
-    : constraints(std::make_unique<Constraints>(contact)), gravity_(gravity), air_(air) {}
+    : constraints(std::make_unique<Constraints>(contact)), gravity_(gravity), air_(std::move(air)) {}
 
 // Appends the particles of the part to those that are there.
 Cloth& Assembly::take(Cloth cloth, const std::vector<Vec3>& positions, const std::vector<double>& masses) {
