@@ -37,10 +37,12 @@ std::string solver_text(const RunRecord& record) {
   if (record.linear_solver != "auto") return record.linear_solver;
   double solves = 0;
   for (const double of_step : record.linear_solves) solves += of_step;
-  const double share = solves > 0 ? 100 * static_cast<double>(record.multigrid_solves) / solves : 0;
-  return share == 0     ? "auto (mpcg+block-ic0)"
-         : share == 100 ? "auto (ppcg+multigrid)"
-                        : "auto (" + rounded(share, 2) + " % of the solves by ppcg+multigrid)";
+  if (solves == 0) return "auto";
+  const double share = 100 * static_cast<double>(record.multigrid_solves) / solves;
+  return share == 0 ? "auto (mpcg+block-ic0)"
+         : share == 100
+             ? "auto (ppcg+multigrid)"
+             : "auto (" + rounded(std::clamp(share, 0.1, 99.9), 3) + " % of the solves by ppcg+multigrid)";
 }
 
 }  // namespace

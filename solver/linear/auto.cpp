@@ -1,11 +1,12 @@
 // Takes incomplete Cholesky or multigrid, whichever costs less in the run as it goes.
-//   Costs are counted, never timed, so that the same input gives the same bits: in iterations with block-ic0, as they
-//   were measured on sheets of 10 k vertices. What is compared is the cost of all systems of one assembled matrix,
-//   because contacts ask for several short solves with it, for which the levels of multigrid do not pay.
-// A run begins with block-ic0. Where that costs more than multigrid usually does, multigrid has the next matrix on
-// trial, and goes on when it cost less. The other method has a trial again after 8 matrices, after each lost one
-// twice as many, up to 64; and after 8 when the cost has grown by half since the last trial, as when cloth arrives
-// at a body.
+//   Costs are counted, never timed, so that the same input gives the same bits. Their unit is one iteration with
+// block-ic0; the prices were measured on sheets of 10 k vertices. A factor that breaks down is counted once.
+// What is compared is the cost of all systems of one assembled matrix, because contacts ask for several short
+// solves with it, for which the levels of multigrid do not pay.
+// A run begins with block-ic0. Where a solve costs more than multigrid usually does, multigrid has the next
+// matrix on trial, and goes on when it cost less. After a trial the other method waits for 8 matrices, and for
+// twice as many after each that it loses, up to 64; for 8 again when the cost has grown by half since the last
+// trial, as when cloth arrives at a body. While block-ic0 is cheap, multigrid has no trial.
 #include <algorithm>
 #include <array>
 
@@ -32,9 +33,10 @@ class Auto final : public LinearSolver {
     fill_ = A.fill();
     LinearReport report = solver_[now_]->solve(A, b, filter, options, dv);
     const Price& price = now_ == ic0 ? ic0_price : multigrid_price;
-    cost_ += price.iteration * report.iterations + price.system + price.levels * std::min(report.analyses, 1);
+    cost_ += price.iteration * report.iterations + price.system + price.levels * report.analyses;
     ++solves_;
-    report.method = solver_[now_]->name();
+    failed_ = failed_ || report.reason != StopReason::converged;
+    report.method = names[now_];
     return report;
   }
 
@@ -46,13 +48,14 @@ class Auto final : public LinearSolver {
     if (solves_ > 0) decide();
     cost_ = 0;
     solves_ = 0;
+    failed_ = false;
   }
 
   void decide() {
     if (on_trial_) {
       on_trial_ = false;
       waited_ = 0;
-      if (cost_ < usual_) {
+      if (cost_ < usual_ && !failed_) {
         usual_ = at_trial_ = cost_;
         wait_ = shortest_wait;
       } else {
@@ -61,10 +64,11 @@ class Auto final : public LinearSolver {
       }
       return;
     }
+    if (failed_) return;  // what it cost says nothing
     usual_ = usual_ > 0 ? 0.7 * usual_ + 0.3 * cost_ : cost_;
     ++waited_;
     if (at_trial_ > 0 && usual_ > 1.5 * at_trial_) wait_ = shortest_wait;
-    const bool may_be_dear = now_ == multigrid || usual_ > usual_multigrid * solves_;
+    const bool may_be_dear = now_ == multigrid || cost_ > usual_multigrid * solves_;
     if (!may_be_dear || waited_ < wait_) return;
     at_trial_ = usual_;
     on_trial_ = true;
@@ -73,14 +77,17 @@ class Auto final : public LinearSolver {
 
   Method other() const { return now_ == ic0 ? multigrid : ic0; }
 
-  std::array<std::unique_ptr<LinearSolver>, 2> solver_ = {make_pcg("mpcg+block-ic0", false, make_block_ic0()),
-                                                          make_pcg("ppcg+multigrid", true, make_multigrid())};
+  static constexpr std::array<std::string_view, 2> names = {"mpcg+block-ic0", "ppcg+multigrid"};
+  std::array<std::unique_ptr<LinearSolver>, 2> solver_ = {
+      make_pcg(std::string(names[ic0]), false, make_block_ic0()),
+      make_pcg(std::string(names[multigrid]), true, make_multigrid())};
   Method now_ = ic0;
   bool on_trial_ = false;
   int wait_ = 0, waited_ = 0;  // matrices until the next trial, and since the last
   // Costs in iterations with block-ic0: of the matrix so far, of a matrix on average, and that at the last trial.
   double cost_ = 0, usual_ = 0, at_trial_ = 0;
-  int solves_ = 0;  // with this matrix
+  int solves_ = 0;       // with this matrix
+  bool failed_ = false;  // a solve with this matrix did not converge
   std::uint64_t fill_ = 0;
 };
 

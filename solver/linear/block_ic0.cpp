@@ -6,7 +6,6 @@
 // does not change a bit.
 // Where a pivot is not positive, the matrix is shifted to A + a diag(A), and a grows until the factor exists
 // [Manteuffel 1980]; the report says so.
-#include <array>
 #include <atomic>
 #include <optional>
 #include <vector>
@@ -55,6 +54,7 @@ class BlockIc0 final : public Preconditioner {
     if (serial_ != A.pattern().serial()) {
       shift_ = 0;
       order_.emplace(A.pattern());
+      ++report.analyses;
     }
     serial_ = A.pattern().serial();
     // A new matrix may need less than the last one; what is held or rubbed changes little.

@@ -13,7 +13,7 @@ class Preconditioner {
  public:
   virtual ~Preconditioner() = default;
   virtual std::string_view name() const = 0;
-  // Makes it ready for this matrix and filter; the report's note says what was unusual. False: A is not
+  // Makes it ready for this matrix and filter; the report's shift or note says what was unusual. False: A is not
   // positive definite.
   virtual bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) = 0;
   virtual void apply(const VecX& r, VecX& s) = 0;

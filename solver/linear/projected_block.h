@@ -12,8 +12,8 @@ namespace drape::internal {
 
 class ProjectedBlocks {
  public:
-  // Writes into `entry_of_row`, which has to live as long as this; who keeps it for the next system saves memory from
-  // being allocated.
+  // Writes into `entry_of_row`, which has to live as long as this. A caller that keeps the vector avoids an
+  // allocation for the next system.
   ProjectedBlocks(const BlockMatrix& A, const Filter& filter, std::vector<int>& entry_of_row)
       : A_(A), filter_(filter), entry_(entry_of_row) {
     entry_.assign(static_cast<std::size_t>(A.rows()), -1);
