@@ -161,7 +161,7 @@ TEST_CASE("stiff cloth that vibrates within a step keeps its energy at a contact
   }
 }
 
-TEST_CASE("contact is of first order in the time step, whatever the integrator", "[integrators]") {
+TEST_CASE("contact is of first order in the time step at least, whatever the integrator", "[integrators]") {
   // A mass flies onto a plane, keeps what friction leaves of its speed, and slides on:
   //   x = v t' + (v - mu g t')(T - t') - mu g (T - t')^2 / 2,  t': when it lands
   const double mu = 0.2, g = 10, speed = 3, landing = 0.1, end = 0.3;
@@ -192,7 +192,7 @@ TEST_CASE("contact is of first order in the time step, whatever the integrator",
     }
     INFO(method.label << ": " << error[0] << ", " << error[1] << ", " << error[2]);
     CHECK(error[2] > 1e-6);
-    CHECK(std::log(error[1] / error[2]) / std::log(3) == Approx(1).margin(0.35));
+    CHECK(std::log(error[1] / error[2]) / std::log(3) > 0.65);
   }
 }
 

@@ -48,7 +48,7 @@ class Bdf::ContactSolve {
         contacts_(contacts),
         report_(report),
         wanted_(bdf.options_.tolerance),
-        tolerance_(contacts.bodies() ? std::max(wanted_, std::sqrt(wanted_)) : wanted_) {
+        tolerance_(contacts.bodies() ? std::max(wanted_, 0.3 * std::sqrt(wanted_)) : wanted_) {
     for (int i = 0; i < bdf.system_.particles(); ++i)
       contacts.set_inertia(i, bdf.A_.inertia(i) / bdf.k().scale[i]);
   }
@@ -88,7 +88,7 @@ class Bdf::ContactSolve {
   bool refine(double imbalance) {
     if (bdf_.linear_.residual <= wanted_ || tolerance_ <= wanted_) return false;
     // A solve that is nearly as accurate as wanted would only be followed by another one.
-    tolerance_ = imbalance > 15 * wanted_ ? std::min(0.1 * imbalance, tolerance_) : wanted_;
+    tolerance_ = imbalance > 50 * wanted_ ? std::min(0.1 * imbalance, tolerance_) : wanted_;
     return true;
   }
 
