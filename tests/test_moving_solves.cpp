@@ -38,7 +38,7 @@ struct Cost {
   int solves = 0, by_multigrid = 0, iterations = 0, most_iterations = 0;  // the most of a solve
 
   void add(const LinearReport& report, bool multigrid) {
-    total += multigrid ? 2.1 * report.iterations + 5 + 19 * report.analyses : report.iterations + 8;
+    total += multigrid ? 2.4 * report.iterations + 6 + 19 * report.analyses : report.iterations + 8;
     ++solves;
     iterations += report.iterations;
     most_iterations = std::max(most_iterations, report.iterations);
@@ -127,7 +127,8 @@ TEST_CASE("multigrid takes few iterations in every step of a moving sheet, whate
         INFO(side << " vertices a side, on a ball " << on_ball << ", woven " << as_woven << ": "
                   << cost.iterations << " iterations in " << cost.solves << " solves");
         CHECK(cost.iterations <= 22 * cost.solves);
-        CHECK(cost.most_iterations <= 40);
+        // Where contacts have changed, levels that were kept may have to be made anew within a solve.
+        CHECK(cost.most_iterations <= (on_ball ? 48 : 40));
       }
 }
 

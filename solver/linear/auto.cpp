@@ -3,12 +3,15 @@
 // block-ic0; the prices were measured on sheets of 10 k vertices. A factor that breaks down is counted once.
 // What is compared is the cost of all systems of one assembled matrix, because contacts ask for several short
 // solves with it, for which the levels of multigrid do not pay.
-// A run begins with block-ic0. Where a solve costs more than multigrid usually does, multigrid has the next
-// matrix on trial, and goes on when it cost less. After a trial the other method waits for 8 matrices, and for
-// twice as many after each that it loses, up to 64; for 8 again when the cost has grown by half since the last
-// trial, as when cloth arrives at a body. While block-ic0 is cheap, multigrid has no trial.
+// A run begins with block-ic0. Multigrid has the next matrix on trial where a solve costs more than one with
+// multigrid usually does, and goes on when the matrix cost less than one costs with block-ic0 on average. After a
+// trial the other method waits for 8 matrices, and for twice as many after each that it loses, up to 64. It waits
+// for 2 only where a matrix now costs 1.25 times what it cost with the other method when that was last used, as
+// when cloth arrives at a body; and multigrid that was never tried does not wait where block-ic0 costs twice what
+// is usual. While block-ic0 is cheap, multigrid has no trial.
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "solver/linear/linear_solver.h"
 #include "solver/linear/pcg.h"
@@ -19,9 +22,9 @@ namespace {
 struct Price {  // in iterations with block-ic0
   double iteration, system, levels;
 };
-constexpr Price ic0_price = {1, 8, 0}, multigrid_price = {2.1, 5, 19};
+constexpr Price ic0_price = {1, 8, 0}, multigrid_price = {2.4, 6, 19};
 // A solve with multigrid usually takes 16 iterations.
-constexpr double usual_multigrid = 16 * 2.1 + 5 + 19;
+constexpr double usual_multigrid = 16 * 2.4 + 6 + 19;
 
 class Auto final : public LinearSolver {
  public:
@@ -52,11 +55,12 @@ class Auto final : public LinearSolver {
   }
 
   void decide() {
+    double &own = usual_[now_], &others = usual_[other()];
     if (on_trial_) {
       on_trial_ = false;
       waited_ = 0;
-      if (cost_ < usual_ && !failed_) {
-        usual_ = at_trial_ = cost_;
+      own = failed_ ? std::numeric_limits<double>::infinity() : cost_;
+      if (own < others) {
         wait_ = shortest_wait;
       } else {
         now_ = other();
@@ -65,12 +69,12 @@ class Auto final : public LinearSolver {
       return;
     }
     if (failed_) return;  // what it cost says nothing
-    usual_ = usual_ > 0 ? 0.7 * usual_ + 0.3 * cost_ : cost_;
+    own = own > 0 ? 0.7 * own + 0.3 * cost_ : cost_;
     ++waited_;
-    if (at_trial_ > 0 && usual_ > 1.5 * at_trial_) wait_ = shortest_wait;
-    const bool may_be_dear = now_ == multigrid || cost_ > usual_multigrid * solves_;
-    if (!may_be_dear || waited_ < wait_) return;
-    at_trial_ = usual_;
+    const double usual = usual_multigrid * solves_;
+    if (now_ == ic0 && cost_ <= usual) return;
+    const bool dear = others > 0 ? own > 1.25 * others && waited_ >= 2 : own > 2 * usual;
+    if (!dear && waited_ < wait_) return;
     on_trial_ = true;
     now_ = other();
   }
@@ -84,8 +88,10 @@ class Auto final : public LinearSolver {
   Method now_ = ic0;
   bool on_trial_ = false;
   int wait_ = 0, waited_ = 0;  // matrices until the next trial, and since the last
-  // Costs in iterations with block-ic0: of the matrix so far, of a matrix on average, and that at the last trial.
-  double cost_ = 0, usual_ = 0, at_trial_ = 0;
+  // Costs in iterations with block-ic0: of the matrix so far, and of one on average, by method, when that was last
+  // used; 0: it was not used yet.
+  double cost_ = 0;
+  std::array<double, 2> usual_ = {};
   int solves_ = 0;       // with this matrix
   bool failed_ = false;  // a solve with this matrix did not converge
   std::uint64_t fill_ = 0;

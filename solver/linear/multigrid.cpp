@@ -4,12 +4,11 @@
 // It is our own because it was faster than PETSc's GAMG on these matrices (tests/bench measures both): it has
 // blocks of whole vertices, kept in float, and threads that do not change a bit of the result. The finest
 // level is made for every system, because it contains what is held. The coarser levels are new for every matrix
-// that is assembled: a step makes a tenth of the couplings ten times stiffer or softer, and old levels took twice
-// the iterations. Where many vertices are held, by contacts above all, a step has a dozen systems, and new levels
-// cost more than they save (a sheet of 10 k vertices on a ball: a fifth of the time): there, and among the systems
-// of one matrix, levels are kept while they work well enough. That is while a solve takes at most 4/3 n + 4
-// iterations, where n iterations gave the same number of decades of the residual (at least one) when the levels
-// were new. When they no longer do, even in the middle of a solve, they are built anew.
+// that is assembled: a step makes a tenth of the couplings ten times stiffer or softer, and old levels took up to
+// twice the iterations. Among the systems of one matrix they are kept while they work well enough: that is while
+// a solve takes at most 4/3 n + 4 iterations, where n iterations gave the same number of decades of the residual
+// (at least one) when the levels were new. When they no longer do, even in the middle of a solve, they are built
+// anew.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
@@ -28,8 +27,6 @@ namespace {
 // 0.02 takes 12 (100,000 vertices, tolerance 1e-3).
 constexpr double strength = 0.02;
 constexpr int coarsest_rows = 50, most_levels = 12;
-// Where more than this share of the vertices is held, old levels are tried.
-constexpr double many_held = 0.05;
 // Levels that took more iterations than this even when new are not kept for the next system.
 constexpr int most_iterations = 1000;
 
@@ -51,9 +48,7 @@ class Multigrid final : public Preconditioner {
 
   bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
     fallen_back_ = false;
-    const bool may_be_old =
-        fill_ == A.fill() || static_cast<int>(filter.entries().size()) > many_held * A.rows();
-    reused_ = works_ && count_ > 1 && serial_ == A.pattern().serial() && may_be_old;
+    reused_ = works_ && count_ > 1 && fill_ == A.fill();
     fill_ = A.fill();
     works_ = false;  // until the levels are built
     const ProjectedBlocks projected(A, filter, entry_of_row_);
