@@ -52,6 +52,7 @@ struct Contact {
   std::array<ContactPlane, 3> plane;  // of those that hold, the deepest first
   Grip grip = Grip::stick;
   int changes = 0;                       // how often the grip has changed within this step
+  int catches = 0;                       // how often a plane that was let go in this step has held it again
   double normal_impulse = 0;             // sum over the planes [N s], of the last solve
   double arrival_impulse = 0;            // the part that stops the approach to the planes that hold [N s]
   Vec3 friction_impulse = Vec3::Zero();  // -mu_k (r.n) t of what slides [N s]

@@ -9,10 +9,11 @@
 namespace drape {
 namespace {
 
-constexpr double slow = 1e-3;    // m/s
-constexpr int most_changes = 3;  // of a contact within a step, as for the contacts of particles
-constexpr int most_steps = 24;   // steps of the search for the lowest point
-constexpr double fine = 0.01;    // where the search ends, as a share of the size of the triangle
+constexpr double slow = 1e-3;  // m/s
+// A contact that has changed this often within a step changes again only when no other does, and alone.
+constexpr int most_changes = 3;
+constexpr int most_steps = 24;  // steps of the search for the lowest point
+constexpr double fine = 0.01;   // where the search ends, as a share of the size of the triangle
 const Vec3 middle = Vec3::Constant(1.0 / 3);
 
 struct Corners {
@@ -222,6 +223,7 @@ double FaceContacts::imbalance(double h, const VecX& x_new) const {
 
 bool FaceContacts::react(const VecX& x_new, const VecX& v_new) {
   bool changed = false;
+  FaceContact* worst = nullptr;
   for (FaceContact& c : touching_) {
     const double gap = c.gap_at(x_new);
     c.push = std::max(-c.stiffness * gap, 0.0);
@@ -230,9 +232,23 @@ bool FaceContacts::react(const VecX& x_new, const VecX& v_new) {
       c.damper = std::min(c.rubbing(), c.most_damper);
       changed = true;
     }
-    if (c.active == (gap < 0) || c.changes == most_changes) continue;
+    if (c.active == (gap < 0)) continue;
+    if (c.changes == most_changes) {
+      if (!worst || c.stiffness * std::abs(gap) > worst->stiffness * std::abs(worst->gap_at(x_new)))
+        worst = &c;
+      continue;
+    }
     c.active = gap < 0;
     ++c.changes;
+    changed = true;
+  }
+  if (!changed && worst) {
+    // Friction of other contacts may lift the triangle off the spring that acts, and press it on without one. Between
+    // them is a softer spring that just carries it.
+    if (worst->active)
+      worst->stiffness *= 0.5;
+    else
+      worst->active = true;
     changed = true;
   }
   return changed;

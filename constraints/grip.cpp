@@ -167,9 +167,10 @@ const std::vector<ContactFriction>& ParticleContacts::make_friction(const Bodies
     if (!c.active() || c.grip == Grip::stick) continue;
     const double mu = friction_of(bodies, c).kinetic;
     if (mu == 0) continue;
-    ContactFriction f{c.particle, c.plane[0].obstacle, Mat3::Zero(), c.body_velocity(), Vec3::Zero()};
-    const Mat3 Q = c.locked_directions();
-    Mat3 damped = Mat3::Identity() - Q * Q.transpose();  // the directions along the surface
+    const Mat3 Q = c.locked_directions(), along = Mat3::Identity() - Q * Q.transpose();
+    ContactFriction f{c.particle, c.plane[0].obstacle,  Mat3::Zero(), c.body_velocity(), Vec3::Zero(),
+                      along,      mu * c.normal_impulse};
+    Mat3 damped = along;
     if (c.grip == Grip::slide) {
       f.impulse = c.friction_impulse;
       const Vec3 t = c.friction_impulse.stableNormalized();
@@ -261,6 +262,7 @@ bool ParticleContacts::catch_again(const StepMotion& step, Contact& c, const Vec
     }
   if (worst < 0) return false;
   hold_again(c, worst);
+  ++c.catches;
   c.arrival_impulse = arrival_impulse(c, step);
   if (c.planes > 1) return true;
   // It slides without friction until a solve tells what bears on it. If it stuck, it might be let go again.
@@ -298,7 +300,10 @@ bool ParticleContacts::update_friction(const Bodies& bodies, const StepMotion& s
       std::max(mass, share_of_inertia * step.inertia[static_cast<std::size_t>(c.particle)]);
   const Vec3 slip = tangential(c, v - c.body_velocity());
   const Vec3 given = given_friction(c, mu.kinetic, mass, slip, r), asked = given - inertia * slip;
-  c.normal_impulse = normal_impulse(c, r);
+  // Friction may press the particle on, or lift it off, by more than it takes itself. Half of the change then settles.
+  const double pressed = normal_impulse(c, r);
+  const bool in_doubt = c.catches > 0 || c.changes > 1;
+  c.normal_impulse = in_doubt ? 0.5 * (c.normal_impulse + pressed) : pressed;
   const double most = mu.kinetic * c.normal_impulse;
   if (c.grip != Grip::stick && step.foresight != Foresight::ahead) {
     const bool wrong = wrong_apart(c, given, most) > noise;
@@ -320,6 +325,7 @@ bool ParticleContacts::update_friction(const Bodies& bodies, const StepMotion& s
     return std::abs(given.norm() - most) > noise;
   } else if (c.grip == Grip::slide && slip.dot(c.slip) < 0) {  // the constant push turned the motion round
     c.grip = Grip::brake;
+    c.slip *= 0.25;
     ++c.changes;
     return true;
   }

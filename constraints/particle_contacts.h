@@ -17,12 +17,15 @@
 
 namespace drape {
 
-// What friction does to a sliding particle in this step: the force f = -D (v - v_b), and an impulse.
+// What friction does to a sliding particle in this step: the force f = -D (v - v_b), and an impulse. Together they are
+// Coulomb's law, linearised.
 struct ContactFriction {
   int particle, body;
   Mat3 damping;        // N s/m
   Vec3 body_velocity;  // m/s
   Vec3 impulse;        // N s
+  Mat3 along;          // the projector onto the directions along the surface
+  double most;         // mu N [N s], which the law gives at any slip
 };
 
 struct ContactReport {

@@ -1,6 +1,7 @@
 // Contacts settle within a step: what the bodies do to the cloth is then found from the forces alone, and obeys
 // Signorini's and Coulomb's laws; and every step says how far it is from that.
 #include "solver/forces/woven.h"
+#include "solver/integrators/merit.h"
 #include "tests/integrators.h"
 #include "tests/shapes.h"
 
@@ -129,5 +130,31 @@ TEST_CASE("contacts settle within the tolerance in nearly every step, in few sol
         CHECK(unsettled <= 3);
         if (name != "newton-kinsol") CHECK(solves <= 8 * newton);
       }
+  }
+}
+
+TEST_CASE("in the energy of a step friction takes mu N times the slip, whatever it was linearised at",
+          "[contact]") {
+  System system(std::vector<double>{0.01});
+  Merit merit(system);
+  merit.begin(0.01);
+  const StepCoefficients k{.h = 0.01,
+                           .c = 0.01,
+                           .scale = {1},
+                           .fall = {0.01},
+                           .mass = {0.01},
+                           .x_bar = VecX::Zero(3),
+                           .v_bar = VecX::Zero(3)};
+  const Vec3 along_x = Vec3::UnitX(), body_velocity(0, 0.2, 0.1);
+  for (const double linearised_at : {1e-6, 1e-2, 10.0}) {  // m/s
+    const double most = 2e-3;                              // N s
+    const Mat3 along = Vec3(1, 0, 1).asDiagonal();
+    const Mat3 damping = most / linearised_at / k.h * (along - along_x * along_x.transpose());
+    const ContactFriction friction{0, 0, damping, body_velocity, -most * along_x, along, most};
+    for (const Vec3& slip : {Vec3(1e-5, 0, 0), Vec3(0.3, 0, 0.4), Vec3(-30, 0, 40)}) {
+      const VecX v = slip + body_velocity;
+      CHECK(merit.potential(k, {friction}, v) - merit.potential(k, {}, v) ==
+            Approx(most * slip.norm()).epsilon(1e-6));
+    }
   }
 }

@@ -173,3 +173,22 @@ TEST_CASE("nothing of the cloth ends a step inside a body, in the whole gallery"
       if (complete(scene, folder)) check_part(part, scene);
     }
 }
+
+TEST_CASE("the contacts of garments on a body settle in every step, with few solves", "[gallery]") {
+  for (const char* name : {"tee", "poncho"})
+    for (const char* model : {"woven", "noh-jung"}) {
+      const Scene scene = read_scene(scenes / (std::string(name) + ".toml"),
+                                     {parse_setting("cloth.0.model=" + std::string(model))});
+      Simulation simulation = make_simulation(scene);
+      constexpr int steps = 60;
+      int solves = 0;
+      for (int n = 0; n < steps; ++n) {
+        const StepReport report = simulation.advance(scene.simulation.time_step);
+        INFO(name << ", " << model << ", step " << n << ": contact residual " << report.contact_residual);
+        REQUIRE(report.done);
+        CHECK(report.converged);
+        solves += report.linear_solves;
+      }
+      CHECK(solves < 7 * steps);
+    }
+}

@@ -210,6 +210,7 @@ const std::vector<ContactFriction>& Bdf::friction(ContactStep& contacts) {
   for (ContactFriction& f : friction_) {
     f.damping *= k().scale[f.particle];
     f.impulse *= k().scale[f.particle];
+    f.most *= k().scale[f.particle];
   }
   return friction_;
 }
@@ -231,12 +232,14 @@ bool Bdf::falls(ContactStep& contacts) {
   return merit_.falls(k(), friction(contacts), v_base_, end_.v);
 }
 
-// Sets the velocity towards which a step goes back when it is too long.
+// Sets the velocity towards which a step goes back when it is too long. It meets the constraints, as the step does:
+// the energy that it takes to meet them must not count against the step. The first step goes back to standing still.
 void Bdf::set_base(ContactStep& contacts, bool first) {
-  v_base_ = p_.v;
-  if (!first) return;
-  contacts.filter(p_.v, filter_);  // standing still, except for what is prescribed
-  v_base_ = -p_.v;
+  contacts.filter(p_.v, filter_);
+  if (first)
+    v_base_ = -p_.v;
+  else
+    v_base_.setZero();
   filter_.impose(v_base_);
   v_base_ += p_.v;
 }

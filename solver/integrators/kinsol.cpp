@@ -249,7 +249,12 @@ double NewtonKinsol::potential(const VecX& v) {
           (v.segment<3>(3 * i) - v_n_.segment<3>(3 * i) - h_ * system_.gravity_acceleration()).squaredNorm();
     return sum;
   });
-  return inertia + potential_of_forces(system_, friction_, x_, v, h_, h_);
+  double rubbed = 0;
+  for (const ContactFriction& f : friction_) {
+    const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
+    rubbed += 0.5 * h_ * slip.dot(f.damping * slip) - f.impulse.dot(slip);
+  }
+  return inertia + potential_of_forces(system_, x_, v, h_) + rubbed;
 }
 
 // Sets F = M (v - v_n) - h f(x_bar + h v, v) + friction, without the filter.

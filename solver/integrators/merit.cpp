@@ -25,14 +25,9 @@ RoundOff round_off(const BlockMatrix& A, const VecX& x, const VecX& v, double c)
   return {all.energy, std::sqrt(all.squares)};
 }
 
-double potential_of_forces(const System& system, const std::vector<ContactFriction>& friction, const VecX& x,
-                           const VecX& v, double c, double h) {
+double potential_of_forces(const System& system, const VecX& x, const VecX& v, double c) {
   double phi = 0;
   for (const auto& force : system.forces()) phi += force->energy(x) + c * force->dissipation(x, v);
-  for (const ContactFriction& f : friction) {
-    const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
-    phi += 0.5 * h * slip.dot(f.damping * slip) - f.impulse.dot(slip);
-  }
   return phi;
 }
 
@@ -54,6 +49,8 @@ double Merit::speed_noise(double residual) const {
 
 void Merit::measure(const BlockMatrix& A, const Point& p, double c) { noise_ = round_off(A, p.x, p.v, c); }
 
+// What friction takes is mu N |slip|, as Coulomb's law has it: its linearisation grows with the square of a slip that
+// comes out larger than the one at which it was made.
 double Merit::potential(const StepCoefficients& k, const std::vector<ContactFriction>& friction,
                         const VecX& v) {
   x_ = k.x_bar + k.c * v;
@@ -67,7 +64,10 @@ double Merit::potential(const StepCoefficients& k, const std::vector<ContactFric
     }
     return sum;
   });
-  return inertia + potential_of_forces(system_, friction, x_, v, k.c, k.h);
+  double rubbed = 0;
+  for (const ContactFriction& f : friction)
+    rubbed += f.most * (f.along * (v.segment<3>(3 * f.particle) - f.body_velocity)).norm();
+  return inertia + potential_of_forces(system_, x_, v, k.c) + rubbed;
 }
 
 // The largest Phi that counts as not above `start`. A tenth of the energy that the fall of one step brings may

@@ -26,9 +26,8 @@ struct RoundOff {
 };
 RoundOff round_off(const BlockMatrix& A, const VecX& x, const VecX& v, double c);
 
-// E(x) + c/2 v . D v + what friction of contacts takes in h [J].
-double potential_of_forces(const System& system, const std::vector<ContactFriction>& friction, const VecX& x,
-                           const VecX& v, double c, double h);
+double potential_of_forces(const System& system, const VecX& x, const VecX& v,
+                           double c);  // E(x) + c/2 v . D v [J]
 
 class Merit {
  public:
