@@ -51,26 +51,28 @@ void let_go(Contact& contact, int plane) {
   --contact.planes;
 }
 
-void hold_again(Contact& contact, int plane) {
-  std::swap(contact.plane[plane], contact.plane[contact.planes]);
-  ++contact.planes;
-}
-
-void add_plane(Contact& contact, const ContactPlane& plane) {
+bool add_plane(Contact& contact, const ContactPlane& plane) {
   // `rest` is the part of the normal that the planes already held do not span. Where it is too small, the new
   // plane adds no constraint.
   Vec3 rest = plane.normal;
   const Mat3 Q = contact.locked_directions();
   for (int k = 0; k < contact.planes; ++k) rest -= Q.col(k).dot(rest) * Q.col(k);
-  if (contact.planes == 3 || rest.norm() < 0.1) {
-    if (contact.planes == 1 && plane.gap < contact.plane[0].gap) contact.plane[0] = plane;
-    return;
-  }
+  if (contact.planes == 3 || rest.norm() < 0.1) return false;
+  // Those that were let go move back by one place; where three are known, the last of them is forgotten.
+  contact.known = std::min(contact.known + 1, 3);
+  for (auto k = static_cast<std::size_t>(contact.known) - 1; k > static_cast<std::size_t>(contact.planes);
+       --k)
+    contact.plane[k] = contact.plane[k - 1];
   contact.plane[contact.planes++] = plane;
-  contact.known = contact.planes;
   for (auto k = static_cast<std::size_t>(contact.planes) - 1;
        k > 0 && contact.plane[k].gap < contact.plane[k - 1].gap; --k)
     std::swap(contact.plane[k], contact.plane[k - 1]);
+  return true;
+}
+
+void add_deepest(Contact& contact, const ContactPlane& plane) {
+  if (add_plane(contact, plane)) return;
+  if (contact.planes == 1 && plane.gap < contact.plane[0].gap) contact.plane[0] = plane;
 }
 
 // N^T N, with the planes' normals as the columns of N, and ones on the unused part of the diagonal.
@@ -95,6 +97,29 @@ std::array<double, 3> multipliers(const Contact& contact, const Vec3& r) {
   for (int k = 0; k < contact.planes; ++k) t[k] = contact.plane[k].normal.dot(r);
   if (contact.planes > 1) t = gram(contact).inverse() * t;
   return {t[0], t[1], t[2]};
+}
+
+bool add_or_exchange(Contact& contact, const Vec3& r, const ContactPlane& plane) {
+  if (add_plane(contact, plane)) return true;
+  const std::array<double, 3> lambda = multipliers(contact, r), share = multipliers(contact, plane.normal);
+  int first = -1;
+  for (int k = 0; k < contact.planes; ++k)
+    if (share[k] > 0 && (first < 0 || lambda[k] * share[first] < lambda[first] * share[k])) first = k;
+  if (first < 0) return false;
+  Contact exchanged = contact;
+  let_go(exchanged, first);
+  if (!add_plane(exchanged, plane)) return false;
+  contact = exchanged;
+  return true;
+}
+
+bool hold_again(Contact& contact, const Vec3& r, int plane) {
+  Contact holding = contact;
+  const auto begin = holding.plane.begin();
+  std::rotate(begin + plane, begin + plane + 1, begin + holding.known--);
+  if (!add_or_exchange(holding, r, contact.plane[plane])) return false;
+  contact = holding;
+  return true;
 }
 
 }  // namespace drape

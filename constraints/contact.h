@@ -22,7 +22,10 @@
 //   brake    before the first solve of a step s_0 is not known, so friction is the damper mu_k (r.n) / |s_e| in all
 //            directions, with the slip s_e that is expected: it cannot turn the motion round. r.n is taken from
 //            the last step, with its arrival impulse replaced by that of this step: otherwise an impact would
-//            rub twice. A contact that has come loose too often ends as one that is braked.
+//            rub twice. A contact that has come loose too often ends as one that is braked. What begins to touch, and
+//            slips, is braked, too; so is what slid when the impulse turned its slip round, with a quarter of the slip.
+//   doubt    where a contact changed more than once, or was let go and held again, r.n changes by half of what a solve
+//            asks for: friction may lift the particle off, or press it on, by more than it takes itself
 //   stop     where friction can stop all that slides on a body within a step, and it slows down, the step
 //            begins with it as sticking
 // r = A dv - b [N s] is the impulse of the constraint on the particle.
@@ -71,10 +74,15 @@ inline double touching_range(double margin) { return std::max(0.5 * margin, 1e-6
 
 // Lets the plane with this number go, and remembers it behind those that hold.
 void let_go(Contact& contact, int plane);
-// Lets the plane with this number, which was let go, hold again.
-void hold_again(Contact& contact, int plane);
-// Adds a plane unless the planes that are there imply it already; keeps the deepest first.
-void add_plane(Contact& contact, const ContactPlane& plane);
+// Adds a plane to those that hold, the deepest first, unless they imply it already: then it returns false.
+bool add_plane(Contact& contact, const ContactPlane& plane);
+// The same; but of two planes that are nearly one, the deeper holds.
+void add_deepest(Contact& contact, const ContactPlane& plane);
+// The same; but where they imply it in direction and not in place, it takes the place of the one whose multiplier is
+// zero first as the new plane pushes. r is their reaction.            [Goldfarb & Idnani 1983, step 2]
+bool add_or_exchange(Contact& contact, const Vec3& r, const ContactPlane& plane);
+// Lets a plane that was let go hold again, in the same way.
+bool hold_again(Contact& contact, const Vec3& r, int plane);
 
 // The vector in the span of the normals that has the given component along each plane's normal.
 Vec3 along_planes(const Contact& contact, const std::array<double, 3>& components);

@@ -98,7 +98,7 @@ ContactChange ContactStep::react(const VecX& v, const VecX& r, const VecX& x_new
   ParticleContacts& contacts = constraints_->contacts_;
   ContactChange change;
   change.grip = contacts.react(constraints_->bodies_, step, v, r, x_new, noise);
-  change.caught = contacts.catch_on_path(constraints_->bodies_, step, x_new);
+  change.caught = contacts.catch_on_path(constraints_->bodies_, step, r, x_new);
   if (step.foresight == Foresight::ahead) change.faces = constraints_->faces_.react(x_new, v);
   return change;
 }

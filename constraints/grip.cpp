@@ -243,16 +243,17 @@ bool ParticleContacts::react(const Bodies& bodies, const StepMotion& step, const
   bool changed = false;
   for (Contact& c : trial_) {
     const double too_small = noise * step.mass(c.particle);
-    const Vec3 v_end = v.segment<3>(3 * c.particle);
-    if (catch_again(step, c, mean_velocity(step, c.particle, x_new), too_small) ||
-        (c.active() && update_grip(bodies, step, c, v_end, r.segment<3>(3 * c.particle), too_small)))
+    const Vec3 v_end = v.segment<3>(3 * c.particle), held = r.segment<3>(3 * c.particle);
+    if (catch_again(step, c, mean_velocity(step, c.particle, x_new), held, too_small) ||
+        (c.active() && update_grip(bodies, step, c, v_end, held, too_small)))
       changed = true;
   }
   return changed;
 }
 
 // Of the planes that were let go, the one that the particle passes through fastest holds it again.
-bool ParticleContacts::catch_again(const StepMotion& step, Contact& c, const Vec3& v, double noise) const {
+bool ParticleContacts::catch_again(const StepMotion& step, Contact& c, const Vec3& v, const Vec3& r,
+                                   double noise) const {
   int worst = -1;
   double most = noise;
   for (int k = c.planes; k < c.known; ++k)
@@ -260,16 +261,24 @@ bool ParticleContacts::catch_again(const StepMotion& step, Contact& c, const Vec
       most = passing;
       worst = k;
     }
-  if (worst < 0) return false;
-  hold_again(c, worst);
+  if (worst < 0 || !hold_again(c, r, worst)) return false;
   ++c.catches;
+  begin_anew(step, c);
+  return true;
+}
+
+// What a contact knows of friction when a plane holds it that did not in the last solve.
+void ParticleContacts::begin_anew(const StepMotion& step, Contact& c) const {
   c.arrival_impulse = arrival_impulse(c, step);
-  if (c.planes > 1) return true;
+  if (c.planes > 1) {  // it slides in fewer directions
+    for (Vec3* v : {&c.slip, &c.last_slip, &c.friction_impulse}) *v = tangential(c, *v);
+    return;
+  }
   // It slides without friction until a solve tells what bears on it. If it stuck, it might be let go again.
   c.grip = Grip::brake;
   c.normal_impulse = 0;
+  c.last_slip = tangential(c, step.velocity(c.particle) - c.body_velocity());
   c.slip = c.last_slip;
-  return true;
 }
 
 bool ParticleContacts::update_grip(const Bodies& bodies, const StepMotion& step, Contact& c, const Vec3& v,

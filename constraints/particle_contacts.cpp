@@ -7,11 +7,17 @@
 namespace drape {
 namespace {
 
-const ContactPlane* plane_with(const Contact* contact, int obstacle) {
-  if (!contact) return nullptr;
-  for (int k = 0; k < contact->planes; ++k)
-    if (const ContactPlane& p = contact->plane[k]; p.obstacle == obstacle) return &p;
-  return nullptr;
+// Whether the contact knows a plane of this body, also one that was let go in this step.
+bool knows(const Contact* contact, int obstacle) {
+  if (!contact) return false;
+  for (int k = 0; k < contact->known; ++k)
+    if (contact->plane[k].obstacle == obstacle) return true;
+  return false;
+}
+
+// Whether the plane can hold the particle, too. It cannot where bodies pinch it from both sides.
+bool can_hold(Contact contact, const ContactPlane& plane) {
+  return add_or_exchange(contact, Vec3::Zero(), plane);
 }
 
 // Calls f(particle, chunk) for every particle that is not held.
@@ -125,12 +131,12 @@ void ParticleContacts::look_for(int particle, const Bodies& bodies, const StepMo
     deepest = std::max(deepest, -start.distance);
     if (start.distance > margin + std::max(travel, touching_range(margin))) continue;
     const ContactPlane plane = body.plane(x, start, x + step.h * v);
-    const bool touched = plane_with(before, o) != nullptr;
+    const bool touched = knows(before, o);
     if (touched ? plane.gap < touching_range(margin)
                 : plane.gap < 0 && plane.gap + body.approach(x, x_new, plane) < 0) {
-      add_plane(contact, plane);
+      add_deepest(contact, plane);
     } else if (plane.gap < travel) {
-      if (const auto met = body.meeting(x, x_new)) add_plane(contact, *met);
+      if (const auto met = body.meeting(x, x_new)) add_deepest(contact, *met);
     }
   }
   if (!contact.active()) return;
@@ -141,26 +147,53 @@ void ParticleContacts::look_for(int particle, const Bodies& bodies, const StepMo
 void ParticleContacts::look_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new) {
   for (auto& found : found_) found.clear();
   for_free(step, [&](int i, std::size_t k) {
-    if (contact_of_[i] < 0) look_along(i, bodies, step, x_new.segment<3>(3 * i), found_[k]);
+    const int known = contact_of_[i];
+    if (known >= 0 && step.foresight != Foresight::ahead) return;
+    look_along(i, bodies, step, known < 0 ? nullptr : &trial_[known], x_new.segment<3>(3 * i), found_[k]);
   });
 }
 
-bool ParticleContacts::catch_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new) {
-  const std::size_t before = trial_.size();
-  for (auto& found : found_)
-    for (Contact& c : found) catch_grip(bodies, step, c, mean_velocity(step, c.particle, x_new));
+bool ParticleContacts::catch_on_path(const Bodies& bodies, const StepMotion& step, const VecX& r,
+                                     const VecX& x_new) {
+  bool caught = false;
+  for (auto& found : found_) {
+    std::size_t kept = 0;
+    for (Contact& c : found) {
+      if (const int known = contact_of_[c.particle]; known >= 0) {
+        if (hold_also(step, r.segment<3>(3 * c.particle), trial_[known], c)) caught = true;
+        continue;
+      }
+      catch_grip(bodies, step, c, mean_velocity(step, c.particle, x_new));
+      found[kept++] = c;
+      caught = true;
+    }
+    found.erase(found.begin() + static_cast<std::ptrdiff_t>(kept), found.end());
+  }
   take_found(step.h);
-  return trial_.size() != before;
+  return caught;
+}
+
+// A particle that touches, with the reaction r, meets other bodies, too. False where it changes nothing.
+bool ParticleContacts::hold_also(const StepMotion& step, const Vec3& r, Contact& contact,
+                                 const Contact& met) {
+  bool added = false;
+  for (int k = 0; k < met.planes; ++k)
+    if (add_or_exchange(contact, r, met.plane[k])) added = true;
+  if (!added) return false;
+  begin_anew(step, contact);
+  return true;
 }
 
 void ParticleContacts::look_along(int particle, const Bodies& bodies, const StepMotion& step,
-                                  const Vec3& x_new, std::vector<Contact>& found) {
+                                  const Contact* known, const Vec3& x_new, std::vector<Contact>& found) {
   const Vec3 x = step.place(particle);
   Contact contact{.particle = particle, .plane = {}};
   for (int o = 0; o < static_cast<int>(bodies.size()); ++o) {
     const MovingBody& body = bodies[o];
+    if (knows(known, o)) continue;
     if (clearance(o, particle) > body.obstacle().margin + body.travel(x, x_new)) continue;
-    if (const auto met = body.meeting(x, x_new)) add_plane(contact, *met);
+    const auto met = body.meeting(x, x_new);
+    if (met && (!known || can_hold(*known, *met))) add_deepest(contact, *met);
   }
   if (!contact.active()) return;
   start_grip(bodies, step, contact, nullptr);

@@ -59,14 +59,14 @@ class ParticleContacts {
 
   // Finds the particles that touch a body in the predicted motion.
   void find(const Bodies& bodies, const StepMotion& step);
-  // Looks for the particles that would pass through a body in the motion x_new.
+  // Looks for the particles that would pass in the motion x_new through a body of which they know nothing yet.
   void look_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new);
   // How wrong the contacts are as a solve assumed them, which gave v [m/s], the motion x_new and the reaction r [N s]: the norm
   // of the impulses that should not be, those of particles found on the path among them [N s].
   double imbalance(const Bodies& bodies, const StepMotion& step, const VecX& v, const VecX& r,
                    const VecX& x_new);
-  // Takes in those that were found on the path; true when there are any.
-  bool catch_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new);
+  // Takes in those that were found on the path of a solve with the reaction r; true when there are any.
+  bool catch_on_path(const Bodies& bodies, const StepMotion& step, const VecX& r, const VecX& x_new);
   // Changes contacts to what such a solve asks for. An impulse counts as round-off when it changes the velocity
   // of its particle by less than `noise` [m/s]. True when a contact is let go or caught again, or sticks or
   // slides otherwise than the solve assumed.
@@ -104,9 +104,11 @@ class ParticleContacts {
  private:
   void look_for(int particle, const Bodies& bodies, const StepMotion& step, std::vector<Contact>& found,
                 double& deepest);
-  void look_along(int particle, const Bodies& bodies, const StepMotion& step, const Vec3& x_new,
-                  std::vector<Contact>& found);
+  void look_along(int particle, const Bodies& bodies, const StepMotion& step, const Contact* known,
+                  const Vec3& x_new, std::vector<Contact>& found);
   void take_found(double h);
+  bool hold_also(const StepMotion& step, const Vec3& r, Contact& contact, const Contact& met);
+  void begin_anew(const StepMotion& step, Contact& contact) const;
   void start_grip(const Bodies& bodies, const StepMotion& step, Contact& contact,
                   const Contact* before) const;
   Vec3 mean_velocity(const StepMotion& step, int particle, const VecX& x_new) const;
@@ -115,7 +117,8 @@ class ParticleContacts {
   static double wrong_normal(const StepMotion& step, const Contact& contact, const Vec3& v, const Vec3& r);
   double wrong_friction(const Bodies& bodies, const StepMotion& step, const Contact& contact, const Vec3& v,
                         const Vec3& r) const;
-  bool catch_again(const StepMotion& step, Contact& contact, const Vec3& v, double noise) const;
+  bool catch_again(const StepMotion& step, Contact& contact, const Vec3& v, const Vec3& r,
+                   double noise) const;
   bool update_grip(const Bodies& bodies, const StepMotion& step, Contact& contact, const Vec3& v,
                    const Vec3& r, double noise) const;
   bool update_friction(const Bodies& bodies, const StepMotion& step, Contact& contact, const Vec3& v,

@@ -63,7 +63,7 @@ bool ParticleContacts::respond(ContactMode mode, const MovingBody& body, const S
                              : rebound(velocities, plane, obstacle.friction, obstacle.restitution,
                                        contact_layer(obstacle.margin), recovery_speed_, h);
     if (!changed) return false;
-    add_plane(contact, plane);
+    add_deepest(contact, plane);
     const Vec3 impulse = step.mass(contact.particle) * (velocities.end - before);
     responses_[chunk].push_back({body.number(), impulse, x + h * velocities.mean, plane.body_velocity,
                                  (plane.body_velocity - before).norm()});
