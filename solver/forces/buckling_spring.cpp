@@ -38,9 +38,8 @@ double first_guess(double delta) {
                                          delta * (4.47265052 + delta * (-5.98226664 + delta * 3.72304021)))));
 }
 
-}  // namespace
-
-Buckling immediate_buckling(double delta) {
+// The y = u^2 at which sinc(u) = 1 - delta.
+double squared_angle(double delta) {
   double y = first_guess(delta);
   for (int round = 0; round < 2; ++round) {  // Halley's method on G(y) = y S(y) - delta, with G' = -C / 2
     double S = series.S[terms - 1], C = series.C[terms - 1], dC = 0;
@@ -52,6 +51,13 @@ Buckling immediate_buckling(double delta) {
     const double G = y * S - delta, G1 = -0.5 * C, G2 = -0.5 * dC;
     y -= 2 * G * G1 / (2 * G1 * G1 - G * G2);
   }
+  return y;
+}
+
+}  // namespace
+
+Buckling immediate_buckling(double delta) {
+  const double y = squared_angle(delta);
   double C = series.C[terms - 1], N = series.N[terms - 1];
   for (std::size_t n = terms - 1; n-- > 0;) {
     C = C * y + series.C[n];
@@ -59,6 +65,8 @@ Buckling immediate_buckling(double delta) {
   }
   return {2 * y, 4 / C, 4 * N / (C * C * C)};
 }
+
+double buckling_energy(double delta) { return 2 * squared_angle(delta); }
 
 double clamp_crossing(double c_hat) {
   constexpr double four_pi_squared = 39.478417604357434;
@@ -71,13 +79,16 @@ double clamp_crossing(double c_hat) {
   return high;
 }
 
+BucklingSpring::Rest BucklingSpring::rest(double L, double k_b, double c_b) {
+  const double crossing = clamp_crossing(c_b * L * L * L / k_b), linear = crossing * L;
+  return {L, k_b, c_b, crossing, 0.5 * c_b * linear * linear - k_b / L * buckling_energy(crossing)};
+}
+
 double BucklingSpring::energy(const Rest& r, double l) {
   const double delta = (r.L - l) / r.L;
   if (delta <= 0) return 0;
-  const double linear = std::min(delta, r.crossing) * r.L;
-  const double clamped = 0.5 * r.c_b * linear * linear;
-  if (delta <= r.crossing) return clamped;
-  return clamped + r.k_b / r.L * (immediate_buckling(delta).energy - immediate_buckling(r.crossing).energy);
+  if (delta <= r.crossing) return 0.5 * r.c_b * (r.L - l) * (r.L - l);
+  return r.offset + r.k_b / r.L * buckling_energy(delta);
 }
 
 }  // namespace drape

@@ -22,6 +22,8 @@ struct Buckling {
 };
 Buckling immediate_buckling(double delta);
 
+double buckling_energy(double delta);  // the energy alone
+
 // The delta at which the clamp c_hat = c_b L^3 / k_b meets the buckling law: the root of
 // c_hat delta = -force(delta). It is 1 when the connection never buckles.
 double clamp_crossing(double c_hat);
@@ -33,11 +35,10 @@ struct BucklingSpring {
     double k_b;       // N m^2
     double c_b;       // N/m
     double crossing;  // clamp_crossing(c_b L^3 / k_b)
+    double offset;    // J, by which the energy of the clamp at the crossing is above that of buckling
   };
 
-  static Rest rest(double L, double k_b, double c_b) {
-    return {L, k_b, c_b, clamp_crossing(c_b * L * L * L / k_b)};
-  }
+  static Rest rest(double L, double k_b, double c_b);
 
   static double energy(const Rest& r, double l);
   static Tension tension(const Rest& r, double l) {
