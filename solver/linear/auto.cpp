@@ -9,8 +9,11 @@
 // for 2 only where a matrix now costs 1.25 times what it cost with the other method when that was last used, as
 // when cloth arrives at a body; and multigrid that was never tried does not wait where block-ic0 costs twice what
 // is usual. While block-ic0 is cheap, multigrid has no trial.
+// Where a matrix costs 1.5 times what one did with multigrid, and four times what one usually does, block-ic0 is given
+// up in the middle of a solve. Multigrid solves that system anew, and those that follow.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "solver/linear/linear_solver.h"
@@ -34,18 +37,65 @@ class Auto final : public LinearSolver {
                      VecX& dv) override {
     if (fill_ != A.fill()) begin_matrix();
     fill_ = A.fill();
-    LinearReport report = solver_[now_]->solve(A, b, filter, options, dv);
-    const Price& price = now_ == ic0 ? ic0_price : multigrid_price;
-    cost_ += price.iteration * report.iterations + price.system + price.levels * report.analyses;
-    ++solves_;
-    failed_ = failed_ || report.reason != StopReason::converged;
-    report.method = names[now_];
-    return report;
+    LinearReport report;
+    if (now_ == ic0) {
+      guess_ = dv;
+      report = solve_by(ic0, A, b, filter, within_budget(options), dv);
+      if (report.reason != StopReason::iteration_limit || report.iterations == options.max_iterations)
+        return counted(report);
+      give_up();
+      dv = guess_;
+    }
+    return counted(after(report, solve_by(now_, A, b, filter, options, dv)));
   }
 
  private:
   enum Method { ic0, multigrid };
-  static constexpr int shortest_wait = 8, longest_wait = 64;
+  static constexpr int shortest_wait = 8, longest_wait = 64, fewest_iterations = 40;
+
+  LinearReport solve_by(Method method, const BlockMatrix& A, const VecX& b, const Filter& filter,
+                        const LinearOptions& options, VecX& dv) {
+    LinearReport report = solver_[method]->solve(A, b, filter, options, dv);
+    const Price& price = method == ic0 ? ic0_price : multigrid_price;
+    cost_ += price.iteration * report.iterations + price.system + price.levels * report.analyses;
+    report.method = names[method];
+    return report;
+  }
+
+  LinearReport counted(const LinearReport& report) {
+    ++solves_;
+    failed_ = failed_ || report.reason != StopReason::converged;
+    return report;
+  }
+
+  // The report of a solve that another had given up before.
+  static LinearReport after(const LinearReport& before, LinearReport report) {
+    report.iterations += before.iterations;
+    report.analyses += before.analyses;
+    report.setup_ms += before.setup_ms;
+    report.solve_ms += before.solve_ms;
+    return report;
+  }
+
+  // The options with the most iterations that block-ic0 may take in the next solve.
+  LinearOptions within_budget(LinearOptions options) const {
+    if (std::isinf(usual_[multigrid])) return options;  // it failed
+    const double most = std::max(1.5 * usual_[multigrid], 4 * usual_multigrid);
+    const int budget = std::max(fewest_iterations, static_cast<int>(std::min(most - cost_, 1e6)));
+    if (options.max_iterations == 0 || budget < options.max_iterations) options.max_iterations = budget;
+    return options;
+  }
+
+  // Multigrid goes on where block-ic0 took more than its budget.
+  void give_up() {
+    usual_[ic0] = std::max(usual_[ic0], 2 * cost_);  // it would have cost more; nobody knows how much
+    wait_ = on_trial_ ? std::clamp(2 * wait_, shortest_wait, longest_wait) : shortest_wait;
+    waited_ = 0;
+    on_trial_ = false;
+    now_ = multigrid;
+    cost_ = 0;
+    solves_ = 0;
+  }
 
   void begin_matrix() {
     if (solves_ > 0) decide();
@@ -92,6 +142,7 @@ class Auto final : public LinearSolver {
   // used; 0: it was not used yet.
   double cost_ = 0;
   std::array<double, 2> usual_ = {};
+  VecX guess_;
   int solves_ = 0;       // with this matrix
   bool failed_ = false;  // a solve with this matrix did not converge
   std::uint64_t fill_ = 0;
