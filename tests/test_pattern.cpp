@@ -6,8 +6,8 @@
 
 #include "app/commands/triangulate_command.h"
 #include "app/pattern/remarks.h"
+#include "mesh/base/predicates.h"
 #include "mesh/pattern/delaunay.h"
-#include "mesh/pattern/predicates.h"
 #include "tests/obj.h"
 #include "tests/patterns.h"
 

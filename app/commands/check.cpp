@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "app/base/toml_file.h"
+#include "app/commands/crossings.h"
 #include "app/pattern/pattern_read.h"
 #include "app/scene/fabric_words.h"
 #include "app/scene/load_mesh.h"
@@ -49,6 +50,7 @@ void check_mesh(const std::filesystem::path& file) {
   for (const VertexGroup& group : mesh.groups)
     std::printf("  group %s: %s\n", group.name.c_str(),
                 counted(static_cast<long>(group.vertices.size()), "vertex").c_str());
+  print_crossings(file.stem().string(), mesh);
   for (const std::string& message : messages) std::printf("%s\n", one_line(message).c_str());
 }
 
@@ -154,6 +156,7 @@ void check_scene(const std::filesystem::path& file) {
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k)
     print_obstacle(scene.obstacles[k], simulation.constraints->bodies()[k].obstacle(), simulation.bodies[k],
                    s.duration);
+  print_crossings(simulation.cloths, simulation.state.x);
   for (const std::string& message : simulation.messages) std::printf("%s\n", one_line(message).c_str());
 }
 
@@ -172,9 +175,24 @@ void check_fabric(const std::filesystem::path& file) {
     if (!names->empty()) std::printf("  %s: %s\n", what, one_line(listed(*names)).c_str());
 }
 
+void check_folder(const std::filesystem::path& folder) {
+  const Recording recording(folder);
+  std::printf("%s: %s", folder.c_str(), counted(recording.frames(), "frame").c_str());
+  for (const RecordedShape& shape : recording.shapes())
+    if (!shape.body)
+      std::printf(", %s of %s", shape.name.c_str(), counted(shape.mesh.triangle_count(), "triangle").c_str());
+  std::printf("\n");
+  print_crossings(recording);
+  for (const std::string& missing : recording.missing()) std::printf("%s\n", one_line(missing).c_str());
+}
+
 }  // namespace
 
 int check_file(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file)) {
+    check_folder(file);
+    return 0;
+  }
   const Node root = file.extension() == ".toml" ? read_toml(file) : Node();
   if (root.members.contains("area_density"))
     check_fabric(file);

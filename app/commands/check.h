@@ -8,7 +8,7 @@
 
 namespace drape::app {
 
-// Prints the description of a scene, a pattern or a mesh file. Returns 0; throws InputError.
+// Prints the description of a scene, a pattern or a mesh file, or of the folder of a run. Returns 0; throws InputError.
 int check_file(const std::filesystem::path& file);
 
 // Prints counts, size and defects of a mesh; `name` stands in front.

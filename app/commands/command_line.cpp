@@ -337,10 +337,12 @@ void add_fit(CLI::App& app, int& exit_code) {
 }
 
 void add_check_and_list(CLI::App& app, int& exit_code) {
-  CLI::App* const check =
-      app.add_subcommand("check", "validates a scene or a fabric file, or examines a mesh; changes nothing");
+  CLI::App* const check = app.add_subcommand("check",
+                                             "validates a scene or a fabric file, examines a mesh, or looks "
+                                             "for crossings in a run; changes nothing");
   auto file = std::make_shared<std::string>();
-  check->add_option("FILE", *file, "scene or fabric (.toml) or mesh (.obj)")->required();
+  check->add_option("FILE", *file, "scene or fabric (.toml), mesh (.obj), or output folder of a run")
+      ->required();
   check->callback([=, &exit_code] { exit_code = check_file(*file); });
   CLI::App* const list =
       app.add_subcommand("list", "fabrics, shapes, forces, integrators and linear solvers of this build");

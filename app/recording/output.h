@@ -36,6 +36,7 @@ class Output {
     std::string amount;
   };
   const std::vector<Written>& written() const { return written_; }
+  const std::filesystem::path& folder() const { return folder_; }
 
  private:
   std::filesystem::path cloth_path(const Cloth& cloth, const char* extension) const;

@@ -123,6 +123,7 @@ std::string run_json(const RunRecord& record) {
       {"area_kept", record.strains.area_kept},
       {"max_penetration", record.max_penetration},
       {"contact_residual", record.contact_residual},
+      {"crossings", Json::Members{{"start", record.crossings_at_start}, {"end", record.crossings}}},
       {"largest_speed", record.largest_speed},
       {"largest_edge_strain", record.largest_edge_strain},
       {"substeps_max", record.substeps_max},

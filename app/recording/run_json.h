@@ -70,6 +70,7 @@ struct RunRecord {
   TriangleStrains strains;                                             // at the end
   double max_penetration = 0;                                          // m, of the whole run
   double contact_residual = 0;                                         // the largest of the whole run
+  int crossings_at_start = 0, crossings = 0;  // pairs of triangles that pass through each other, at the end
   bool settled = false, interrupted = false;
   std::string state_hash;
   std::string frames;               // how they were written: pc2, obj, none

@@ -10,6 +10,7 @@
 #include "app/recording/scene_record.h"
 #include "app/run/summary.h"
 #include "app/simulation/measure.h"
+#include "app/simulation/sheets.h"
 #include "mesh/base/errors.h"
 #include "mesh/base/threads.h"
 
@@ -97,6 +98,7 @@ void Run::describe() {
   record_.numerics = numerics_json(wanted_);
   record_.settings = settings_json(simulation_.scene->settings);
   record_.warnings = simulation_.messages;
+  record_.crossings_at_start = Sheets(simulation_.cloths, simulation_.state.x).crossings();
   const Scene& scene = *simulation_.scene;
   for (std::size_t k = 0; k < simulation_.cloths.size(); ++k) {
     const Cloth& c = simulation_.cloths[k];
@@ -258,6 +260,7 @@ const RunRecord& Run::finish() {
   record_.settled = record_.steps > 0 && slow(record_.max_speed);
   for (double depth : simulation_.constraints->penetration(simulation_.state.x))
     record_.max_penetration = std::max(record_.max_penetration, depth);
+  record_.crossings = Sheets(simulation_.cloths, simulation_.state.x).crossings();
   tell_of_open_seams();
   record_.bodies = body_records(simulation_);
   record_.state_hash = state_hash(simulation_.state);

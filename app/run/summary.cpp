@@ -7,7 +7,7 @@
 namespace drape::app {
 namespace {
 
-std::string hints(const RunRecord& record) {
+std::string hints(const RunRecord& record, const Output& output) {
   std::string text;
   if (record.max_edge_strain > 0.1 && record.softs.empty())
     text += "hint: an edge is stretched by " + rounded(100 * record.max_edge_strain, 2) +
@@ -17,6 +17,11 @@ std::string hints(const RunRecord& record) {
   if (record.strains.area_kept < 0.9 && springs)
     text += "hint: the cloth has lost " + rounded(100 * (1 - record.strains.area_kept), 2) +
             " % of its area: edges do not push in the models of springs; model = \"woven\" keeps it\n";
+  if (record.crossings > 0)
+    text += "hint: " + counted(record.crossings, "pair") + " of triangles cross (" +
+            std::to_string(record.crossings_at_start) +
+            " at the start), because cloth does not meet cloth: drape check " + output.folder().string() +
+            " says where\n";
   if (record.max_penetration > 1e-4)
     text +=
         "hint: a vertex was inside a body by up to " + rounded(1000 * record.max_penetration, 2) + " mm\n";
@@ -71,7 +76,7 @@ std::string summary(const RunRecord& record, const Output& output) {
             rounded(100 * record.strains.least, 3) + " % (one in a hundred below " +
             rounded(100 * record.strains.first_percent, 3) + " %) to " +
             rounded(100 * record.strains.largest, 3) + " %\n";
-  text += hints(record);
+  text += hints(record, output);
   for (const auto& [path, amount] : output.written())
     text += "wrote " + path.string() + (amount.empty() ? "" : " (" + amount + ")") + "\n";
   return text;

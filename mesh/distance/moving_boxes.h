@@ -39,6 +39,13 @@ class MovingBoxes {
   template <class Ask>
   void along(const Vec3& x0, const Vec3& x1, double from, const Ask& ask, double beside = 0) const;
 
+  // Calls ask(face, other) once for every two faces that can touch at some s: they lie in leaves whose boxes
+  // overlap at a common s. ask returns whether to go on.
+  template <class Ask>
+  void pairs(const Ask& ask) const {
+    if (!nodes_.empty()) pairs_within(0, ask);
+  }
+
  private:
   using Four = Eigen::Array<float, 4, 1>;
   struct Node {
@@ -51,6 +58,12 @@ class MovingBoxes {
   };
   static constexpr int most_faces = 4;  // most faces of a leaf
   static constexpr int deepest = 64;    // most entries of a search's stack: three per level
+
+  template <class Ask>
+  bool pairs_within(int node, const Ask& ask) const;
+  template <class Ask>
+  bool pairs_between(int node, int child, int other, int other_child, const Ask& ask) const;
+  bool overlap(const Node& node, int child, const Node& other, int other_child) const;
 
   int grow(std::vector<std::pair<Vec3, int>>& middles, int begin, int end);
   void fit_leaf(Node& node, int child, const std::vector<Face>& faces, const std::vector<Vec3>& start,
@@ -127,6 +140,40 @@ void MovingBoxes::along(const Vec3& x0, const Vec3& x1, double from, const Ask& 
       if (enter <= leave) stack[waiting++] = {node.first[child], node.count[child], 0};
     }
   }
+}
+
+template <class Ask>
+bool MovingBoxes::pairs_within(int node, const Ask& ask) const {
+  for (int child = 0; child < 4; ++child) {
+    const int first = nodes_[node].first[child], count = nodes_[node].count[child];
+    if (count < 0 && !pairs_within(first, ask)) return false;
+    for (int i = first; i < first + count; ++i)
+      for (int k = i + 1; k < first + count; ++k)
+        if (!ask(order_[i], order_[k])) return false;
+    for (int other = child + 1; other < 4; ++other)
+      if (!pairs_between(node, child, node, other, ask)) return false;
+  }
+  return true;
+}
+
+template <class Ask>
+bool MovingBoxes::pairs_between(int node, int child, int other, int other_child, const Ask& ask) const {
+  const Node &a = nodes_[node], &b = nodes_[other];
+  const int count = a.count[child], other_count = b.count[other_child];
+  if (count == 0 || other_count == 0 || !overlap(a, child, b, other_child)) return true;
+  const int first = a.first[child], second = b.first[other_child];
+  if (count > 0 && other_count > 0) {
+    for (int i = first; i < first + count; ++i)
+      for (int k = second; k < second + other_count; ++k)
+        if (!ask(order_[i], order_[k])) return false;
+    return true;
+  }
+  for (int i = 0; i < (count < 0 ? 4 : 1); ++i)
+    for (int k = 0; k < (other_count < 0 ? 4 : 1); ++k)
+      if (!pairs_between(count < 0 ? first : node, count < 0 ? i : child, other_count < 0 ? second : other,
+                         other_count < 0 ? k : other_child, ask))
+        return false;
+  return true;
 }
 
 }  // namespace drape::internal

@@ -6,13 +6,12 @@
 // cubic one that is the same curve.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <vector>
 
-namespace drape {
+#include "mesh/base/vectors.h"
 
-using Vec2 = Eigen::Vector2d;
+namespace drape {
 
 struct Segment {
   enum class Kind { line, cubic, arc };

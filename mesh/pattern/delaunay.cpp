@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "mesh/pattern/predicates.h"
+#include "mesh/base/predicates.h"
 
 namespace drape::internal {
 namespace {

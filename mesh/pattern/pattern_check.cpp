@@ -6,7 +6,7 @@
 #include <set>
 
 #include "mesh/base/errors.h"
-#include "mesh/pattern/predicates.h"
+#include "mesh/base/predicates.h"
 
 namespace drape::internal {
 namespace {

@@ -1,5 +1,5 @@
 // The only file that knows Boost.Multiprecision. See predicates.h.
-#include "mesh/pattern/predicates.h"
+#include "mesh/base/predicates.h"
 
 #include <algorithm>
 #include <array>
@@ -17,23 +17,31 @@ using Whole = mp::number<mp::cpp_int_backend<1024, 0, mp::signed_magnitude, mp::
 
 constexpr double kHalfUlp = 0x1p-53;
 constexpr double kOrientBound = (3 + 16 * kHalfUlp) * kHalfUlp;
+// Of the determinant as it is summed here, its three products in sequence; d is subtracted from the others.
+constexpr double kOrient3dBound = (7 + 56 * kHalfUlp) * kHalfUlp;
 constexpr double kCircleBound = (10 + 96 * kHalfUlp) * kHalfUlp;
 
 int sign(double x) { return (x > 0) - (x < 0); }
 
 // The coordinates as whole multiples of the greatest power of two that divides them all.
-template <std::size_t N>
-std::array<Whole, 2 * N> whole(const std::array<const Vec2*, N>& points) {
-  std::array<std::int64_t, 2 * N> digits;
-  std::array<int, 2 * N> exponents;
+template <class... Points>
+auto whole(const Points&... points) {
+  constexpr std::size_t n = (static_cast<std::size_t>(Points::SizeAtCompileTime) + ...);
+  std::array<double, n> x;
+  std::size_t filled = 0;
+  const auto append = [&](const auto& point) {
+    for (const double coordinate : point) x[filled++] = coordinate;
+  };
+  (append(points), ...);
+  std::array<std::int64_t, n> digits;
+  std::array<int, n> exponents;
   int least = 1 << 20;
-  for (std::size_t i = 0; i < 2 * N; ++i) {
-    const double x = (*points[i / 2])[static_cast<int>(i % 2)];
-    digits[i] = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponents[i]), 53));
+  for (std::size_t i = 0; i < n; ++i) {
+    digits[i] = static_cast<std::int64_t>(std::ldexp(std::frexp(x[i], &exponents[i]), 53));
     if (digits[i] != 0) least = std::min(least, exponents[i]);
   }
-  std::array<Whole, 2 * N> scaled;
-  for (std::size_t i = 0; i < 2 * N; ++i) {
+  std::array<Whole, n> scaled;
+  for (std::size_t i = 0; i < n; ++i) {
     scaled[i] = digits[i];
     if (digits[i] != 0) scaled[i] <<= exponents[i] - least;
   }
@@ -41,13 +49,21 @@ std::array<Whole, 2 * N> whole(const std::array<const Vec2*, N>& points) {
 }
 
 int exact_orient2d(const Vec2& a, const Vec2& b, const Vec2& c) {
-  const std::array<Whole, 6> x = whole<3>({&a, &b, &c});
+  const auto x = whole(a, b, c);
   const Whole d = (x[2] - x[0]) * (x[5] - x[1]) - (x[3] - x[1]) * (x[4] - x[0]);
   return d.sign();
 }
 
+int exact_orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  auto x = whole(a, b, c, d);
+  for (std::size_t i = 0; i < 9; ++i) x[i] -= x[9 + i % 3];
+  const Whole det = x[0] * (x[4] * x[8] - x[5] * x[7]) + x[3] * (x[7] * x[2] - x[8] * x[1]) +
+                    x[6] * (x[1] * x[5] - x[2] * x[4]);
+  return -det.sign();
+}
+
 int exact_incircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
-  const std::array<Whole, 8> x = whole<4>({&a, &b, &c, &d});
+  const auto x = whole(a, b, c, d);
   const Whole ax = x[0] - x[6], ay = x[1] - x[7], bx = x[2] - x[6], by = x[3] - x[7], cx = x[4] - x[6],
               cy = x[5] - x[7];
   const Whole det = (ax * ax + ay * ay) * (bx * cy - cx * by) + (bx * bx + by * by) * (cx * ay - ax * cy) +
@@ -62,6 +78,18 @@ int orient2d(const Vec2& a, const Vec2& b, const Vec2& c) {
   const double det = left - right;
   if (std::abs(det) > kOrientBound * (std::abs(left) + std::abs(right))) return sign(det);
   return exact_orient2d(a, b, c);
+}
+
+int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const Vec3 p = a - d, q = b - d, r = c - d;
+  const double qxry = q.x() * r.y(), rxqy = r.x() * q.y(), rxpy = r.x() * p.y(), pxry = p.x() * r.y(),
+               pxqy = p.x() * q.y(), qxpy = q.x() * p.y();
+  const double det = p.z() * (qxry - rxqy) + q.z() * (rxpy - pxry) + r.z() * (pxqy - qxpy);
+  const double size = (std::abs(qxry) + std::abs(rxqy)) * std::abs(p.z()) +
+                      (std::abs(rxpy) + std::abs(pxry)) * std::abs(q.z()) +
+                      (std::abs(pxqy) + std::abs(qxpy)) * std::abs(r.z());
+  if (std::abs(det) > kOrient3dBound * size) return -sign(det);
+  return exact_orient3d(a, b, c, d);
 }
 
 int incircle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {

@@ -1,0 +1,86 @@
+#include "app/commands/crossings.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "app/base/words.h"
+#include "app/simulation/sheets.h"
+
+namespace drape::app {
+namespace {
+
+constexpr std::size_t most_told = 5;  // contours that are described
+
+std::string where(const Vec3& place) {
+  return "(" + rounded(place[0], 4) + ", " + rounded(place[1], 4) + ", " + rounded(place[2], 4) + ") m";
+}
+
+std::string pairs(int count) {
+  if (count == most_crossing_pairs) return "at least " + std::to_string(count) + " pairs of triangles cross";
+  return count == 1 ? "1 pair of triangles crosses" : std::to_string(count) + " pairs of triangles cross";
+}
+
+void print(const Sheets& sheets, const std::vector<CrossingContour>& contours) {
+  for (std::size_t k = 0; k < std::min(contours.size(), most_told); ++k) {
+    const CrossingContour& contour = contours[k];
+    const std::string &first = sheets.name_of(contour.pairs.front().first),
+                      &second = sheets.name_of(contour.pairs.front().second);
+    std::string text = first;
+    text += first == second ? " with itself: " : " with " + second + ": ";
+    text += counted(static_cast<long>(contour.pairs.size()), "pair");
+    text += contour.closed ? ", a closed contour, at " : ", a contour that ends, at ";
+    text += where(contour.place);
+    std::printf("  %s\n", one_line(text).c_str());
+  }
+  if (contours.size() > most_told)
+    std::printf("  and %s\n", counted(static_cast<long>(contours.size() - most_told), "contour").c_str());
+}
+
+void print(const Sheets& sheets, const char* title = "crossings") {
+  const std::vector<CrossingContour> contours = sheets.contours();
+  if (contours.empty()) {
+    std::printf("%s: none\n", title);
+    return;
+  }
+  std::printf("%s: %s, in %s\n", title, pairs(crossing_count(contours)).c_str(),
+              counted(static_cast<long>(contours.size()), "contour").c_str());
+  print(sheets, contours);
+}
+
+// At the end the places are those of the OBJ files, which have all digits.
+Sheets sheets_of(const Recording& recording, int frame) {
+  Sheets sheets;
+  for (std::size_t s = 0; s < recording.shapes().size(); ++s)
+    if (const RecordedShape& shape = recording.shapes()[s]; !shape.body)
+      sheets.add(shape.name, shape.mesh.triangles,
+                 frame + 1 == recording.frames() ? shape.mesh.positions : recording.positions(s, frame));
+  return sheets;
+}
+
+}  // namespace
+
+void print_crossings(const std::string& name, const TriangleMesh& mesh) {
+  Sheets sheets;
+  sheets.add(name, mesh.triangles, mesh.positions);
+  print(sheets);
+}
+
+void print_crossings(const std::vector<Cloth>& cloths, const VecX& x) { print(Sheets(cloths, x)); }
+
+void print_crossings(const Recording& recording) {
+  const int last = recording.frames() - 1;
+  int most = 0, worst = 0;
+  for (int frame = 0; frame < last; ++frame) {
+    const int count = sheets_of(recording, frame).crossings();
+    if (frame == 0) std::printf("crossings at the start: %d\n", count);
+    if (count <= most) continue;
+    most = count;
+    worst = frame;
+  }
+  if (most > 0)
+    std::printf("crossings before the end: at most %d, in frame %d (%s s)\n", most, worst + 1,
+                rounded(recording.time(worst), 4).c_str());
+  print(sheets_of(recording, last), last > 0 ? "crossings at the end" : "crossings");
+}
+
+}  // namespace drape::app

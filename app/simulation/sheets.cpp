@@ -1,0 +1,35 @@
+#include "app/simulation/sheets.h"
+
+#include <algorithm>
+
+#include "mesh/triangles/topology.h"
+
+namespace drape::app {
+
+Sheets::Sheets(const std::vector<Cloth>& cloths, const VecX& x) {
+  for (const Cloth& cloth : cloths) add(cloth.name, cloth.mesh.triangles, cloth.embedding.positions(x));
+}
+
+void Sheets::add(const std::string& name, const std::vector<Triangle>& triangles,
+                 const std::vector<Vec3>& positions) {
+  parts_.push_back({name, static_cast<int>(triangles_.size())});
+  const int first = static_cast<int>(positions_.size());
+  for (const Triangle& t : triangles) triangles_.push_back({first + t[0], first + t[1], first + t[2]});
+  positions_.insert(positions_.end(), positions.begin(), positions.end());
+}
+
+std::vector<CrossingContour> Sheets::contours() const {
+  const std::vector<int> number = welded(positions_);
+  std::vector<Triangle> triangles = triangles_;
+  for (Triangle& t : triangles)
+    for (int& v : t) v = number[v];
+  return crossing_contours(positions_, triangles);
+}
+
+const std::string& Sheets::name_of(int triangle) const {
+  const auto after = std::upper_bound(parts_.begin(), parts_.end(), triangle,
+                                      [](int t, const Part& part) { return t < part.first_triangle; });
+  return std::prev(after)->name;
+}
+
+}  // namespace drape::app

@@ -1,0 +1,37 @@
+// The cloths and soft bodies of a scene as one list of triangles, to look for those that pass through each other
+// (mesh/distance/triangle_crossings.h).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mesh/distance/triangle_crossings.h"
+#include "solver/assembly/cloth.h"
+
+namespace drape::app {
+
+class Sheets {
+ public:
+  Sheets() = default;
+  // All cloths and soft bodies, where the particles are at x [m].
+  Sheets(const std::vector<Cloth>& cloths, const VecX& x);
+
+  void add(const std::string& name, const std::vector<Triangle>& triangles,
+           const std::vector<Vec3>& positions);
+
+  // Vertices at exactly the same place count as one, such as those of a seam that was merged.
+  std::vector<CrossingContour> contours() const;
+  int crossings() const { return crossing_count(contours()); }
+  const std::string& name_of(int triangle) const;  // of the sheet that has it
+
+ private:
+  struct Part {
+    std::string name;
+    int first_triangle;
+  };
+  std::vector<Part> parts_;
+  std::vector<Vec3> positions_;
+  std::vector<Triangle> triangles_;
+};
+
+}  // namespace drape::app

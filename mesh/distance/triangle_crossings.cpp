@@ -1,0 +1,164 @@
+#include "mesh/distance/triangle_crossings.h"
+
+#include <algorithm>
+#include <array>
+#include <compare>
+#include <numeric>
+
+#include "mesh/base/predicates.h"
+#include "mesh/distance/moving_boxes.h"
+
+namespace drape {
+namespace {
+
+using internal::Face;
+using internal::MovingBoxes;
+using internal::orient3d;
+
+// An edge passes through a triangle, as one of a pair that crosses.
+struct Passage {
+  int a, b;      // the edge, a < b
+  int triangle;  // that it passes through
+  int pair;      // place in the list of pairs
+
+  auto where() const { return std::array{a, b, triangle}; }
+};
+
+bool share_a_vertex(const Triangle& s, const Triangle& t) {
+  return std::any_of(s.begin(), s.end(), [&](int v) { return std::find(t.begin(), t.end(), v) != t.end(); });
+}
+
+class Search {
+ public:
+  Search(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles)
+      : x_(positions), triangles_(triangles) {}
+
+  // Adds the pair when the triangles cross.
+  void look_at(int first, int second) {
+    const Triangle &s = triangles_[first], &t = triangles_[second];
+    if (share_a_vertex(s, t) || !boxes_touch(s, t)) return;
+    const auto before = passages_.size();
+    look_through(s, second);
+    look_through(t, first);
+    if (passages_.size() == before) return;
+    pairs_.push_back({std::min(first, second), std::max(first, second)});
+  }
+
+  int found() const { return static_cast<int>(pairs_.size()); }
+  std::vector<CrossingContour> contours();
+
+ private:
+  bool boxes_touch(const Triangle& s, const Triangle& t) const {
+    for (int k = 0; k < 3; ++k) {
+      const auto [s_low, s_high] = std::minmax({x_[s[0]][k], x_[s[1]][k], x_[s[2]][k]});
+      const auto [t_low, t_high] = std::minmax({x_[t[0]][k], x_[t[1]][k], x_[t[2]][k]});
+      if (s_high < t_low || t_high < s_low) return false;
+    }
+    return true;
+  }
+
+  // Finds the edges of s that pass through the triangle.
+  void look_through(const Triangle& s, int triangle) {
+    const Triangle& t = triangles_[triangle];
+    std::array<int, 3> side;
+    for (std::size_t k = 0; k < 3; ++k) side[k] = orient3d(x_[t[0]], x_[t[1]], x_[t[2]], x_[s[k]]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (side[k] * side[(k + 1) % 3] >= 0) continue;
+      const int a = std::min(s[k], s[(k + 1) % 3]), b = std::max(s[k], s[(k + 1) % 3]);
+      bool left = false, right = false;  // of the edge there is a side of the triangle
+      for (std::size_t e = 0; e < 3; ++e) {
+        const int turn = orient3d(x_[a], x_[b], x_[t[e]], x_[t[(e + 1) % 3]]);
+        left = left || turn > 0;
+        right = right || turn < 0;
+      }
+      if (left != right) passages_.push_back({a, b, triangle, static_cast<int>(pairs_.size())});
+    }
+  }
+
+  Vec3 place_of(const Passage& passage) const {
+    const Triangle& t = triangles_[passage.triangle];
+    const Vec3 normal = (x_[t[1]] - x_[t[0]]).cross(x_[t[2]] - x_[t[0]]);
+    const double from = normal.dot(x_[passage.a] - x_[t[0]]), to = normal.dot(x_[passage.b] - x_[t[0]]);
+    const double share = from == to ? 0.5 : std::clamp(from / (from - to), 0.0, 1.0);
+    return x_[passage.a] + share * (x_[passage.b] - x_[passage.a]);
+  }
+
+  const std::vector<Vec3>& x_;
+  const std::vector<Triangle>& triangles_;
+  std::vector<TrianglePair> pairs_;
+  std::vector<Passage> passages_;
+};
+
+// Two pairs are joined when they have the passage of an edge through a triangle in common. Where only one pair has it,
+// the contour ends.
+std::vector<CrossingContour> Search::contours() {
+  std::vector<int> root(pairs_.size());
+  std::iota(root.begin(), root.end(), 0);
+  const auto root_of = [&](int pair) {
+    while (root[pair] != pair) pair = root[pair] = root[root[pair]];
+    return pair;
+  };
+  std::sort(passages_.begin(), passages_.end(), [&](const Passage& p, const Passage& q) {
+    return std::tuple(p.where(), pairs_[p.pair]) < std::tuple(q.where(), pairs_[q.pair]);
+  });
+  std::vector<char> ends(pairs_.size(), 0);
+  std::vector<const Passage*> passage_of(pairs_.size(), nullptr);
+  for (std::size_t k = 0; k < passages_.size();) {
+    const std::size_t first = k;
+    for (; k < passages_.size() && passages_[k].where() == passages_[first].where(); ++k) {
+      root[root_of(passages_[k].pair)] = root_of(passages_[first].pair);
+      if (!passage_of[passages_[k].pair]) passage_of[passages_[k].pair] = &passages_[k];
+    }
+    if (k == first + 1) ends[passages_[first].pair] = 1;
+  }
+
+  std::vector<int> order(pairs_.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int p, int q) { return pairs_[p] < pairs_[q]; });
+  std::vector<CrossingContour> contours;
+  std::vector<int> contour_of(pairs_.size(), -1);  // by root
+  for (const int pair : order) {
+    int& number = contour_of[root_of(pair)];
+    if (number < 0) {
+      number = static_cast<int>(contours.size());
+      contours.push_back({.pairs = {}, .closed = true, .place = place_of(*passage_of[pair])});
+    }
+    contours[number].pairs.push_back(pairs_[pair]);
+    if (ends[pair]) contours[number].closed = false;
+  }
+  std::stable_sort(contours.begin(), contours.end(),
+                   [](const auto& a, const auto& b) { return a.pairs.size() > b.pairs.size(); });
+  return contours;
+}
+
+}  // namespace
+
+std::vector<CrossingContour> crossing_contours(const std::vector<Vec3>& positions,
+                                               const std::vector<Triangle>& triangles) {
+  std::vector<Face> faces;
+  std::vector<int> triangle_of;  // by face
+  for (int k = 0; k < static_cast<int>(triangles.size()); ++k) {
+    const Triangle& t = triangles[k];
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    if (!std::all_of(t.begin(), t.end(), [&](int v) { return positions[v].allFinite(); })) continue;
+    faces.push_back({t, {-1, -1, -1}});
+    triangle_of.push_back(k);
+  }
+  if (faces.empty()) return {};
+  MovingBoxes boxes(faces, positions);
+  boxes.refit(faces, positions, positions);
+  Search search(positions, triangles);
+  boxes.pairs([&](int first, int second) {
+    search.look_at(triangle_of[first], triangle_of[second]);
+    return search.found() < most_crossing_pairs;
+  });
+  return search.contours();
+}
+
+int crossing_count(const std::vector<CrossingContour>& contours) {
+  std::size_t pairs = 0;
+  for (const CrossingContour& contour : contours) pairs += contour.pairs.size();
+  return static_cast<int>(pairs);
+}
+
+}  // namespace drape

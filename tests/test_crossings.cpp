@@ -1,0 +1,268 @@
+// Laws of triangles that pass through each other: as many as rational arithmetic finds, whatever is done to the mesh
+// that changes none; contours close or end; and what `drape check` says of them.
+#include <boost/multiprecision/cpp_int.hpp>
+#include <catch2/catch.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "mesh/base/predicates.h"
+#include "mesh/distance/triangle_crossings.h"
+#include "mesh/obj/obj.h"
+#include "mesh/triangles/generate.h"
+#include "tests/folder.h"
+#include "tests/shapes.h"
+#include "tests/tables.h"
+
+using namespace drape;
+using namespace drape::internal;
+using namespace drape::test;
+
+namespace drape {
+static std::ostream& operator<<(std::ostream& out, const TrianglePair& pair) {
+  return out << pair.first << " " << pair.second;
+}
+}  // namespace drape
+
+namespace {
+
+using Rational = boost::multiprecision::cpp_rational;
+using RationalPoint = std::array<Rational, 3>;
+
+RationalPoint exact(const Vec3& x) { return {Rational(x[0]), Rational(x[1]), Rational(x[2])}; }
+
+// (b - a) x (c - a) . (d - a)
+Rational volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const RationalPoint o = exact(a);
+  std::array<RationalPoint, 3> e = {exact(b), exact(c), exact(d)};
+  for (RationalPoint& x : e)
+    for (std::size_t k = 0; k < 3; ++k) x[k] -= o[k];
+  const auto& [u, v, w] = e;
+  return (u[1] * v[2] - u[2] * v[1]) * w[0] + (u[2] * v[0] - u[0] * v[2]) * w[1] +
+         (u[0] * v[1] - u[1] * v[0]) * w[2];
+}
+
+// Whether the edge pq passes through the triangle, by the point where it meets the plane and its three weights there.
+bool passes(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& t) {
+  const Rational at_p = volume(t[0], t[1], t[2], p), at_q = volume(t[0], t[1], t[2], q);
+  if (at_p.sign() * at_q.sign() >= 0) return false;
+  const Rational share = at_p / (at_p - at_q);
+  const RationalPoint from = exact(p), to = exact(q);
+  RationalPoint x;
+  for (std::size_t k = 0; k < 3; ++k) x[k] = from[k] + share * (to[k] - from[k]);
+  const std::array<RationalPoint, 3> c = {exact(t[0]), exact(t[1]), exact(t[2])};
+  for (std::size_t drop = 0; drop < 3;
+       ++drop) {  // inside of the triangle's shadow on every plane of two axes
+    const std::size_t u = (drop + 1) % 3, v = (drop + 2) % 3;
+    bool left = false, right = false;
+    for (std::size_t e = 0; e < 3; ++e) {
+      const RationalPoint &a = c[e], &b = c[(e + 1) % 3];
+      const Rational turn = (b[u] - a[u]) * (x[v] - a[v]) - (b[v] - a[v]) * (x[u] - a[u]);
+      left = left || turn > 0;
+      right = right || turn < 0;
+    }
+    if (left && right) return false;
+  }
+  return true;
+}
+
+std::set<TrianglePair> crossing_by_rationals(const std::vector<Vec3>& x,
+                                             const std::vector<Triangle>& triangles) {
+  std::set<TrianglePair> pairs;
+  for (int i = 0; i < static_cast<int>(triangles.size()); ++i)
+    for (int j = i + 1; j < static_cast<int>(triangles.size()); ++j) {
+      const Triangle &s = triangles[i], &t = triangles[j];
+      std::set<int> all(s.begin(), s.end());
+      all.insert(t.begin(), t.end());
+      if (all.size() < 6) continue;
+      for (std::size_t k = 0; k < 3; ++k)
+        if (passes(x[s[k]], x[s[(k + 1) % 3]], {x[t[0]], x[t[1]], x[t[2]]}) ||
+            passes(x[t[k]], x[t[(k + 1) % 3]], {x[s[0]], x[s[1]], x[s[2]]}))
+          pairs.insert({i, j});
+    }
+  return pairs;
+}
+
+std::set<TrianglePair> crossing(const std::vector<Vec3>& x, const std::vector<Triangle>& triangles) {
+  std::set<TrianglePair> pairs;
+  for (const CrossingContour& contour : crossing_contours(x, triangles))
+    for (const TrianglePair& pair : contour.pairs) CHECK(pairs.insert(pair).second);
+  return pairs;
+}
+
+// Two grids through each other, one of them turned.
+TriangleMesh two_sheets(double height, double turn) {
+  TriangleMesh both = grid(9, 9, 1, 1), other = grid(8, 8, 0.5, 0.5);
+  const int first = both.vertex_count();
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& x : both.positions) middle += x / first;
+  for (const Vec3& x : other.positions)
+    both.positions.push_back(middle + Vec3(0.0123, height, 0.0077) +
+                             rotation(turn, {1, 0.1, 0.2}) * (x - other.positions[27]));
+  for (const Triangle& t : other.triangles)
+    both.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  return both;
+}
+
+}  // namespace
+
+TEST_CASE("orient3d has the sign of rational arithmetic, also where doubles cannot tell", "[crossings]") {
+  Random random;
+  int undecided = 0;
+  for (int n = 0; n < 3000; ++n) {
+    const double scale = std::pow(10, random(-6, 6));
+    const Vec3 a = scale * random.point(1), b = scale * random.point(1), c = scale * random.point(1);
+    Vec3 d = a + random(-1, 2) * (b - a) + random(-1, 2) * (c - a);  // in the plane, but for rounding
+    if (n % 3 == 0) d[n % 2] = std::nextafter(d[n % 2], 1e9);
+    if (n % 5 == 0) d = n % 2 == 0 ? a : b;
+    if (n % 7 == 0) d += scale * random.point(1);
+    const int expected = volume(a, b, c, d).sign();
+    CHECK(orient3d(a, b, c, d) == expected);
+    CHECK(orient3d(b, a, c, d) == -expected);
+    CHECK(orient3d(d, c, b, a) == expected);
+    undecided += std::abs(expected) != 1;
+  }
+  CHECK(undecided >= 100);
+}
+
+TEST_CASE("the triangles that cross are those of rational arithmetic", "[crossings]") {
+  Random random;
+  int found = 0;
+  for (int n = 0; n < 60; ++n) {
+    std::vector<Vec3> x;
+    for (int v = 0; v < 24; ++v) {
+      x.push_back(random.point(1));
+      if (n % 2 == 1)  // on a coarse lattice: in planes, on edges, one upon the other
+        for (double& c : x.back()) c = std::round(2 * c) / 2;
+    }
+    std::vector<Triangle> triangles;
+    for (int t = 0; t < 14; ++t) triangles.push_back({random.below(24), random.below(24), random.below(24)});
+    const std::set<TrianglePair> expected = crossing_by_rationals(x, triangles);
+    CHECK(crossing(x, triangles) == expected);
+    found += static_cast<int>(expected.size());
+  }
+  CHECK(found > 100);
+  for (const double height : {0.0, 1e-9, 0.3}) {
+    const TriangleMesh mesh = two_sheets(height, 1.2);
+    const std::set<TrianglePair> expected = crossing_by_rationals(mesh.positions, mesh.triangles);
+    CHECK(crossing(mesh.positions, mesh.triangles) == expected);
+  }
+}
+
+TEST_CASE("crossings do not depend on where the mesh is, how large, or how its vertices are numbered",
+          "[crossings]") {
+  const TriangleMesh mesh = two_sheets(0, 1.2);
+  const std::set<TrianglePair> here = crossing(mesh.positions, mesh.triangles);
+  REQUIRE(here.size() > 10);
+  for (const double scale : {0x1p-20, 0x1p20}) {  // powers of two change no sign
+    std::vector<Vec3> x = mesh.positions;
+    for (Vec3& p : x) p *= scale;
+    CHECK(crossing(x, mesh.triangles) == here);
+  }
+  std::vector<Vec3> reversed(mesh.positions.rbegin(), mesh.positions.rend());
+  std::vector<Triangle> triangles = mesh.triangles;
+  for (Triangle& t : triangles) {
+    for (int& v : t) v = mesh.vertex_count() - 1 - v;
+    std::rotate(t.begin(), t.begin() + 1, t.end());
+  }
+  CHECK(crossing(reversed, triangles) == here);
+  for (std::vector<Vec3>* x : {&reversed})
+    for (Vec3& p : *x) p = -p;
+  CHECK(crossing(reversed, triangles) == here);
+}
+
+TEST_CASE("a mesh without crossings has none, folded and sewn ones among them", "[crossings]") {
+  CHECK(crossing_contours({}, {}).empty());
+  const TriangleMesh sphere = lat_long_sphere(12, 24, 0.3, Vec3(1, 2, 3));
+  CHECK(crossing_contours(sphere.positions, sphere.triangles).empty());
+  TriangleMesh sheet = grid(21, 21, 1, 1);
+  CHECK(crossing_contours(sheet.positions, sheet.triangles).empty());
+  TriangleMesh twice = sheet;  // one upon the other: they touch everywhere and cross nowhere
+  twice.positions.insert(twice.positions.end(), sheet.positions.begin(), sheet.positions.end());
+  for (const Triangle& t : sheet.triangles) twice.triangles.push_back({t[0] + 441, t[1] + 441, t[2] + 441});
+  CHECK(crossing_contours(twice.positions, twice.triangles).empty());
+}
+
+TEST_CASE("a contour is closed, or ends at a border", "[crossings]") {
+  // A ball through the middle of a sheet: a circle. Through its border: an arc. Two balls: two circles.
+  const auto with_balls = [](const std::vector<Vec3>& centres) {
+    TriangleMesh mesh = grid(31, 31, 1, 1);
+    Vec3 middle = Vec3::Zero();
+    for (const Vec3& x : mesh.positions) middle += x / mesh.vertex_count();
+    for (const Vec3& centre : centres) {
+      const TriangleMesh ball = lat_long_sphere(9, 17, 0.1, middle + centre);
+      const int first = mesh.vertex_count();
+      mesh.positions.insert(mesh.positions.end(), ball.positions.begin(), ball.positions.end());
+      for (const Triangle& t : ball.triangles)
+        mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    return crossing_contours(mesh.positions, mesh.triangles);
+  };
+  const auto circle = with_balls({{0.013, 0.007, 0.011}});
+  REQUIRE(circle.size() == 1);
+  CHECK(circle.front().closed);
+  CHECK(crossing_count(circle) > 17);
+  const auto arc = with_balls({{0.5, 0.007, 0.011}});
+  REQUIRE(arc.size() == 1);
+  CHECK_FALSE(arc.front().closed);
+  CHECK(crossing_count(arc) < crossing_count(circle));
+  const auto two = with_balls({{0.013, 0.007, 0.011}, {0.013, 0.007, 0.311}});
+  REQUIRE(two.size() == 2);
+  CHECK(two[0].closed);
+  CHECK(two[1].closed);
+  CHECK(two[0].pairs.size() >= two[1].pairs.size());
+}
+
+TEST_CASE("a triangle that is not at a finite place does not count", "[crossings]") {
+  TriangleMesh mesh = two_sheets(0, 1.2);
+  const std::set<TrianglePair> all = crossing(mesh.positions, mesh.triangles);
+  const int gone = mesh.triangles[all.begin()->first][0];
+  mesh.positions[gone].y() = std::numeric_limits<double>::infinity();
+  const std::set<TrianglePair> left = crossing(mesh.positions, mesh.triangles);
+  CHECK(left.size() < all.size());
+  for (const TrianglePair& pair : all) {
+    const auto has = [&](int t) {
+      return std::find(mesh.triangles[t].begin(), mesh.triangles[t].end(), gone) != mesh.triangles[t].end();
+    };
+    CHECK(left.contains(pair) == (!has(pair.first) && !has(pair.second)));
+  }
+}
+
+TEST_CASE("check tells the crossings of a mesh, of a scene and of a run", "[crossings]") {
+  const Folder folder;
+  const TriangleMesh one = grid(5, 5, 1, 1), two = two_sheets(0, 1.2);
+  write_obj(folder.path / "two.obj", two, two.positions);
+  write_obj(folder.path / "one.obj", one, one.positions);
+  CHECK(folder.drape("check one.obj").out.find("\ncrossings: none\n") != std::string::npos);
+  const int pairs = crossing_count(crossing_contours(two.positions, two.triangles));
+  const std::string told = std::to_string(pairs) + " pairs of triangles cross, in ";
+  const Outcome mesh = folder.drape("check two.obj");
+  CHECK(mesh.exit_code == 0);
+  CHECK(mesh.out.find("\ncrossings: " + told) != std::string::npos);
+  CHECK(mesh.out.find("  two with itself: ") != std::string::npos);
+
+  folder.write("scene.toml",
+               "[[cloth]]\nname = \"upper\"\nmesh = \"one.obj\"\nfabric = \"cotton-poplin\"\n"
+               "[[cloth]]\nname = \"lower\"\nmesh = \"one.obj\"\nfabric = \"cotton-poplin\"\n"
+               "rotate = { axis = [1, 0, 0.1], angle = \"30 deg\" }\ntranslate = [0.01, 0.02, 0.03]\n");
+  const Outcome scene = folder.drape("check scene.toml");
+  INFO(scene.out << scene.err);
+  CHECK(scene.exit_code == 0);
+  CHECK(scene.out.find("  upper with lower: ") != std::string::npos);
+
+  const Outcome run = folder.drape("drop two.obj --duration 0.08 --out o");
+  INFO(run.out << run.err);
+  CHECK(run.exit_code == 0);
+  const auto crossings = nlohmann::json::parse(content(folder.path / "o/run.json"))["crossings"];
+  const std::string at_start = std::to_string(crossings["start"].get<int>()),
+                    at_end = std::to_string(crossings["end"].get<int>());
+  CHECK(crossings["start"] >
+        10);  // the flat sheets are a little bent, so that they are not those of the file
+  CHECK(run.out.find(at_end + " pairs of triangles cross (" + at_start + " at the start)") !=
+        std::string::npos);
+  const Outcome after = folder.drape("check o");
+  INFO(after.out << after.err);
+  CHECK(after.exit_code == 0);
+  CHECK(after.out.find("crossings at the start: " + at_start + "\n") != std::string::npos);
+  CHECK(after.out.find("crossings at the end: " + at_end + " pairs") != std::string::npos);
+}
