@@ -259,7 +259,7 @@ bench() {
   [[ $# -eq 0 ]] || return 0
   build/release/drape_bench_contact
   build/release/drape_bench_fabric
-  build/release/drape_bench_motion
+  build/release/drape_bench_motion 32 100 200 400  # half an hour
   build/release/drape_bench_pattern
   build/release/drape_bench_solvers 32 100
 }
