@@ -302,8 +302,8 @@ pictures() {
   get_required python3-scipy
   say "making the motion of a body"
   "$python" data/meshes/make_motion.py || die "the motion could not be made, see above"
-  for scene in bias choi-ko-{100,200} dressed-turn ls-ball-{0,09} net noh-jung-{100,200} poncho poncho-sewn rotating-ball skirt-sewn \
-    soft-{bowl,sphere} tablecloth-pull tee; do
+  for scene in bias choi-ko-{100,200} dressed-turn layers ls-ball-{0,09} net noh-jung-{100,200} poncho poncho-sewn rotating-ball skirt-sewn \
+    soft-{bowl,sphere} tablecloth-pull tee towel; do
     say "running $scene into $out/$scene"
     build/release/drape simulate "data/scenes/$scene.toml" --out "$out/$scene" || die "$scene failed, see above"
   done
@@ -327,6 +327,8 @@ pictures() {
   draw dressed-turn 1100x420 15,8 1,41,59,last dressed-turn
   draw dropped-shirt 1000x360 -25,30 '' dropped/noh-jung dropped/woven
   draw dropped-dress 1000x460 -25,30 '' dropped-dress/noh-jung dropped-dress/woven
+  draw layers 1200x440 -25,14 4,9,16,last layers
+  draw towel 1200x400 -25,14 8,14,20,last towel
   draw bias 900x480 -35,12 last bias
   draw strain 640x480 -25,14 last poncho --color strain
 }

@@ -32,6 +32,7 @@ void Constraints::pin_along(const std::vector<int>& particles, const Motion& mot
 void Constraints::merge(const std::vector<int>& particle_of) {
   pins_.renumber(particle_of);
   faces_.renumber(particle_of);
+  self_.renumber(particle_of);
   step_.held.clear();
   step_.x_end.resize(0);
 }
@@ -49,7 +50,7 @@ void Constraints::prepare(int particles, const std::vector<double>& masses) {
 }
 
 ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double t,
-                                    double h, Foresight foresight) {
+                                    double h, Foresight foresight, double kappa) {
   prepare(static_cast<int>(x.size() / 3), masses);
   step_.t = t;
   step_.h = h;
@@ -58,6 +59,7 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
   if (x.size() != step_.x_end.size() || x != step_.x_end) {  // the state was changed from outside
     contacts_.look_again();
     faces_.look_again();
+    self_.look_again();
   }
   step_.x = x;
   step_.v = v;
@@ -74,6 +76,7 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
       if (foresight != Foresight::ahead) faces_.limit_dampers(masses, h);
     }
   }
+  self_.begin_step(step_, options_.recovery_speed * h, kappa);
   return ContactStep(*this);
 }
 

@@ -9,6 +9,7 @@
 #include "constraints/particle_contacts.h"
 #include "constraints/pin_set.h"
 #include "constraints/pins.h"
+#include "constraints/self_contact.h"
 
 namespace drape {
 
@@ -40,6 +41,12 @@ class Constraints {
   // solver/forces/face_contact_force.h.
   void add_faces(const std::vector<ClothFace>& faces) { faces_.add(faces); }
   const FaceContacts& faces() const { return faces_; }
+  // Adds triangles of the cloth that meet each other. They are pushed by a force, which the System needs, too:
+  // solver/forces/self_contact_force.h.
+  void add_self_faces(const std::vector<SelfFace>& faces) { self_.add(faces); }
+  // These particles may pass each other, in place of those named before.
+  void let_pass(const std::vector<int>& particles) { self_.let_pass(particles); }
+  const SelfContacts& self() const { return self_; }
 
   const std::vector<MovingBody>& bodies() const { return bodies_; }
   const std::vector<int>& pinned() const { return pins_.pinned(); }  // ascending
@@ -48,9 +55,10 @@ class Constraints {
 
   double work() const { return step_.work; }  // of moving bodies and pins in the last step [J]
   // Begins the step of length h [s] from x [m] and v [m/s] at time t [s], and finds what touches.
-  // masses [kg].
+  // masses [kg]. kappa [m/h^2]: how stiff the springs between cloth and cloth are (constraints/self_contact.h).
   [[nodiscard]] ContactStep begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses,
-                                       double t, double h, Foresight foresight = Foresight::ahead);
+                                       double t, double h, Foresight foresight = Foresight::ahead,
+                                       double kappa = implicit_kappa);
 
   // How deep each particle is inside a body [m]; 0 where it is outside. Meant for the start and the end of a
   // run.
@@ -65,6 +73,7 @@ class Constraints {
   PinSet pins_;
   ParticleContacts contacts_;
   FaceContacts faces_;
+  SelfContacts self_;
   StepMotion step_;  // the step under way, and what is known from the last one
   VecX x_new_;       // scratch
 };

@@ -82,9 +82,12 @@ void ContactStep::receive_faces(const VecX& v) {
 
 ContactImbalance ContactStep::imbalance(const VecX& v, const VecX& r, const VecX& x_new) {
   const StepMotion& step = constraints_->step_;
+  ContactImbalance found;
+  if (step.foresight == Foresight::ahead) found.wrong = constraints_->self_.imbalance(step.h, x_new);
+  if (!bodies()) return found;
   ParticleContacts& contacts = constraints_->contacts_;
   contacts.look_on_path(constraints_->bodies_, step, x_new);
-  ContactImbalance found{.wrong = contacts.imbalance(constraints_->bodies_, step, v, r, x_new)};
+  found.wrong = std::hypot(found.wrong, contacts.imbalance(constraints_->bodies_, step, v, r, x_new));
   if (step.foresight == Foresight::ahead)
     found.wrong = std::hypot(found.wrong, constraints_->faces_.imbalance(step.h, x_new));
   for (const Contact& c : touching())
@@ -93,13 +96,16 @@ ContactImbalance ContactStep::imbalance(const VecX& v, const VecX& r, const VecX
   return found;
 }
 
-ContactChange ContactStep::react(const VecX& v, const VecX& r, const VecX& x_new, double noise) {
+ContactChange ContactStep::react(const VecX& v, const VecX& r, const VecX& x_new, double noise,
+                                 double curvature) {
   const StepMotion& step = constraints_->step_;
   ParticleContacts& contacts = constraints_->contacts_;
   ContactChange change;
+  if (step.foresight == Foresight::ahead) change.faces = constraints_->self_.react(v, r, x_new, curvature);
+  if (!bodies()) return change;
   change.grip = contacts.react(constraints_->bodies_, step, v, r, x_new, noise);
   change.caught = contacts.catch_on_path(constraints_->bodies_, step, r, x_new);
-  if (step.foresight == Foresight::ahead) change.faces = constraints_->faces_.react(x_new, v);
+  if (step.foresight == Foresight::ahead) change.faces = constraints_->faces_.react(x_new, v) || change.faces;
   return change;
 }
 
@@ -158,13 +164,20 @@ void ContactStep::settle_faces(const VecX& x_new, const VecX& v_new) {
 
 ContactReport ContactStep::finish(VecX& x_new, VecX& v_new) {
   ContactReport report;
-  if (!bodies()) return report;
+  if (!meets_anything()) return report;
   StepMotion& step = constraints_->step_;
-  constraints_->contacts_.guard(constraints_->bodies_, step, x_new, v_new, report);
-  constraints_->contacts_.commit();
-  constraints_->faces_.end_step(constraints_->bodies_, step.x, x_new);
-  for (MovingBody& body : constraints_->bodies_)
-    if (!body.end_step()) report.converged = false;
+  if (bodies()) constraints_->contacts_.guard(constraints_->bodies_, step, x_new, v_new, report);
+  report.self_guarded = constraints_->self_.guard(step, x_new, v_new);
+  constraints_->self_.end_step(step, x_new);
+  report.self_contacts = constraints_->self_.pushing();
+  if (bodies()) {
+    if (report.self_guarded > 0)
+      constraints_->contacts_.look_again();  // these went otherwise than bodies were told
+    constraints_->contacts_.commit();
+    constraints_->faces_.end_step(constraints_->bodies_, step.x, x_new);
+    for (MovingBody& body : constraints_->bodies_)
+      if (!body.end_step()) report.converged = false;
+  }
   step.last_h = step.h;
   step.x_end = x_new;
   report.contacts = static_cast<int>(constraints_->contacts().size());

@@ -25,7 +25,8 @@ struct ContactChange {
   bool grip = false;    // a contact was let go, or it changed between sticking and sliding
   bool caught = false;  // particles that were free touch a body
   bool faces = false;   // other faces push, so a force has changed
-  bool any() const { return grip || caught || faces; }
+  bool met = false;     // cloth meets cloth where no spring was, so a force has other stencils
+  bool any() const { return grip || caught || faces || met; }
 };
 
 // How far the contacts are from agreeing with a solve.
@@ -43,7 +44,8 @@ struct ContactImbalance {
 class ContactStep {
  public:
   bool bodies() const { return !constraints_->bodies_.empty(); }
-  bool holds_anything() const { return bodies() || !moving_pins().empty(); }
+  bool meets_anything() const { return bodies() || constraints_->self_.any(); }
+  bool holds_anything() const { return meets_anything() || !moving_pins().empty(); }
 
   void filter(const VecX& v, Filter& filter) const;  // S and z at the velocity v
   // The dampers and impulses of the contacts that slide.
@@ -62,7 +64,15 @@ class ContactStep {
   ContactImbalance imbalance(const VecX& v, const VecX& r, const VecX& x_new);
   // Changes the contacts to what the v, r and x_new of the last call of imbalance() ask for. An impulse counts
   // as round-off when it changes the velocity of its particle by less than `noise` [m/s].
-  ContactChange react(const VecX& v, const VecX& r, const VecX& x_new, double noise);
+  // curvature: d . A d [J] of the way d from accepted_velocity() to v; 0: v is taken whole.
+  ContactChange react(const VecX& v, const VecX& r, const VecX& x_new, double noise, double curvature = 0);
+  // The velocity that the contacts of cloth with cloth were made for last in this step [m/s]; null when there is none yet.
+  const VecX* accepted_velocity() const { return constraints_->self_.accepted_velocity(); }
+  // Finds where cloth would pass through cloth on the way to x_new, and no spring keeps it off yet.
+  ContactChange meet(const VecX& x_new) {
+    if (constraints_->step_.foresight != Foresight::ahead) return {};
+    return {.met = constraints_->self_.meet(constraints_->step_, x_new)};
+  }
   // Ends the rounds: the contacts stay as the solve with this v and r had them.
   void settle(const VecX& v, const VecX& r) {
     constraints_->contacts_.settle(constraints_->bodies_, constraints_->step_, v, r);

@@ -33,6 +33,8 @@ struct ContactReport {
   int guarded = 0;        // particles that were stopped at a surface after the solve, outside the equations
   bool converged = true;  // the motion of bodies that react agrees with the impulses on them
   double deepest = 0;     // how deep the deepest particle was inside a body when the step began [m]
+  int self_contacts = 0;  // pairs of cloth and cloth that push each other
+  int self_guarded = 0;   // particles whose way was shortened so that no cloth passes through cloth
 };
 
 // An impulse of a body on a particle, see constraints/response.h.

@@ -38,6 +38,7 @@ const Part gallery[] = {
     {"choi-ko-200", 0.5, 1},
     {"dressed-turn", 1.7, 4},     // the first step and half of the turn
     {"flag", 1.1, 1},             // swings against the pole
+    {"layers", 0.5, 2},           // all three have come to each other
     {"ls-ball-0", 0.7, 10},       // slides over the ball and comes to the floor
     {"ls-ball-09", 0.9, 10},
     {"net", 0.9, 1},              // the ball comes to it after 0.32 s
@@ -56,6 +57,7 @@ const Part gallery[] = {
     {"tablecloth", 0.6, 1},       // hangs over the rims
     {"tablecloth-pull", 1.6, 1},  // and is pulled from 1 s on
     {"tee", 0.3, 2},
+    {"towel", 0.5, 2},            // falls into folds
 };
 // clang-format on
 

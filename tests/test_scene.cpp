@@ -206,6 +206,13 @@ TEST_CASE("a woven cloth is read, and refused where its directions are not known
   CHECK(w.rest_angle == 0.4);
   CHECK(read(woven + "rest_angle = \"mesh\"\n").cloths[0].fabric.weave.rest_angle == 1);
   CHECK(read(woven + "rest_angle = \"flat\"\n").cloths[0].fabric.weave.rest_angle == 0);
+  CHECK_FALSE(read(cloth).cloths[0].self_contact);
+  const ClothEntry layer =
+      read(cloth + "self_contact = true\nthickness = \"2 mm\"\nfriction = 0.4\n").cloths[0];
+  CHECK(layer.self_contact);
+  CHECK(layer.self.thickness == Approx(2e-3));
+  CHECK(layer.self.friction == 0.4);
+  CHECK_FALSE(read(cloth + "self_contact = false\nthickness = \"2 mm\"\n").cloths[0].self_contact);
   CHECK_FALSE(read(woven).cloths[0].imperfection);
   CHECK(*read(cloth + "imperfection = \"2 um\"\n").cloths[0].imperfection == Approx(2e-6));
   CHECK(w.stretch_time == Approx(1e-3));
@@ -223,6 +230,9 @@ TEST_CASE("a woven cloth is read, and refused where its directions are not known
       {woven + "rest_angle = 1.5\n", "scene.toml:4:", "from 0 (flat) to 1"},
       {woven + "rest_angle = 1\n[[cloth.seams]]\n", "scene.toml:4:", "with seams"},
       {woven + "imperfection = -1\n", "scene.toml:4:", "imperfection"},
+      {cloth + "thickness = \"1 mm\"\n", "scene.toml:3:", "goes with self_contact = true"},
+      {cloth + "self_contact = true\nthickness = 0\n", "scene.toml:4:", "thickness"},
+      {cloth + "self_contact = true\nfriction = -1\n", "scene.toml:4:", "friction"},
       {cloth + "viscosity = { bend = 1 }\n", "scene.toml:3:", "goes with model = \"woven\""},
       {woven + "warp = [0, 0, 0]\n", "scene.toml:4:", "a direction is not [0, 0, 0]"},
       {woven + "stretch = { warp = 500, weft = 300 }\n", "scene.toml:3:", "give warp = [x, y, z]"},

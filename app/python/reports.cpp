@@ -59,6 +59,10 @@ void add_reports_of_steps(py::module_& m) {
       .def_readonly("rescues", &StepReport::rescues,
                     "Newton iterations cut short, so that energy is not made")
       .def_readonly("guarded", &StepReport::guarded, "particles stopped at a surface outside the equations")
+      .def_readonly("self_contacts", &StepReport::self_contacts,
+                    "pairs of cloth and cloth that push each other")
+      .def_readonly("self_guarded", &StepReport::self_guarded,
+                    "particles whose way was shortened so that no cloth passes through cloth")
       .def_readonly("residual", &StepReport::residual,
                     "relative, the worst of the solves that the step ended with")
       .def_readonly("converged", &StepReport::converged,

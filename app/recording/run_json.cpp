@@ -123,6 +123,8 @@ std::string run_json(const RunRecord& record) {
       {"area_kept", record.strains.area_kept},
       {"max_penetration", record.max_penetration},
       {"contact_residual", record.contact_residual},
+      {"self_contacts", Json::Members{{"end", record.self_contacts}, {"max", record.self_contacts_max}}},
+      {"self_guarded", record.self_guarded},
       {"crossings", Json::Members{{"start", record.crossings_at_start}, {"end", record.crossings}}},
       {"largest_speed", record.largest_speed},
       {"largest_edge_strain", record.largest_edge_strain},

@@ -173,6 +173,9 @@ void Run::record_step(const StepRow& row) {
   record_.linear_iterations.push_back(report.linear_iterations);
   record_.linear_solves.push_back(report.linear_solves);
   record_.multigrid_solves += report.multigrid_solves;
+  record_.self_contacts = report.self_contacts;
+  record_.self_contacts_max = std::max(record_.self_contacts_max, report.self_contacts);
+  record_.self_guarded += report.self_guarded;
   record_.inner_steps.push_back(report.inner_steps);
   record_.inner_rejected += report.inner_rejected;
   record_.assemble_ms += report.assemble_ms;

@@ -19,9 +19,9 @@ std::string hints(const RunRecord& record, const Output& output) {
             " % of its area: edges do not push in the models of springs; model = \"woven\" keeps it\n";
   if (record.crossings > 0)
     text += "hint: " + counted(record.crossings, "pair") + " of triangles cross (" +
-            std::to_string(record.crossings_at_start) +
-            " at the start), because cloth does not meet cloth: drape check " + output.folder().string() +
-            " says where\n";
+            std::to_string(record.crossings_at_start) + " at the start): drape check " +
+            output.folder().string() +
+            " says where; a cloth with self_contact = true does not pass through itself and others\n";
   if (record.max_penetration > 1e-4)
     text +=
         "hint: a vertex was inside a body by up to " + rounded(1000 * record.max_penetration, 2) + " mm\n";

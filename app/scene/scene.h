@@ -13,6 +13,7 @@
 #include "app/scene/laboratory.h"
 #include "constraints/constraints.h"
 #include "mesh/pattern/pattern.h"
+#include "solver/assembly/cloth.h"
 #include "solver/forces/air.h"
 #include "solver/forces/fabric.h"
 #include "solver/forces/soft.h"
@@ -79,6 +80,8 @@ struct ClothEntry {
   std::vector<GroupWarp> group_warps;  // the same of groups of the mesh, instead of that
   bool warp_is_down = false;           // the direction is chosen when the mesh is loaded: down the cloth
   std::optional<double> imperfection;  // m, how far the start is off the mesh; unset: by the model
+  bool self_contact = false;           // whether the cloth meets itself and others
+  SelfContactOptions self;             // how, where it does
   std::string fabric_name;             // empty when the scene names none
   Fabric fabric;
   FabricRecord fabric_record;

@@ -8,6 +8,7 @@
 #include "app/scene/motion_read.h"
 #include "app/scene/obstacle_read.h"
 #include "app/scene/scene.h"
+#include "app/scene/self_contact_read.h"
 #include "app/scene/sewing_read.h"
 #include "app/scene/soft_read.h"
 #include "app/scene/warp_read.h"
@@ -316,6 +317,7 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
       {"how far the start is off its own surface, in gentle waves: a cloth that is exactly flat and is "
        "pushed in its plane would stay in it",
        "1 um with model = \"woven\", else 0"});
+  read_self_contact(table, cloth);
   read_fabric(table, cloth.fabric, cloth.fabric_record);
   cloth.has_own_damping = table.has("damping");
   read_rest_angle(table, cloth);

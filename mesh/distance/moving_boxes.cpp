@@ -87,7 +87,8 @@ void MovingBoxes::refit(const std::vector<Face>& faces, const std::vector<Vec3>&
     }
 }
 
-bool MovingBoxes::overlap(const Node& node, int child, const Node& other, int other_child) const {
+bool MovingBoxes::overlap(const Node& node, int child, const Node& other, int other_child,
+                          float margin) const {
   float enter = 0, leave = 1;  // the s at which they overlap along all axes looked at so far
   const auto keep = [&](float at_0, float at_1) {
     if (at_0 < 0 && at_1 < 0) leave = -1;
@@ -95,10 +96,10 @@ bool MovingBoxes::overlap(const Node& node, int child, const Node& other, int ot
     if (at_0 >= 0 && at_1 < 0) leave = std::min(leave, at_0 / (at_0 - at_1));
   };
   for (int k = 0; k < 3; ++k) {
-    keep(node.upper[0][k][child] - other.lower[0][k][other_child] + slack_,
-         node.upper[1][k][child] - other.lower[1][k][other_child] + slack_);
-    keep(other.upper[0][k][other_child] - node.lower[0][k][child] + slack_,
-         other.upper[1][k][other_child] - node.lower[1][k][child] + slack_);
+    keep(node.upper[0][k][child] - other.lower[0][k][other_child] + margin,
+         node.upper[1][k][child] - other.lower[1][k][other_child] + margin);
+    keep(other.upper[0][k][other_child] - node.lower[0][k][child] + margin,
+         other.upper[1][k][other_child] - node.lower[1][k][child] + margin);
   }
   // Rounding moves both ends of the span by a few parts in ten millions.
   return enter <= leave + 1e-5f;

@@ -39,11 +39,11 @@ class MovingBoxes {
   template <class Ask>
   void along(const Vec3& x0, const Vec3& x1, double from, const Ask& ask, double beside = 0) const;
 
-  // Calls ask(face, other) once for every two faces that can touch at some s: they lie in leaves whose boxes
-  // overlap at a common s. ask returns whether to go on.
+  // Calls ask(face, other) once for every two faces that can come within `margin` [m] of each other at some s: they
+  // lie in leaves whose boxes come as near along each axis at a common s. ask returns whether to go on.
   template <class Ask>
-  void pairs(const Ask& ask) const {
-    if (!nodes_.empty()) pairs_within(0, ask);
+  void pairs(const Ask& ask, double margin = 0) const {
+    if (!nodes_.empty()) pairs_within(0, static_cast<float>(margin * (1 + 1e-6)) + slack_, ask);
   }
 
  private:
@@ -60,10 +60,10 @@ class MovingBoxes {
   static constexpr int deepest = 64;    // most entries of a search's stack: three per level
 
   template <class Ask>
-  bool pairs_within(int node, const Ask& ask) const;
+  bool pairs_within(int node, float margin, const Ask& ask) const;
   template <class Ask>
-  bool pairs_between(int node, int child, int other, int other_child, const Ask& ask) const;
-  bool overlap(const Node& node, int child, const Node& other, int other_child) const;
+  bool pairs_between(int node, int child, int other, int other_child, float margin, const Ask& ask) const;
+  bool overlap(const Node& node, int child, const Node& other, int other_child, float margin) const;
 
   int grow(std::vector<std::pair<Vec3, int>>& middles, int begin, int end);
   void fit_leaf(Node& node, int child, const std::vector<Face>& faces, const std::vector<Vec3>& start,
@@ -143,24 +143,25 @@ void MovingBoxes::along(const Vec3& x0, const Vec3& x1, double from, const Ask& 
 }
 
 template <class Ask>
-bool MovingBoxes::pairs_within(int node, const Ask& ask) const {
+bool MovingBoxes::pairs_within(int node, float margin, const Ask& ask) const {
   for (int child = 0; child < 4; ++child) {
     const int first = nodes_[node].first[child], count = nodes_[node].count[child];
-    if (count < 0 && !pairs_within(first, ask)) return false;
+    if (count < 0 && !pairs_within(first, margin, ask)) return false;
     for (int i = first; i < first + count; ++i)
       for (int k = i + 1; k < first + count; ++k)
         if (!ask(order_[i], order_[k])) return false;
     for (int other = child + 1; other < 4; ++other)
-      if (!pairs_between(node, child, node, other, ask)) return false;
+      if (!pairs_between(node, child, node, other, margin, ask)) return false;
   }
   return true;
 }
 
 template <class Ask>
-bool MovingBoxes::pairs_between(int node, int child, int other, int other_child, const Ask& ask) const {
+bool MovingBoxes::pairs_between(int node, int child, int other, int other_child, float margin,
+                                const Ask& ask) const {
   const Node &a = nodes_[node], &b = nodes_[other];
   const int count = a.count[child], other_count = b.count[other_child];
-  if (count == 0 || other_count == 0 || !overlap(a, child, b, other_child)) return true;
+  if (count == 0 || other_count == 0 || !overlap(a, child, b, other_child, margin)) return true;
   const int first = a.first[child], second = b.first[other_child];
   if (count > 0 && other_count > 0) {
     for (int i = first; i < first + count; ++i)
@@ -171,7 +172,7 @@ bool MovingBoxes::pairs_between(int node, int child, int other, int other_child,
   for (int i = 0; i < (count < 0 ? 4 : 1); ++i)
     for (int k = 0; k < (other_count < 0 ? 4 : 1); ++k)
       if (!pairs_between(count < 0 ? first : node, count < 0 ? i : child, other_count < 0 ? second : other,
-                         other_count < 0 ? k : other_child, ask))
+                         other_count < 0 ? k : other_child, margin, ask))
         return false;
   return true;
 }

@@ -9,11 +9,13 @@
 #include "mesh/base/words.h"
 #include "mesh/lattice/solid.h"
 #include "mesh/obj/obj_groups.h"
+#include "mesh/triangles/extent.h"
 #include "mesh/triangles/topology.h"
 #include "solver/assembly/imperfection.h"
 #include "solver/forces/choi_ko.h"
 #include "solver/forces/face_contact_force.h"
 #include "solver/forces/noh_jung.h"
+#include "solver/forces/self_contact_force.h"
 #include "solver/forces/woven.h"
 
 namespace drape {
@@ -77,6 +79,16 @@ void check_rest(const Cloth& cloth) {
   throw InputError(cloth.name + ": the rest shape has " + std::to_string(cloth.rest.triangles.size()) +
                    " triangles and the mesh " + std::to_string(cloth.mesh.triangles.size()) +
                    "; triangle k of the one is triangle k of the other");
+}
+
+void check_self_contact(const Cloth& cloth, const SelfContactOptions& options) {
+  const double size = box_of(cloth.mesh.positions).diagonal().norm();
+  if (!(options.thickness > 0) || !(options.thickness < size))
+    throw InputError(cloth.name + ": thickness = " + std::to_string(options.thickness) +
+                     " m; expected more than 0 and less than the cloth's own size");
+  if (!(options.friction >= 0) || !std::isfinite(options.friction))
+    throw InputError(cloth.name + ": friction = " + std::to_string(options.friction) +
+                     ": it is finite and not negative");
 }
 
 double imperfection_of(const Cloth& cloth, const std::optional<double>& given) {
@@ -179,6 +191,13 @@ Cloth& Assembly::add(ClothPart part) {
   for (const Triangle& t : cloth.mesh.triangles)
     faces_.push_back({{first + t[0], first + t[1], first + t[2]},
                       cloth.fabric.stretch_spring.value_or(mean_stretch(cloth.fabric))});
+  if (part.self_contact) {
+    check_self_contact(cloth, *part.self_contact);
+    for (const Triangle& t : cloth.mesh.triangles)
+      self_.push_back({{first + t[0], first + t[1], first + t[2]},
+                       part.self_contact->thickness,
+                       part.self_contact->friction});
+  }
   const std::vector<Vec3> positions = start_of(cloth);
   return take(std::move(cloth), positions, masses);
 }
@@ -255,12 +274,28 @@ void Assembly::make_system(std::vector<double> masses, Forces forces) {
   system->add(Gravity{gravity_});
   system->add(std::move(forces));
   if (!constraints->faces().all().empty()) system->add(face_contact_force(*constraints));
+  if (constraints->self().any()) {
+    let_stitches_pass();
+    system->add(self_contact_force(*constraints));
+  }
+}
+
+// What is being sewn together has to come together.
+void Assembly::let_stitches_pass() {
+  std::vector<int> stitched;
+  for (const Cloth& cloth : cloths)
+    for (const Cloth::Stitched& open : cloth.seams)
+      for (const auto& [a, b] : open.seam.pairs)
+        for (int vertex : {a, b}) stitched.push_back(cloth.embedding.particle(vertex));
+  constraints->let_pass(stitched);
 }
 
 void Assembly::use(MakeIntegrator make) {
   if (!system) {
     if (!constraints->bodies().empty()) constraints->add_faces(faces_);
     faces_ = {};
+    if (!self_.empty()) constraints->add_self_faces(self_);
+    self_ = {};
     make_system(std::exchange(masses_, {}), std::exchange(forces_, {}));
   }
   make_integrator = std::move(make);

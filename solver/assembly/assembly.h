@@ -67,6 +67,7 @@ struct Assembly {
   void connect(Cloth& cloth, Forces& forces) const;
   void make_system(std::vector<double> masses, Forces forces);
   bool merge_closed_seams();
+  void let_stitches_pass();
   State merged_state(const std::vector<double>& masses, const std::vector<int>& number) const;
 
   Vec3 gravity_;
@@ -75,6 +76,7 @@ struct Assembly {
   std::vector<double> masses_;    // kg
   Forces forces_;                 // of all parts
   std::vector<ClothFace> faces_;  // of all parts
+  std::vector<SelfFace> self_;    // of the cloths that meet cloth
 };
 
 }  // namespace drape

@@ -28,6 +28,12 @@ enum class ClothModel {
   woven      // membrane and plate, for any triangle mesh (solver/forces/woven.h)
 };
 
+// How a cloth meets itself and others that have this (constraints/self_contact.h).
+struct SelfContactOptions {
+  double thickness = 1e-3;  // m: two layers rest at the mean of their thicknesses
+  double friction = 0.3;    // mu: between two cloths the root of the product of both
+};
+
 struct ClothPart {
   std::string name = "cloth";             // used in messages
   TriangleMesh mesh;                      // as the cloth starts
@@ -40,6 +46,7 @@ struct ClothPart {
   // cloth, 0 of the others.
   std::optional<double> imperfection = {};
   std::vector<SeamPlan> seams = {};
+  std::optional<SelfContactOptions> self_contact = {};  // unset: the cloth passes through cloth
   std::optional<MeshReport> report = {};  // what examine() says of the mesh; unset: examine() is called
 };
 

@@ -48,7 +48,7 @@ class Bdf::ContactSolve {
         contacts_(contacts),
         report_(report),
         wanted_(bdf.options_.tolerance),
-        tolerance_(contacts.bodies() ? std::max(wanted_, 0.3 * std::sqrt(wanted_)) : wanted_) {
+        tolerance_(contacts.meets_anything() ? std::max(wanted_, 0.3 * std::sqrt(wanted_)) : wanted_) {
     for (int i = 0; i < bdf.system_.particles(); ++i)
       contacts.set_inertia(i, bdf.A_.inertia(i) / bdf.k().scale[i]);
   }
@@ -73,7 +73,11 @@ class Bdf::ContactSolve {
     bdf_.end_.v = bdf_.p_.v + bdf_.dv_;
     bdf_.end_.x = bdf_.k().x_bar + bdf_.k().c * bdf_.end_.v;
     const double residual = bdf_.linear_.residual_impulse;
-    return {bdf_.end_.v, bdf_.end_.x, bdf_.r_, 2 * residual, bdf_.merit_.speed_noise(residual), reference()};
+    ContactTrial trial{bdf_.end_.v, bdf_.end_.x, bdf_.r_, 2 * residual, bdf_.merit_.speed_noise(residual),
+                       reference()};
+    if (const VecX* const from = contacts_.accepted_velocity())
+      trial.curvature = bdf_.A_.curvature(trial.v, *from);
+    return trial;
   }
 
   bool worth_settling() {
@@ -94,7 +98,8 @@ class Bdf::ContactSolve {
 
   void changed(const ContactChange& change) {
     if (change.caught || change.faces) bdf_.history_.restart_touching(contacts_);
-    if (change.faces || (change.caught && bdf_.k().order_2())) linearise();
+    if (change.met) bdf_.system_.find_contacts({state_.time, bdf_.k().h, state_.x, state_.v, bdf_.k().h});
+    if (change.faces || change.met || (change.caught && bdf_.k().order_2())) linearise();
   }
 
   void bodies_moved() {

@@ -16,13 +16,18 @@ namespace drape::internal {
 
 // What a solve within the contacts gave; the loop reads it, the solver owns it.
 struct ContactTrial {
-  const VecX& v;       // m/s, at the end of the step
-  const VecX& x;       // the motion that v makes [m]
-  const VecX& r;       // impulses with which the constraints held the particles [N s]
-  double noise;        // an impulse on a body below this may be round-off of the solve [N s]
-  double speed_noise;  // a change of a particle's velocity below this may be round-off of the solve [m/s]
-  double reference;    // the impulse of the weight, or a larger one that acts [N s]
+  const VecX& v;         // m/s, at the end of the step
+  const VecX& x;         // the motion that v makes [m]
+  const VecX& r;         // impulses with which the constraints held the particles [N s]
+  double noise;          // an impulse on a body below this may be round-off of the solve [N s]
+  double speed_noise;    // a change of a particle's velocity below this may be round-off of the solve [m/s]
+  double reference;      // the impulse of the weight, or a larger one that acts [N s]
+  double curvature = 0;  // d . A d of the way d from contacts.accepted_velocity() to v [J]
 };
+
+// How often a step is solved again because cloth would pass through cloth where no spring was. What passes in spite
+// of them is stopped by the guard.
+inline constexpr int max_meetings = 3;
 
 // An Attempt offers
 //   bool solve()                     solves within the contacts as they are; false: it failed, and so does
@@ -43,18 +48,20 @@ template <class Attempt>
 bool settle_contacts(ContactStep& contacts, const StepOptions& options, Attempt& attempt, StepReport& report,
                      double& imbalance) {
   imbalance = 0;
+  int meetings = 0;
   for (int round = 0;; ++round) {
     if (!attempt.solve()) return false;
     if (!contacts.holds_anything()) return true;
     const Stopwatch watch(report.collide_ms);
     const ContactTrial trial = attempt.trial();
     contacts.receive(trial.v, trial.r);
-    if (!contacts.bodies() || !attempt.worth_settling()) return true;
+    if (!contacts.meets_anything() || !attempt.worth_settling()) return true;
     attempt.release();
     const ContactImbalance found = contacts.imbalance(trial.v, trial.r, trial.x);
     imbalance = found.relative_to(trial.reference);
     if (imbalance > contact_tolerance(options) && round < options.max_contact_solves) {
-      if (const ContactChange change = contacts.react(trial.v, trial.r, trial.x, trial.speed_noise);
+      if (const ContactChange change =
+              contacts.react(trial.v, trial.r, trial.x, trial.speed_noise, trial.curvature);
           change.any()) {
         attempt.refine(imbalance);
         attempt.changed(change);
@@ -62,6 +69,13 @@ bool settle_contacts(ContactStep& contacts, const StepOptions& options, Attempt&
       }
     }
     if (attempt.refine(0)) continue;
+    if (meetings < max_meetings) {
+      if (const ContactChange change = contacts.meet(trial.x); change.any()) {
+        ++meetings;
+        attempt.changed(change);
+        continue;
+      }
+    }
     if (!contacts.move_bodies(trial.noise)) {
       contacts.settle(trial.v, trial.r);
       return true;

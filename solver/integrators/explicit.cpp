@@ -29,7 +29,10 @@ const std::vector<Tableau>& tableaux() {
 
 Explicit::Explicit(const Tableau& tableau, System& system, Constraints& constraints,
                    const StepOptions& options, ContactMode contact)
-    : tableau_(tableau), system_(system), motion_(system, constraints, contact), options_(options) {}
+    : tableau_(tableau),
+      system_(system),
+      motion_(system, constraints, contact, explicit_kappa),
+      options_(options) {}
 
 StepReport Explicit::advance(State& state, double h) {
   check_step(system_, state, h);

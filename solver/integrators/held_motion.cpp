@@ -13,9 +13,9 @@ using namespace internal;
 
 void HeldMotion::begin(const State& state, double h, StepReport& report) {
   const Stopwatch watch(report.collide_ms);
-  contacts_ =
-      constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h,
-                              contact_ == ContactMode::constraint ? Foresight::here : Foresight::none);
+  contacts_ = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h,
+                                      contact_ == ContactMode::constraint ? Foresight::here : Foresight::none,
+                                      kappa_);
   system_.begin_step({state.time, h, state.x, state.v, 0.5 * h});
   contacts_->filter(state.v, held_);
   pull_.setZero(state.x.size());
@@ -110,8 +110,8 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
                         .force = {}};
       return false;
     }
-    end_step(*contacts_, x_new_, v_new_, report);
   }
+  end_step(*contacts_, x_new_, v_new_, report);
   system_.end_step(x_new_);
   state.x = x_new_;
   state.v = v_new_;

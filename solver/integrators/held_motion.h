@@ -23,8 +23,10 @@ namespace drape {
 
 class HeldMotion {
  public:
-  HeldMotion(System& system, Constraints& constraints, ContactMode contact = ContactMode::constraint)
-      : system_(system), constraints_(constraints), contact_(contact) {}
+  // kappa: see constraints/self_contact.h.
+  HeldMotion(System& system, Constraints& constraints, ContactMode contact = ContactMode::constraint,
+             double kappa = implicit_kappa)
+      : system_(system), constraints_(constraints), contact_(contact), kappa_(kappa) {}
 
   void begin(const State& state, double h, StepReport& report);
   const VecX& start_velocity() const { return v_start_; }
@@ -55,6 +57,7 @@ class HeldMotion {
   System& system_;
   Constraints& constraints_;
   ContactMode contact_;
+  double kappa_;
   std::optional<ContactStep> contacts_;  // of the step under way
   Filter held_, filter_;
   VecX v_start_, v_free_, x_new_, v_new_, r_;

@@ -26,6 +26,8 @@ void end_step(ContactStep& contacts, VecX& x, VecX& v, StepReport& report) {
   const ContactReport contact = contacts.finish(x, v);
   report.contacts = contact.contacts;
   report.guarded += contact.guarded;
+  report.self_contacts = contact.self_contacts;
+  report.self_guarded += contact.self_guarded;
   report.converged = report.converged && contact.converged;
   report.penetration = std::max(report.penetration, contact.deepest);
 }

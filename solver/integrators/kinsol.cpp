@@ -140,7 +140,9 @@ class NewtonKinsol::ContactSolve {
   bool worth_settling() { return true; }
   void release() {}
   bool refine(double) { return false; }  // every solve is to the tolerance already
-  void changed(const ContactChange&) {}
+  void changed(const ContactChange& change) {
+    if (change.met) kinsol_.system_.find_contacts({state_.time, kinsol_.h_, state_.x, state_.v, kinsol_.h_});
+  }
   void bodies_moved() {}
 
  private:

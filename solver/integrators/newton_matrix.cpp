@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "mesh/base/parallel.h"
+
 namespace drape {
 
 bool NewtonMatrix::follow_system() {
@@ -9,7 +11,7 @@ bool NewtonMatrix::follow_system() {
   if (A_ && &A_->pattern() == pattern.get()) return false;
   A_ = std::make_unique<BlockMatrix>(system_.matrix());
   const Eigen::Index n = 3 * system_.particles();
-  for (VecX* vector : {&b_rows_, &dv_rows_, &r_rows_}) vector->setZero(n);
+  for (VecX* vector : {&b_rows_, &dv_rows_, &r_rows_, &d_rows_, &Ad_rows_}) vector->setZero(n);
   filter_.reserve(static_cast<std::size_t>(system_.particles()));
   rubs_.reserve(static_cast<std::size_t>(system_.particles()));
   return true;
@@ -38,6 +40,14 @@ void NewtonMatrix::reaction(VecX& r) {
   r_rows_ -= b_rows_;
   r.resize(r_rows_.size());
   to_particles(A_->pattern(), r_rows_, r);
+}
+
+double NewtonMatrix::curvature(const VecX& v, const VecX& from) {
+  to_rows(A_->pattern(), v, d_rows_);
+  to_rows(A_->pattern(), from, Ad_rows_);
+  d_rows_ -= Ad_rows_;
+  A_->multiply(d_rows_, Ad_rows_);
+  return dot(d_rows_, Ad_rows_);
 }
 
 std::string NewtonMatrix::stiffest_force(int particle, const Linearisation& at) {

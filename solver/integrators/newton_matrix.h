@@ -37,6 +37,8 @@ class NewtonMatrix {
   // Sets r = A dv - b of the last solve: the impulse with which the constraints hold the particles [N s].
   void reaction(VecX& r);
 
+  double curvature(const VecX& v, const VecX& from);  // d . A d [J] with d = v - from [m/s]
+
   // What a particle that is pushed alone takes up for 1 m/s, a third of the trace of its block [kg].
   double inertia(int particle) const { return A_->at(A_->pattern().diagonal(row(particle))).trace() / 3; }
 
@@ -53,7 +55,7 @@ class NewtonMatrix {
   std::unique_ptr<BlockMatrix> A_;
   Filter filter_;                    // in row order
   std::vector<DiagonalBlock> rubs_;  // in row order
-  VecX b_rows_, dv_rows_, r_rows_;
+  VecX b_rows_, dv_rows_, r_rows_, d_rows_, Ad_rows_;
 };
 
 template <class Particle, class Block>

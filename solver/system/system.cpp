@@ -60,10 +60,19 @@ void System::cover_changing() {
 }
 
 void System::begin_step(const StepStart& start) {
+  find_stencils(start, [](const Force&) { return true; });
+}
+
+void System::find_contacts(const StepStart& start) {
+  find_stencils(start, [](const Force& force) { return force.from_contact(); });
+}
+
+template <class Which>
+void System::find_stencils(const StepStart& start, const Which& which) {
   bind();
   bool changed = false;
   for (const auto& force : forces_)
-    if (force->begin_step(start)) changed = true;
+    if (which(*force) && force->begin_step(start)) changed = true;
   if (!changed) return;
   cover_changing();
   for (const auto& force : forces_)

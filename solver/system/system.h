@@ -34,7 +34,8 @@ class System {
   const std::shared_ptr<const BlockPattern>& bind();
   // To be called before a step: forces find the stencils that come and go, whose blocks make up the overlay.
   void begin_step(const StepStart& start);
-  void end_step(const VecX& x);  // to be called when a step has ended at x
+  void find_contacts(const StepStart& start);  // the same for forces of contact only, within a step
+  void end_step(const VecX& x);                // to be called when a step has ended at x
   // A step that fails half-way goes back to what the forces knew of the past when they kept it.
   void keep();
   void go_back();
@@ -54,6 +55,8 @@ class System {
   std::string_view not_finite_force(const VecX& x, const VecX& v) const;
 
  private:
+  template <class Which>
+  void find_stencils(const StepStart& start, const Which& which);
   void cover_changing();  // gives the overlay the blocks of the stencils that come and go
 
   std::vector<double> masses_;

@@ -1,0 +1,124 @@
+// Which vertices and triangles, and which edges, of the cloth could meet in a step.
+//   Two triangles are looked at when their boxes come near each other at a common time. Each vertex and each edge is
+//   owned by one of its triangles, so that a pair of them comes up once. Triangles with a common vertex are always
+//   near: their pairs are listed once and for all.
+//   What was found to be apart is not looked at again before it can have come near. Of triangles that share the
+//   vertex c, no two points come nearer to each other by more than 2 e_c, where e_c sums up over the steps by how much
+//   the vertices next to c move otherwise than c. Of the other pairs it is 2 e, where e sums up by how much any vertex
+//   moves otherwise than the mean of all.
+// The lists are the same on any number of threads.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "mesh/base/parallel.h"
+#include "mesh/distance/approach.h"
+#include "mesh/distance/moving_boxes.h"
+
+namespace drape {
+
+// A pair that comes near, and how.
+struct Meeting {
+  Encounter who;
+  Approach approach;
+};
+
+class Encounters {
+ public:
+  // Triangles between particles, each once; a triangle that names a particle twice does not count.
+  void set(const std::vector<Triangle>& triangles, const VecX& x);
+  bool empty() const { return faces_.empty(); }
+  double mean_edge() const { return mean_edge_; }  // when the triangles were set [m]
+
+  // Prepares for select() with motions x -> x_new and gaps up to this one [m]. Searches only where what is known does
+  // not cover this motion. False: a place is no number, or so much comes near so much else that the cloth must have
+  // exploded; then there is no list.
+  bool follow(const VecX& x, const VecX& x_new, double gap);
+  // Asks look(pair, corners at x, corners at x_new, the normal found last), which returns an Approach, of the pairs
+  // that could come within the gap, by all threads. Returns those that are not apart, in a fixed order. They stay
+  // until the next call.
+  template <class Look>
+  std::vector<Meeting>& select(const VecX& x, const VecX& x_new, double gap, const Look& look);
+  // The step has gone from x to x_new.
+  void went(const VecX& x, const VecX& x_new);
+  void forget();  // the particles were moved from outside
+
+ private:
+  struct Box {
+    std::array<Eigen::Array3d, 2> lower, upper;  // at both ends of the motion
+  };
+  // Pairs with the reading of their clock up to which they are surely farther apart than 2 (due - clock).
+  struct Pairs {
+    std::vector<Encounter> list;
+    std::vector<double> due;  // m
+    std::vector<Vec3> normal;  // that of the last look
+    std::vector<int> clock;   // of the pairs with a common vertex: that vertex
+  };
+  void list(int first, int second, std::vector<Encounter>& found) const;
+  Box box_about(const Encounter& e, std::size_t from, std::size_t to) const;
+  bool touch(const Box& a, const Box& b, double reach) const;
+  int common(int first, int second) const;  // the lowest common vertex; -1: none
+  bool covers(const VecX& x, const VecX& x_new, double gap) const;
+  bool list_near(double within, std::size_t most);
+  bool search(const VecX& x, const VecX& x_new, double gap);
+  void read_clocks(const VecX& x, const VecX& x_new);
+  template <class Look>
+  void select_from(Pairs& pairs, bool beside, const VecX& x, const VecX& x_new, double gap, const Look& look);
+
+  std::vector<internal::Face> faces_;
+  std::vector<unsigned char> owned_;  // of each face: bits 0 to 2 its vertices, bits 3 to 5 its edges k to k + 1
+  std::optional<internal::MovingBoxes> boxes_;
+  std::vector<Box> box_of_;
+  std::vector<int> next_start_, next_;  // the vertices next to each one
+  Pairs beside_, near_;
+  std::vector<Vec3> start_, end_;  // of the motion that was searched last
+  double gap_ = -1, room_ = 0, mean_edge_ = 0;
+  // Readings of the clocks at the start and at the end of the motion [m]: by vertex, and of all.
+  std::vector<double> clock_, clock_end_;
+  double common_clock_ = 0, common_clock_end_ = 0;
+  std::vector<std::pair<int, int>> candidates_;  // scratch of list_near()
+  std::vector<std::vector<Encounter>> listed_;
+  std::vector<std::vector<Meeting>> chunks_;  // scratch of select()
+  std::vector<Meeting> selected_;
+};
+
+template <class Look>
+std::vector<Meeting>& Encounters::select(const VecX& x, const VecX& x_new, double gap, const Look& look) {
+  selected_.clear();
+  select_from(near_, false, x, x_new, gap, look);
+  select_from(beside_, true, x, x_new, gap, look);
+  return selected_;
+}
+
+template <class Look>
+void Encounters::select_from(Pairs& pairs, bool beside, const VecX& x, const VecX& x_new, double gap,
+                             const Look& look) {
+  const int n = static_cast<int>(pairs.list.size());
+  const auto count = static_cast<std::size_t>(chunk_count(n));
+  if (chunks_.size() < count) chunks_.resize(count);
+  for_chunks(n, [&](int begin, int end) {
+    std::vector<Meeting>& found = chunks_[static_cast<std::size_t>(begin / chunk_size)];
+    found.clear();
+    for (int k = begin; k < end; ++k) {
+      const double clock = beside ? clock_[pairs.clock[k]] : common_clock_,
+                   clock_end = beside ? clock_end_[pairs.clock[k]] : common_clock_end_;
+      if (2 * (pairs.due[k] - clock_end) > gap) continue;
+      const Encounter& e = pairs.list[k];
+      FourPoints start, finish;
+      for (std::size_t c = 0; c < 4; ++c) {
+        start[c] = x.segment<3>(3 * e.v[c]);
+        finish[c] = x_new.segment<3>(3 * e.v[c]);
+      }
+      Meeting one{.who = e, .approach = look(e, start, finish, pairs.normal[k])};
+      pairs.due[k] = clock + 0.5 * one.approach.start;
+      pairs.normal[k] = one.approach.last.normal;
+      if (!one.approach.apart) found.push_back(one);
+    }
+  });
+  for (std::size_t k = 0; k < count; ++k)
+    selected_.insert(selected_.end(), chunks_[k].begin(), chunks_[k].end());
+}
+
+}  // namespace drape

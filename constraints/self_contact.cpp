@@ -1,0 +1,232 @@
+#include "constraints/self_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "constraints/encounters.h"
+#include "mesh/base/parallel.h"
+#include "mesh/distance/triangle_crossings.h"
+#include "mesh/triangles/topology.h"
+
+namespace drape {
+namespace {
+
+constexpr double load_sinks = 0.1, arrival_sinks = 0.5;  // shares of the thickness
+
+}  // namespace
+
+Vec3 SelfContact::rub_at(const Vec3& p, double normal_force) const {
+  const Vec3 d = drag_at(p);
+  const double size = d.norm(), most = friction * normal_force;
+  return size <= most ? d : Vec3(most / size * d);
+}
+
+SelfContacts::SelfContacts() : encounters_(std::make_unique<Encounters>()) {}
+SelfContacts::SelfContacts(const SelfContacts& other) : SelfContacts() {
+  add(other.faces_);
+  pass_ = other.pass_;
+}
+SelfContacts& SelfContacts::operator=(const SelfContacts& other) { return *this = SelfContacts(other); }
+SelfContacts::SelfContacts(SelfContacts&&) noexcept = default;
+SelfContacts& SelfContacts::operator=(SelfContacts&&) noexcept = default;
+SelfContacts::~SelfContacts() = default;
+
+void SelfContacts::add(const std::vector<SelfFace>& faces) {
+  faces_.insert(faces_.end(), faces.begin(), faces.end());
+  stale_ = true;
+  rest_.resize(0);
+}
+
+void SelfContacts::renumber(const std::vector<int>& particle_of) {
+  for (SelfFace& face : faces_)
+    for (int& particle : face.particles) particle = particle_of[particle];
+  std::erase_if(faces_, [](const SelfFace& face) {
+    const auto [a, b, c] = face.particles;
+    return a == b || b == c || c == a;
+  });
+  if (rest_.size() > 0) {
+    const VecX before = rest_;
+    for (std::size_t i = particle_of.size(); i-- > 0;)
+      rest_.segment<3>(3 * particle_of[i]) = before.segment<3>(3 * static_cast<Eigen::Index>(i));
+    rest_.conservativeResize(3 * (1 + *std::max_element(particle_of.begin(), particle_of.end())));
+  }
+  touching_.clear();
+  last_.clear();
+  stale_ = true;
+}
+
+void SelfContacts::let_pass(const std::vector<int>& particles) {
+  pass_.clear();
+  for (int particle : particles) {
+    if (static_cast<std::size_t>(particle) >= pass_.size()) pass_.resize(static_cast<std::size_t>(particle) + 1, 0);
+    pass_[particle] = 1;
+  }
+}
+
+void SelfContacts::prepare(const StepMotion& step) {
+  const auto n = static_cast<std::size_t>(step.x.size() / 3);
+  pass_.resize(n, 0);
+  if (stale_) {
+    if (rest_.size() != step.x.size()) rest_ = step.x;
+    TriangleMesh mesh;
+    mesh.positions.assign(n, Vec3::Zero());
+    thickness_.assign(n, 0);
+    friction_.assign(n, 0);
+    for (const SelfFace& face : faces_) {
+      mesh.triangles.push_back(face.particles);
+      for (int particle : face.particles) {
+        thickness_[particle] = std::max(thickness_[particle], face.thickness);
+        friction_[particle] = std::max(friction_[particle], face.friction);
+      }
+    }
+    piece_ = connected_pieces(mesh);
+    encounters_->set(mesh.triangles, step.x);
+    way_.assign(n, 1);
+    nearest_.assign(n, 0);
+      stale_ = false;
+    look_again_ = true;
+  }
+  if (look_again_ || crossing() || touched_ != 0) mark_crossings(step.x);
+  touched_ = 0;
+  if (look_again_) {
+    last_.clear();
+    encounters_->forget();
+  }
+  look_again_ = false;
+}
+
+void SelfContacts::mark_crossings(const VecX& x) {
+  std::vector<Vec3> places(static_cast<std::size_t>(x.size() / 3));
+  for (std::size_t i = 0; i < places.size(); ++i) places[i] = x.segment<3>(3 * static_cast<Eigen::Index>(i));
+  std::vector<Triangle> triangles;
+  for (const SelfFace& face : faces_) triangles.push_back(face.particles);
+  through_.clear();
+  for (const CrossingContour& contour : crossing_contours(places, triangles))
+    for (const TrianglePair& pair : contour.pairs)
+      for (int triangle : {pair.first, pair.second})
+        through_.insert(through_.end(), triangles[triangle].begin(), triangles[triangle].end());
+  std::sort(through_.begin(), through_.end());
+  through_.erase(std::unique(through_.begin(), through_.end()), through_.end());
+  through_mark_.assign(places.size(), 0);
+  for (int particle : through_) through_mark_[particle] = 1;
+}
+
+// Whether both sides are let pass each other.
+bool SelfContacts::exempt(const Encounter& e) const {
+  const auto marked = [&](std::size_t from, std::size_t to) {
+    return std::any_of(e.v.begin() + from, e.v.begin() + to,
+                       [&](int v) { return pass_[v] != 0 || through_mark_[v] != 0; });
+  };
+  const std::size_t cut = e.edges ? 2 : 1;
+  return marked(0, cut) && marked(cut, 4);
+}
+
+bool SelfContacts::has_contact(const Encounter& e) const {
+  const auto at = std::lower_bound(touching_.begin(), touching_.end(), e,
+                                   [](const SelfContact& c, const Encounter& key) { return c.who < key; });
+  return at != touching_.end() && at->who == e;
+}
+
+// So that neither what the contact bears nor what arrives sinks in by more than a share of the thickness.
+void SelfContacts::stiffen(SelfContact& contact, const StepMotion& step) const {
+  if (kappa_ < 1) return;
+  const double mass = contact.stiffness * step.h * step.h / kappa_;
+  const double stops = mass * std::max(0.0, -contact.normal.dot(contact.at(step.v))) / step.h;
+  const double load = std::max(contact.before / load_sinks, stops / arrival_sinks);
+  const double sinks = std::max(contact.thickness, 0.1 * both_thicknesses(contact.who));
+  contact.stiffness = std::max(contact.stiffness, load / sinks);
+}
+
+void SelfContacts::begin_step(const StepMotion& step, double recovery, double kappa) {
+  if (!any()) return;
+  prepare(step);
+  accepted_ = is_proven_ = false;
+  kappa_ = kappa;
+  ahead_ = step.x + step.h * step.v;
+  find_contacts(step);
+  std::sort(touching_.begin(), touching_.end(),
+            [](const SelfContact& a, const SelfContact& b) { return a.who < b.who; });
+  for (SelfContact& c : touching_) {
+    take_over(c, recovery);
+    c.push = c.before;
+    stiffen(c, step);
+    const Vec3 p = c.now = c.at(ahead_);
+    const double drag = c.drag_at(p).norm();
+    c.active = c.linear_push(p) > 0;
+    c.share = drag > 0 ? std::min(1.0, c.friction * c.push / drag) : 1;
+  }
+}
+
+double SelfContacts::imbalance(double h, const VecX& x_new) const {
+  double sum = 0;
+  for (const SelfContact& c : touching_) {
+    const Vec3 p = c.at(x_new);
+    const double push = c.push_at(p), assumed = c.active ? c.linear_push(p) : 0;
+    const Vec3 rub = c.rub_at(p, push), taken = c.active ? Vec3(c.share * c.drag_at(p)) : Vec3(Vec3::Zero());
+    sum += (push - assumed) * (push - assumed) + (rub - taken).squaredNorm();
+  }
+  return h * std::sqrt(sum);
+}
+
+// Where along the way to x_new the energy is least, 0 to 1. Its slope rises along the way, because the energy is
+// convex.
+double SelfContacts::share_of_way(double slope, double curvature, const VecX& x_new) const {
+  const auto slope_at = [&](double t) {
+    return slope + curvature * (t - 1) + sum_chunks(static_cast<int>(touching_.size()), [&](int begin, int end) {
+             double sum = 0;
+             for (int k = begin; k < end; ++k) {
+               const SelfContact& c = touching_[k];
+               const Vec3 way = c.at(x_new) - c.now, p = c.now + t * way;
+               sum += way.dot(c.slope(p) - c.solved_slope(p));
+             }
+             return sum;
+           });
+  };
+  double low = 0, high = 1, at_low = slope_at(0), at_high = slope_at(1);
+  if (!(curvature > 0) || !(at_low < 0) || !(at_high > 0)) return 1;
+  for (int k = 0; k < 8; ++k) {
+    const double t = k % 2 == 0 ? low + (high - low) * at_low / (at_low - at_high) : 0.5 * (low + high);
+    const double here = slope_at(t);
+    (here < 0 ? low : high) = t;
+    (here < 0 ? at_low : at_high) = here;
+  }
+  return std::max(0.5 * (low + high), 1e-3);
+}
+
+bool SelfContacts::react(const VecX& v, const VecX& r, const VecX& x_new, double curvature) {
+  if (touching_.empty()) return false;
+  const double share_of = accepted_ ? share_of_way(dot(r, v) - dot(r, v_at_), curvature, x_new) : 1;
+  if (accepted_)
+    v_at_ += share_of * (v - v_at_);
+  else
+    v_at_ = v;
+  accepted_ = true;
+  bool changed = share_of < 1;
+  for (SelfContact& c : touching_) {
+    c.now += share_of * (c.at(x_new) - c.now);
+    const double push = c.push_at(c.now), drag = c.drag_at(c.now).norm();
+    const double share = drag > c.friction * push ? c.friction * push / drag : 1;
+    changed = changed || c.active != (push > 0) || std::abs(share - c.share) > 1e-9;
+    c.active = push > 0;
+    c.push = push;
+    c.share = share;
+  }
+  return changed;
+}
+
+void SelfContacts::end_step(const StepMotion& step, const VecX& x_new) {
+  if (!any()) return;
+  pushing_ = 0;
+  last_ = touching_;
+  for (SelfContact& c : last_) {
+    const Vec3 p = c.at(x_new);
+    const double push = c.push_at(p);
+    c.hold = c.rub_at(p, push);
+    c.before = push;
+    pushing_ += push > 0;
+  }
+  encounters_->went(step.x, x_new);
+}
+
+}  // namespace drape

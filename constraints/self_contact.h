@@ -1,0 +1,160 @@
+// Cloth against cloth, and a cloth against itself: springs that carry the load, and a guard that lets nothing
+// through.
+//   A contact is a vertex and a triangle, or two edges, that come within the thickness r of each other.
+//     p = sum w_k x_k     from the point of one side to the nearest of the other; at the start p = distance * n
+//     g = n . p - r       the gap
+//     f = max(0, -k g)    the force along n, on the first side
+//     t = what friction leaves of d = t_0 - k s     across n; s is the part of p across n since the step began, t_0 the
+//                                                   t of the last step
+//         t = d while |d| <= mu f (it sticks), else mu f d/|d| (it slides)         [Cundall & Strack 1979]
+//     k = kappa m / h^2,  1/m = sum w_k^2 / m_k     as stiff as the time step allows, whatever the mesh: a layer sinks
+//                                                   into the thickness by g h^2 / kappa, 33 um with h = 10 ms
+//   kappa is larger where the load, or what arrives, would sink in by more than a share of r.
+//   Within a solve a contact is linear: it acts or not, and friction is a spring weakened to share (t_0 - k s).
+//   react() corrects both until they agree with the solve.
+//   The guard: every vertex goes the share t_i of its way, at first all of it. The pairs that would come nearer than
+//   `floor` on the way are found [mesh/distance/approach.h], and their vertices are stopped before that, until none
+//   is left. A pair that stands still needs no proof, so this ends. It holds for every integrator.
+//   Where the cloth starts through itself, the triangles there neither push nor are guarded while they cross.
+// x [m], v [m/s], f [N], k [N/m], h [s].
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "constraints/step_motion.h"
+#include "mesh/distance/approach.h"
+
+namespace drape {
+
+// How stiff the springs are [m/h^2]: for methods that solve for the end of a step, and for those that do not.
+inline constexpr double implicit_kappa = 30, explicit_kappa = 0.2;
+
+class Encounters;
+struct Meeting;
+
+// A triangle between particles that takes part.
+struct SelfFace {
+  std::array<int, 3> particles;
+  double thickness;  // m
+  double friction;   // mu
+};
+
+struct SelfContact {
+  Encounter who;
+  std::array<double, 4> weights;
+  Vec3 normal;       // n: unit, towards the first side
+  Vec3 place;        // p at the start of the step [m]
+  Vec3 now;          // p at the point that the contacts were made for last [m]
+  double stiffness;  // k [N/m]
+  double thickness;  // r [m]
+  double friction;   // mu
+  double distance;   // m, when it was found
+  double before = 0;            // f at the end of the last step [N]
+  Vec3 hold = Vec3::Zero();     // t_0 [N]
+  bool active = false;          // whether it acts in the next solve
+  double push = 0;              // f of the last solve [N]
+  double share = 0;             // of the spring that friction is in the next solve, 0 to 1
+
+  // The slope of the energy along a way of p [N]: of the law, and of the linear contact of the solve.
+  Vec3 slope(const Vec3& p) const { return -push_at(p) * normal - rub_at(p, push); }
+  Vec3 solved_slope(const Vec3& p) const {
+    return active ? Vec3(-linear_push(p) * normal - share * drag_at(p)) : Vec3(Vec3::Zero());
+  }
+
+  double linear_push(const Vec3& p) const { return stiffness * (thickness - normal.dot(p)); }  // N
+  double push_at(const Vec3& p) const { return std::max(0.0, linear_push(p)); }                       // f
+  Vec3 drag_at(const Vec3& p) const {                                                                 // d
+    const Vec3 moved = p - place;
+    return hold - stiffness * (moved - normal.dot(moved) * normal);
+  }
+  Vec3 rub_at(const Vec3& p, double normal_force) const;  // t
+  template <class Vector>
+  Vec3 at(const Vector& x) const {
+    Vec3 sum = weights[0] * x.template segment<3>(3 * who.v[0]);
+    for (std::size_t k = 1; k < 4; ++k) sum += weights[k] * x.template segment<3>(3 * who.v[k]);
+    return sum;
+  }
+};
+
+class SelfContacts {
+ public:
+  SelfContacts();
+  SelfContacts(const SelfContacts& other);  // takes the faces, and begins anew
+  SelfContacts& operator=(const SelfContacts& other);
+  SelfContacts(SelfContacts&&) noexcept;
+  SelfContacts& operator=(SelfContacts&&) noexcept;
+  ~SelfContacts();
+
+  void add(const std::vector<SelfFace>& faces);
+  // Particle i gets the number particle_of[i]; a triangle of which two corners become one particle is removed.
+  void renumber(const std::vector<int>& particle_of);
+  // These particles may pass each other and what is beside them, such as those that are being sewn together.
+  void let_pass(const std::vector<int>& particles);
+  bool any() const { return !faces_.empty(); }
+
+  // Finds what comes near along x -> x + h v. recovery: by how much the thickness of a contact that started nearer
+  // than r grows in the step at most [m]. kappa: stiffness of the springs at least [m/h^2]; below 1, as
+  // explicit methods bear it, it is no larger anywhere.
+  void begin_step(const StepMotion& step, double recovery, double kappa);
+  // The norm of the impulses that are wrong in a solve that came to x_new [N s].
+  double imbalance(double h, const VecX& x_new) const;
+  // Changes the contacts to what a solve asks for that came to v and x_new with the reaction r [N s]; true when one
+  // changes. Where that would overshoot, they are made for a point on the way there from the last such point: the one
+  // at which the energy of the contacts as they are, and of the motion, is least. curvature: d . A d of that way [J];
+  // 0: v is taken whole.                                              [Nocedal & Wright 2006, section 3.1]
+  bool react(const VecX& v, const VecX& r, const VecX& x_new, double curvature);
+  // The velocity of that point [m/s]; null before the first react() of a step.
+  const VecX* accepted_velocity() const { return accepted_ ? &v_at_ : nullptr; }
+  // Adds the pairs that would meet on the way to x_new and are no contacts yet; true when there are any.
+  bool meet(const StepMotion& step, const VecX& x_new);
+  // Shortens the ways to x_new so that nothing meets; returns how many particles it stopped.
+  int guard(const StepMotion& step, VecX& x_new, VecX& v_new);
+  void end_step(const StepMotion& step, const VecX& x_new);
+
+  void look_again() { look_again_ = true; }  // the particles were moved from outside
+  const std::vector<SelfContact>& touching() const { return touching_; }  // sorted
+  int pushing() const { return pushing_; }    // contacts that pushed at the end of the last step
+  bool crossing() const { return !through_.empty(); }  // whether the cloth passed through itself when the step began
+
+ private:
+  void prepare(const StepMotion& step);
+  void mark_crossings(const VecX& x);
+  double share_of_way(double slope, double curvature, const VecX& x_new) const;
+  bool exempt(const Encounter& e) const;
+  bool has_contact(const Encounter& e) const;
+  // The pairs that are not surely apart all the way from x to x_new, in order.
+  std::vector<Meeting>& meetings(const VecX& x, const VecX& x_new);
+  std::vector<Meeting>& near_ones(const StepMotion& step, double thickest);
+  void look_at_ends(std::vector<Meeting>::iterator begin, std::vector<Meeting>::iterator end) const;
+  void find_contacts(const StepMotion& step);
+  std::optional<SelfContact> contact_of(const StepMotion& step, const Encounter& who, const Nearest& near) const;
+  void take_over(SelfContact& contact, double recovery) const;
+  void stiffen(SelfContact& contact, const StepMotion& step) const;
+  double both_thicknesses(const Encounter& e) const;
+  double thickness_of(const Encounter& e) const;
+  double friction_of(const Encounter& e) const;
+
+  std::vector<SelfFace> faces_;
+  std::unique_ptr<Encounters> encounters_;
+  bool stale_ = true, look_again_ = true;
+  double kappa_ = 0, reach_ = 0;  // m/h^2; m, from which on pairs are looked at
+  int touched_ = 0;               // not 0: a pair touched at the start of the step, and may have crossed in it
+  int pushing_ = 0;
+  // By particle.
+  std::vector<double> thickness_, friction_;  // m, mu
+  std::vector<int> piece_;                    // the connected piece that it belongs to
+  std::vector<char> pass_, through_mark_;     // let_pass(); near triangles that cross
+  std::vector<int> through_;                  // particles of triangles that cross
+  VecX rest_;                                 // places when the faces were added [m]
+  std::vector<SelfContact> touching_, last_;  // of this step and of the last one, sorted
+  std::vector<SelfContact> met_;              // scratch
+  std::vector<double> way_, shorter_, nearest_;  // scratch, by particle
+  VecX ahead_, v_at_, proven_;
+  bool accepted_ = false;       // whether v_at_ is of this step
+  bool is_proven_ = false;      // whether nothing meets on the way to proven_ in this step
+};
+
+}  // namespace drape

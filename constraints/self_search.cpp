@@ -1,0 +1,157 @@
+// Which pairs of constraints/self_contact.h are contacts in a step.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "constraints/encounters.h"
+#include "constraints/self_contact.h"
+
+namespace drape {
+namespace {
+
+constexpr double likely_acceleration = 10;  // m/s^2: what a step may add to a motion before a contact is found late
+constexpr double same_way = 0.5;            // the cosine from which two normals belong to one contact
+
+Vec3 across(const Vec3& n, const Vec3& a) { return a - n.dot(a) * n; }
+
+bool share_a_particle(const Encounter& a, const Encounter& b) {
+  return std::any_of(a.v.begin() + 1, a.v.end(),
+                     [&](int v) { return std::find(b.v.begin() + 1, b.v.end(), v) != b.v.end(); });
+}
+
+}  // namespace
+
+double SelfContacts::both_thicknesses(const Encounter& e) const {
+  return 0.5 * (thickness_[e.v[0]] + thickness_[e.v[3]]);
+}
+
+// The thickness at which the pair comes to rest: the mean of both sides. Where one piece of cloth is near itself at
+// rest, no more than half the distance there.
+double SelfContacts::thickness_of(const Encounter& e) const {
+  const double both = both_thicknesses(e);
+  if (piece_[e.v[0]] != piece_[e.v[3]]) return both;
+  FourPoints rest;
+  for (std::size_t k = 0; k < 4; ++k) rest[k] = rest_.segment<3>(3 * e.v[k]);
+  return std::min(both, 0.5 * nearest(e.edges, rest).distance);
+}
+
+double SelfContacts::friction_of(const Encounter& e) const {
+  return std::sqrt(friction_[e.v[0]] * friction_[e.v[3]]);
+}
+
+// Nothing where the contact could move none of its particles, or has no thickness.
+std::optional<SelfContact> SelfContacts::contact_of(const StepMotion& step, const Encounter& who,
+                                                    const Nearest& near) const {
+  double inverse = 0, free = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double w = near.weights[k], mass = step.mass(who.v[k]);
+    if (mass > 0) inverse += w * w / mass;
+    if (!step.is_held(who.v[k])) free += std::abs(w);
+  }
+  constexpr double least_share = 1e-3;
+  if (!(inverse > 0) || !(free > least_share) || !(near.distance > 0)) return {};
+  SelfContact contact{.who = who,
+                      .weights = near.weights,
+                      .normal = near.normal,
+                      .place = Vec3::Zero(),
+                      .now = Vec3::Zero(),
+                      .stiffness = kappa_ / (step.h * step.h * inverse),
+                      .thickness = thickness_of(who),
+                      .friction = friction_of(who),
+                      .distance = near.distance};
+  contact.place = contact.at(step.x);
+  // What starts nearer than r begins with the distance that it has.
+  contact.thickness = std::min(contact.thickness, std::max(contact.normal.dot(contact.place), near.distance));
+  if (!(contact.thickness > 0)) return {};
+  return contact;
+}
+
+// The forces of the last step, and the thickness reached there: of the same pair, or of the contact that the vertex
+// had on the same side.
+void SelfContacts::take_over(SelfContact& contact, double recovery) const {
+  const auto before = [](const SelfContact& c, const Encounter& key) { return c.who < key; };
+  auto at = std::lower_bound(last_.begin(), last_.end(), contact.who, before);
+  if ((at == last_.end() || at->who != contact.who) && !contact.who.edges) {
+    constexpr int lowest = std::numeric_limits<int>::min();
+    const Encounter first{.v = {contact.who.v[0], lowest, lowest, lowest}, .edges = false};
+    at = std::lower_bound(last_.begin(), last_.end(), first, before);
+    while (at != last_.end() && !at->who.edges && at->who.v[0] == contact.who.v[0] &&
+           (at->normal.dot(contact.normal) < same_way || !share_a_particle(at->who, contact.who)))
+      ++at;
+    if (at == last_.end() || at->who.edges || at->who.v[0] != contact.who.v[0]) return;
+  } else if (at == last_.end() || at->who != contact.who) {
+    return;
+  }
+  contact.before = at->before;
+  contact.hold = across(contact.normal, at->hold);
+  contact.thickness =
+      std::min(thickness_of(contact.who), std::max(contact.thickness, at->thickness + recovery));
+}
+
+// The pairs that come within the thickness, and a little more, on the way to ahead_.
+std::vector<Meeting>& SelfContacts::near_ones(const StepMotion& step, double thickest) {
+  const double reach = reach_, more = reach_ - thickest;
+  const auto inside = [](double w) { return std::abs(w) > 1e-3 && std::abs(w) < 1 - 1e-3; };
+  return encounters_->select(
+      step.x, ahead_, reach, [&](const Encounter& e, const FourPoints& start, const FourPoints& end, const Vec3& likely) {
+        if (exempt(e) || std::all_of(e.v.begin(), e.v.end(), [&](int v) { return step.is_held(v); }))
+          return Approach{};
+        Approach near = approach(e.edges, start, end, reach, likely);
+        if (near.apart) return near;
+        const double own = thickness_of(e);
+        if (own < thickest) near = approach(e.edges, start, end, own + more);
+        near.until = approach_from_within(e.edges, start, end, 0.1 * own).until;  // below 1: they meet
+        const auto& w = near.last.weights;
+        near.apart = near.apart || (e.edges && !(inside(w[0]) && inside(w[2])));
+        return near;
+      });
+}
+
+// What the vertex meets on no way is pushed as it ends, not as it came, or it would stumble over the rim of a sheet that
+// it goes over. Otherwise the end may be on the other side.
+void SelfContacts::look_at_ends(std::vector<Meeting>::iterator begin, std::vector<Meeting>::iterator end) const {
+  if (std::any_of(begin, end, [](const Meeting& m) { return m.approach.until < 1; })) return;
+  for (auto m = begin; m != end; ++m) {
+    FourPoints x;
+    for (std::size_t k = 0; k < 4; ++k) x[k] = ahead_.segment<3>(3 * m->who.v[k]);
+    m->approach.last = nearest(m->who.edges, x);
+  }
+}
+
+// A vertex has one contact with each sheet beside it: the nearest, of triangles that share a particle and lie the
+// same way. Two edges that cross are a contact where they are clearly nearer than their ends are to the other sheet.
+void SelfContacts::find_contacts(const StepMotion& step) {
+  touching_.clear();
+  const double thickest = *std::max_element(thickness_.begin(), thickness_.end());
+  reach_ = thickest + std::min(likely_acceleration * step.h * step.h, 0.5 * thickest);
+  if (!encounters_->follow(step.x, ahead_, reach_)) return;
+  std::vector<Meeting>& found = near_ones(step, thickest);
+  const auto add = [&](const Meeting& m) {
+    if (const auto contact = contact_of(step, m.who, m.approach.last)) touching_.push_back(*contact);
+  };
+  const auto edges = std::partition(found.begin(), found.end(), [](const Meeting& m) { return !m.who.edges; });
+  std::sort(found.begin(), edges, [](const Meeting& a, const Meeting& b) { return a.who < b.who; });
+  std::fill(nearest_.begin(), nearest_.end(), std::numeric_limits<double>::infinity());
+  for (auto first = found.begin(); first != edges;) {
+    const int vertex = first->who.v[0];
+    const auto last = std::find_if(first, edges, [&](const Meeting& m) { return m.who.v[0] != vertex; });
+    look_at_ends(first, last);
+    std::sort(first, last, [](const Meeting& a, const Meeting& b) {
+      const double of_a = a.approach.last.distance, of_b = b.approach.last.distance;
+      return of_a != of_b ? of_a < of_b : a.who < b.who;
+    });
+    nearest_[vertex] = first->approach.last.distance;
+    for (; first != last; ++first) {
+      bool told = false;
+      for (auto c = touching_.rbegin(); c != touching_.rend() && c->who.v[0] == vertex && !told; ++c)
+        told = share_a_particle(c->who, first->who) && c->normal.dot(first->approach.last.normal) > same_way;
+      if (!told) add(*first);
+    }
+  }
+  for (auto m = edges; m != found.end(); ++m) {
+    const auto farther = [&](int v) { return m->approach.last.distance < 0.7 * nearest_[v]; };
+    if (std::all_of(m->who.v.begin(), m->who.v.end(), farther)) add(*m);
+  }
+}
+
+}  // namespace drape

@@ -1,0 +1,60 @@
+#include "solver/forces/self_contact_force.h"
+
+#include "solver/forces/stencil_force.h"
+
+namespace drape {
+namespace {
+
+struct SelfLaw {
+  static constexpr const char* name = "self-contact";
+  static constexpr int particles = 4;
+  using Rest = const SelfContact*;  // points to a contact of the step
+  struct Common {};
+
+  static std::array<double, 4> weights(const Rest& c) { return c->weights; }
+
+  static double energy(const Common&, const Rest& c, const Vec3& p) {
+    const double push = c->push_at(p), d = c->drag_at(p).norm(), most = c->friction * c->push;
+    const double rub = d <= most ? 0.5 * d * d : most * d - 0.5 * most * most;
+    return (0.5 * push * push + rub - 0.5 * c->hold.squaredNorm()) / c->stiffness;
+  }
+  static double dissipation(const Common&, const Rest&, const Vec3&, const auto&) { return 0; }
+  static Vec3 pull(const Common&, const Rest& c, const Vec3& p, const auto&) {
+    return -c->push_at(p) * c->normal - c->rub_at(p, c->push);
+  }
+  static VectorResponse linearised(const Common&, const Rest& contact, const Vec3& p, const auto&,
+                                   const auto& shift, double c, Stiffness stiffness) {
+    const Vec3& n = contact->normal;
+    const bool acts = stiffness == Stiffness::tangent ? contact->linear_push(p) > 0 : contact->active;
+    if (!acts) return {};
+    const Vec3 s = shift();
+    const double k = contact->stiffness, share = contact->share;
+    const Mat3 along = n * n.transpose();
+    return {.impulse = c * ((k * n.dot(s) - contact->linear_push(p)) * n -
+                            share * (contact->drag_at(p) - k * (s - n.dot(s) * n))),
+            .block = c * c * k * (along + share * (Mat3::Identity() - along)),
+            .acts = true};
+  }
+};
+
+class SelfContactForce final : public StencilForce<SelfLaw> {
+ public:
+  explicit SelfContactForce(const Constraints& constraints)
+      : StencilForce([&constraints](const StepStart&, std::vector<Element>& found) {
+          const bool were = !found.empty();
+          found.clear();
+          for (const SelfContact& contact : constraints.self().touching())
+            found.push_back({.particles = contact.who.v, .rest = &contact});
+          return were || !found.empty();
+        }) {}
+
+  bool from_contact() const override { return true; }
+};
+
+}  // namespace
+
+std::unique_ptr<Force> self_contact_force(const Constraints& constraints) {
+  return std::make_unique<SelfContactForce>(constraints);
+}
+
+}  // namespace drape

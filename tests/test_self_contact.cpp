@@ -1,0 +1,316 @@
+// Cloth against cloth: nothing passes through anything, layers carry and rub.
+#include <random>
+
+#include "constraints/self_contact.h"
+#include "mesh/distance/triangle_crossings.h"
+#include "solver/assembly/assembly.h"
+#include "tests/allocations.h"
+#include "tests/integrators.h"
+
+using namespace drape;
+using namespace drape::test;
+
+namespace {
+
+constexpr double r = 1e-3;  // m
+
+int crossings(const TriangleMesh& mesh, const VecX& x, bool as_floats) {
+  std::vector<Vec3> places = unstacked(x);
+  if (as_floats)
+    for (Vec3& p : places) p = p.cast<float>().cast<double>();
+  return crossing_count(crossing_contours(places, mesh.triangles));
+}
+
+TriangleMesh together(const std::vector<TriangleMesh>& meshes) {
+  TriangleMesh all;
+  for (const TriangleMesh& mesh : meshes) {
+    const int first = all.vertex_count();
+    all.positions.insert(all.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const Triangle& t : mesh.triangles) all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return all;
+}
+
+TriangleMesh sheet(int n, double size, const Vec3& place) {
+  TriangleMesh mesh = grid(n, n, size, size);
+  for (Vec3& x : mesh.positions) x += place;
+  return mesh;
+}
+
+struct Layers : Assembly {
+  explicit Layers(const std::vector<TriangleMesh>& meshes, const Vec3& gravity = {0, -9.81, 0},
+                  double friction = 0.3, ClothModel model = ClothModel::noh_jung)
+      : Assembly(gravity), all(together(meshes)) {
+    for (const TriangleMesh& mesh : meshes)
+      add({.mesh = mesh,
+           .fabric = {.area_density = 0.2, .stretch = 200, .bend = 1e-5, .damping = 0.002},
+           .model = model,
+           .imperfection = 0,
+           .self_contact = SelfContactOptions{.thickness = r, .friction = friction}});
+  }
+  int crossings(bool as_floats = false) const { return ::crossings(all, state.x, as_floats); }
+  void hold(std::size_t k) {
+    for (int i = cloths[k].first_particle; i < cloths[k].end_particle; ++i) constraints->pin(i);
+  }
+  Vec3 momentum() const {
+    Vec3 sum = Vec3::Zero();
+    for (int i = 0; i < state.particles(); ++i) sum += system->masses()[i] * state.v.segment<3>(3 * i);
+    return sum;
+  }
+  double speed() const {
+    double most = 0;
+    for (int i = 0; i < state.particles(); ++i) most = std::max(most, state.v.segment<3>(3 * i).norm());
+    return most;
+  }
+  void throw_at(std::size_t k, const Vec3& v) {
+    for (int i = cloths[k].first_particle; i < cloths[k].end_particle; ++i) state.v.segment<3>(3 * i) = v;
+  }
+
+  TriangleMesh all;
+};
+
+StepOptions usual() { return {.tolerance = 1e-4}; }
+
+}  // namespace
+
+TEST_CASE("whatever particles are told to do, no cloth passes through cloth", "[self-contact]") {
+  std::mt19937 random(5);
+  for (int round = 0; round < 60; ++round) {
+    const TriangleMesh mesh = together({sheet(5, 0.1, {0, 0, 0}), sheet(4, 0.1, {0.003, 0.004, 0.002})});
+    StepMotion step;
+    step.h = 0.01;
+    step.x = stacked(mesh.positions);
+    const auto n = mesh.positions.size();
+    step.masses.assign(n, 1e-4);
+    step.held.assign(n, 0);
+    SelfContacts contacts;
+    std::vector<SelfFace> faces;
+    for (const Triangle& t : mesh.triangles) faces.push_back({t, r, 0.3});
+    contacts.add(faces);
+    std::uniform_real_distribution<double> number(-1, 1), power(-4, -0.5);
+    int stopped = 0;
+    for (int k = 0; k < 12; ++k) {
+      const double size = std::pow(10, power(random));  // up to ten edges
+      VecX x_new = step.x;
+      const Vec3 common(number(random), number(random), number(random));
+      for (int i = 0; i < static_cast<int>(n); ++i)
+        for (int c = 0; c < 3; ++c) x_new[3 * i + c] += 0.1 * common[c] + size * number(random);
+      step.v = (x_new - step.x) / step.h;
+      VecX v_new = step.v;
+      contacts.begin_step(step, 1e-3, implicit_kappa);
+      stopped += contacts.guard(step, x_new, v_new);
+      contacts.end_step(step, x_new);
+      INFO("round " << round << ", step " << k << ", size " << size);
+      REQUIRE(crossings(mesh, x_new, false) == 0);
+      REQUIRE(crossings(mesh, x_new, true) == 0);
+      CHECK((x_new - step.x - step.h * v_new).norm() < 1e-12);
+      step.x = x_new;
+    }
+    CHECK(stopped > 0);
+  }
+}
+
+TEST_CASE("layers on the floor come to rest a thickness apart", "[self-contact]") {
+  for (ClothModel model : {ClothModel::noh_jung, ClothModel::woven})
+    for (int layers : {2, 10}) {
+      INFO(layers << " layers, model " << static_cast<int>(model));
+      std::vector<TriangleMesh> meshes;
+      for (int k = 0; k < layers; ++k)  // sheets of different cuts, so that no vertex is above another
+        meshes.push_back(sheet(7 + k % 3, 0.2, {0, 0.0022 + 0.0012 * k, 0}));
+      Layers pile(meshes, {0, -9.81, 0}, 0.3, model);
+      pile.constraints->add(Obstacle{.shape = Plane{}, .margin = 2e-3});
+      pile.use("implicit-euler", "auto", usual());
+      for (int k = 0; k < 60; ++k) {
+        const StepReport report = pile.advance(0.01);
+        REQUIRE(report.done);
+        CHECK(report.converged);
+        CHECK(report.self_guarded == 0);
+      }
+      CHECK(pile.crossings() == 0);
+      CHECK(pile.speed() < 2e-3);
+      for (int k = 1; k < layers; ++k) {
+        double below = 0, above = 0;
+        const auto height = [&](int layer) {
+          const Cloth& cloth = pile.cloths[static_cast<std::size_t>(layer)];
+          double sum = 0;
+          for (int i = cloth.first_particle; i < cloth.end_particle; ++i) sum += pile.state.x[3 * i + 1];
+          return sum / (cloth.end_particle - cloth.first_particle);
+        };
+        below = height(k - 1);
+        above = height(k);
+        CHECK(above - below > r - 1.1e-4);
+        CHECK(above - below < r + 1e-5);
+      }
+    }
+}
+
+TEST_CASE("sheets that collide keep their momentum and gain no energy", "[self-contact]") {
+  for (double friction : {0.0, 0.5}) {
+    INFO("friction " << friction);
+    Layers pair({sheet(9, 0.2, {0, 0, 0}), sheet(8, 0.15, {0.01, 0.01, 0.02})}, Vec3::Zero(), friction);
+    pair.use("implicit-euler", "auto", {.tolerance = 1e-8, .contact_tolerance = 1e-5});
+    pair.throw_at(1, {0.4, -1.5, 0.1});
+    const Vec3 before = pair.momentum();
+    double energy = pair.system->total_energy(pair.state);
+    int met = 0;
+    for (int k = 0; k < 25; ++k) {
+      const StepReport report = pair.advance(0.01);
+      REQUIRE(report.done);
+      met = std::max(met, report.self_contacts);
+      CHECK(report.self_guarded == 0);
+      CHECK((pair.momentum() - before).norm() < 1e-5 * before.norm());
+      const double now = pair.system->total_energy(pair.state);
+      CHECK(now < energy + 1e-3 * pair.system->kinetic_energy(pair.state.v));
+      energy = now;
+      CHECK(pair.crossings() == 0);
+    }
+    CHECK(met > 20);
+  }
+}
+
+TEST_CASE("a layer sticks on a slope below its friction and slides as Coulomb says above it", "[self-contact]") {
+  constexpr double mu = 0.4, h = 0.01;
+  for (double tangent : {0.75 * mu, 2 * mu}) {
+    INFO("tan " << tangent);
+    const double angle = std::atan(tangent), g = 9.81;
+    Layers slope({sheet(9, 0.6, {0, 0, 0}), sheet(6, 0.1, {-0.1, r, 0.003})},
+                 {g * std::sin(angle), -g * std::cos(angle), 0}, mu);
+    slope.hold(0);
+    slope.use("implicit-euler", "auto", {.tolerance = 1e-8, .contact_tolerance = 1e-6});
+    const auto place = [&] {
+      double sum = 0;
+      const Cloth& top = slope.cloths[1];
+      for (int i = top.first_particle; i < top.end_particle; ++i) sum += slope.state.x[3 * i];
+      return sum / (top.end_particle - top.first_particle);
+    };
+    for (int k = 0; k < 10; ++k) slope.advance(h);
+    const double first = place();
+    const double speed = slope.momentum()[0];
+    constexpr int steps = 20;
+    for (int k = 0; k < steps; ++k) REQUIRE(slope.advance(h).converged);
+    const double t = steps * h;
+    if (tangent < mu) {
+      CHECK(std::abs(place() - first) < 1e-6);
+    } else {
+      double mass = 0;
+      for (int i = slope.cloths[1].first_particle; i < slope.cloths[1].end_particle; ++i)
+        mass += slope.system->masses()[i];
+      const double gained = (slope.momentum()[0] - speed) / mass / t;
+      CHECK(gained == Approx(g * (std::sin(angle) - mu * std::cos(angle))).epsilon(0.02));
+    }
+  }
+}
+
+TEST_CASE("a stack that flies as one is not held up by itself", "[self-contact]") {
+  Layers stack({sheet(6, 0.1, {0, 0, 0}), sheet(7, 0.1, {0, 0.0012, 0}), sheet(5, 0.1, {0, 0.0024, 0})},
+               Vec3::Zero());
+  stack.use("implicit-euler", "auto", usual());
+  for (std::size_t k = 0; k < 3; ++k) stack.throw_at(k, {10, -3, 2});
+  const VecX before = stack.state.x;
+  for (int k = 0; k < 20; ++k) {
+    const StepReport report = stack.advance(0.01);
+    CHECK(report.self_guarded == 0);
+    CHECK(report.self_contacts == 0);
+  }
+  const VecX moved = stack.state.x - before;
+  for (int i = 0; i < stack.state.particles(); ++i)
+    CHECK((moved.segment<3>(3 * i) - Vec3(2, -0.6, 0.4)).norm() < 1e-9);
+}
+
+namespace {
+
+// A strip that stands on the floor and folds up under its weight.
+Layers folding(int n) {
+  TriangleMesh mesh = grid(n, 4, 0.4, 0.08);
+  for (Vec3& x : mesh.positions) x = Vec3(0.02 * std::sin(40 * x[0]), x[0] + 0.21, x[2]);
+  Layers layers({mesh});
+  layers.constraints->add(Obstacle{.shape = Plane{}});
+  return layers;
+}
+
+}  // namespace
+
+TEST_CASE("a strip folds up without passing through itself, by the same bits on any number of threads",
+          "[self-contact]") {
+  const int before = threads();
+  VecX first;
+  for (int count : {1, 2, 7}) {
+    set_threads(count);
+    Layers strip = folding(90);
+    strip.use("implicit-euler", "auto", usual());
+    int met = 0;
+    for (int k = 0; k < 45; ++k) {
+      const StepReport report = strip.advance(0.01);
+      REQUIRE(report.done);
+      met = std::max(met, report.self_contacts);
+    }
+    CHECK(met > 10);
+    CHECK(strip.crossings() == 0);
+    CHECK(strip.crossings(true) == 0);
+    if (count == 1) first = strip.state.x;
+    CHECK(strip.state.x == first);
+  }
+  set_threads(before);
+}
+
+TEST_CASE("no integrator and no linear solver lets cloth through cloth", "[self-contact]") {
+  const auto fall = [](const std::string& integrator, const std::string& solver, double h) {
+    INFO(integrator << ", " << solver);
+    Layers pair({sheet(6, 0.1, {0, 0, 0}), sheet(5, 0.06, {0.003, 0.006, 0.002})});
+    pair.hold(0);
+    pair.use(integrator, solver, usual());
+    pair.throw_at(1, {0, -1, 0});
+    int met = 0;
+    for (int k = 0; k * h < 0.1; ++k) {
+      const StepReport report = pair.advance(h);
+      REQUIRE(report.done);
+      met = std::max(met, report.self_contacts);
+      if (k % 50 == 0) REQUIRE(pair.crossings() == 0);
+    }
+    CHECK(pair.crossings() == 0);
+    CHECK(met > 0);
+  };
+  for (const IntegratorInfo& integrator : integrators()) {
+    const std::string name(integrator.name);
+    const bool implicit = name == "implicit-euler" || name == "bdf2" || name == "newton-kinsol";
+    fall(name, "mpcg", implicit ? 0.01 : 1e-4);
+  }
+  for (const LinearSolverInfo& solver : linear_solvers()) fall("implicit-euler", std::string(solver.name), 0.01);
+}
+
+TEST_CASE("cloth that starts through cloth is left to move there, and meets elsewhere", "[self-contact]") {
+  TriangleMesh through = sheet(6, 0.1, {0, 0.0, 0});
+  for (Vec3& x : through.positions) x = Vec3(x[0], 0.02 * x[0] / 0.1 + 1e-4, x[2]);
+  Layers pair({sheet(5, 0.1, {0.001, 0, 0.002}), through}, Vec3::Zero());
+  pair.use("implicit-euler", "auto", usual());
+  CHECK(pair.crossings() > 0);
+  pair.throw_at(1, {0, 0.3, 0});
+  for (int k = 0; k < 20; ++k) REQUIRE(pair.advance(0.01).done);
+  CHECK(pair.momentum()[1] > 0);
+}
+
+TEST_CASE("a thickness and a friction that make no sense are refused", "[self-contact]") {
+  const auto refused = [](const SelfContactOptions& options, const std::string& word) {
+    Assembly all;
+    CHECK_THROWS_WITH(all.add({.mesh = sheet(3, 0.1, Vec3::Zero()), .self_contact = options}), Catch::Contains(word));
+  };
+  refused({.thickness = 0}, "thickness");
+  refused({.thickness = -1e-3}, "thickness");
+  refused({.thickness = 1}, "thickness");
+  refused({.friction = -0.1}, "friction");
+}
+
+TEST_CASE("layers at rest allocate nothing", "[self-contact]") {
+  if (!counts_allocations()) {
+    WARN("skipped: allocations are not counted under the sanitizers");
+    return;
+  }
+  Layers pile({sheet(9, 0.2, {0, 0.0022, 0}), sheet(8, 0.2, {0, 0.0034, 0})});
+  pile.constraints->add(Obstacle{.shape = Plane{}, .margin = 2e-3});
+  pile.use("implicit-euler", "auto", usual());
+  for (int k = 0; k < 60; ++k) pile.advance(0.01);
+  const long before = allocations();
+  const StepReport report = pile.advance(0.01);
+  CHECK(allocations() == before);
+  CHECK(report.self_contacts > 20);
+}
