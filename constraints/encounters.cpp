@@ -4,7 +4,7 @@
 #include <limits>
 #include <map>
 
-namespace drape {
+namespace drape::internal {
 namespace {
 
 // How far a motion may be from the one that was searched, as shares of an edge, and how many pairs there may be for
@@ -14,7 +14,9 @@ constexpr std::size_t most_pairs = 40, exploded = 50;
 
 constexpr double never = -std::numeric_limits<double>::infinity();
 
-Vec3 place(const VecX& x, std::size_t particle) { return x.segment<3>(3 * static_cast<Eigen::Index>(particle)); }
+Vec3 place(const VecX& x, std::size_t particle) {
+  return x.segment<3>(3 * static_cast<Eigen::Index>(particle));
+}
 
 void spread(const VecX& x, std::vector<Vec3>& places) {
   places.resize(static_cast<std::size_t>(x.size() / 3));
@@ -32,11 +34,13 @@ struct Sum {
 // The mean of f(i) for i < n.
 template <class F>
 Vec3 mean(int n, const F& f) {
-  return sum_chunks(n, [&](int begin, int end) {
-           Sum sum;
-           for (int i = begin; i < end; ++i) sum.value += f(i);
-           return sum;
-         }).value /
+  return sum_chunks(n,
+                    [&](int begin, int end) {
+                      Sum sum;
+                      for (int i = begin; i < end; ++i) sum.value += f(i);
+                      return sum;
+                    })
+             .value /
          n;
 }
 
@@ -51,14 +55,15 @@ struct Largest {
 // The largest of f(i) for i < n; infinite where one is no number.
 template <class F>
 double largest(int n, const F& f) {
-  return sum_chunks(n, [&](int begin, int end) {
-           Largest most;
-           for (int i = begin; i < end; ++i) {
-             const double value = f(i);
-             most += {value == value ? value : std::numeric_limits<double>::infinity()};
-           }
-           return most;
-         })
+  return sum_chunks(n,
+                    [&](int begin, int end) {
+                      Largest most;
+                      for (int i = begin; i < end; ++i) {
+                        const double value = f(i);
+                        most += {value == value ? value : std::numeric_limits<double>::infinity()};
+                      }
+                      return most;
+                    })
       .value;
 }
 
@@ -208,7 +213,8 @@ bool Encounters::search(const VecX& x, const VecX& x_new, double gap) {
   boxes_->refit(faces_, start_, end_);
   for_chunks(static_cast<int>(faces_.size()), [&](int begin, int end) {
     for (int f = begin; f < end; ++f)
-      box_of_[f] = box_about({.v = {faces_[f].v[0], faces_[f].v[1], faces_[f].v[2], 0}, .edges = false}, 0, 3);
+      box_of_[f] =
+          box_about({.v = {faces_[f].v[0], faces_[f].v[1], faces_[f].v[2], 0}, .edges = false}, 0, 3);
   });
   // A list that became long is made again with less room: it is looked through in every step. One that is long even so
   // is of cloth that has exploded.
@@ -287,4 +293,4 @@ void Encounters::went(const VecX& x, const VecX& x_new) {
   common_clock_ = common_clock_end_;
 }
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -17,7 +17,7 @@
 #include "mesh/distance/approach.h"
 #include "mesh/distance/moving_boxes.h"
 
-namespace drape {
+namespace drape::internal {
 
 // A pair that comes near, and how.
 struct Meeting {
@@ -52,9 +52,9 @@ class Encounters {
   // Pairs with the reading of their clock up to which they are surely farther apart than 2 (due - clock).
   struct Pairs {
     std::vector<Encounter> list;
-    std::vector<double> due;  // m
+    std::vector<double> due;   // m
     std::vector<Vec3> normal;  // that of the last look
-    std::vector<int> clock;   // of the pairs with a common vertex: that vertex
+    std::vector<int> clock;    // of the pairs with a common vertex: that vertex
   };
   void list(int first, int second, std::vector<Encounter>& found) const;
   Box box_about(const Encounter& e, std::size_t from, std::size_t to) const;
@@ -67,9 +67,10 @@ class Encounters {
   template <class Look>
   void select_from(Pairs& pairs, bool beside, const VecX& x, const VecX& x_new, double gap, const Look& look);
 
-  std::vector<internal::Face> faces_;
-  std::vector<unsigned char> owned_;  // of each face: bits 0 to 2 its vertices, bits 3 to 5 its edges k to k + 1
-  std::optional<internal::MovingBoxes> boxes_;
+  std::vector<Face> faces_;
+  std::vector<unsigned char>
+      owned_;  // of each face: bits 0 to 2 its vertices, bits 3 to 5 its edges k to k + 1
+  std::optional<MovingBoxes> boxes_;
   std::vector<Box> box_of_;
   std::vector<int> next_start_, next_;  // the vertices next to each one
   Pairs beside_, near_;
@@ -121,4 +122,4 @@ void Encounters::select_from(Pairs& pairs, bool beside, const VecX& x, const Vec
     selected_.insert(selected_.end(), chunks_[k].begin(), chunks_[k].end());
 }
 
-}  // namespace drape
+}  // namespace drape::internal

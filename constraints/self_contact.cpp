@@ -10,6 +10,9 @@
 #include "mesh/triangles/topology.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
 constexpr double load_sinks = 0.1, arrival_sinks = 0.5;  // shares of the thickness
@@ -59,7 +62,8 @@ void SelfContacts::renumber(const std::vector<int>& particle_of) {
 void SelfContacts::let_pass(const std::vector<int>& particles) {
   pass_.clear();
   for (int particle : particles) {
-    if (static_cast<std::size_t>(particle) >= pass_.size()) pass_.resize(static_cast<std::size_t>(particle) + 1, 0);
+    if (static_cast<std::size_t>(particle) >= pass_.size())
+      pass_.resize(static_cast<std::size_t>(particle) + 1, 0);
     pass_[particle] = 1;
   }
 }
@@ -84,7 +88,7 @@ void SelfContacts::prepare(const StepMotion& step) {
     encounters_->set(mesh.triangles, step.x);
     way_.assign(n, 1);
     nearest_.assign(n, 0);
-      stale_ = false;
+    stale_ = false;
     look_again_ = true;
   }
   if (look_again_ || crossing() || touched_ != 0) mark_crossings(step.x);
@@ -173,7 +177,8 @@ double SelfContacts::imbalance(double h, const VecX& x_new) const {
 // convex.
 double SelfContacts::share_of_way(double slope, double curvature, const VecX& x_new) const {
   const auto slope_at = [&](double t) {
-    return slope + curvature * (t - 1) + sum_chunks(static_cast<int>(touching_.size()), [&](int begin, int end) {
+    return slope + curvature * (t - 1) +
+           sum_chunks(static_cast<int>(touching_.size()), [&](int begin, int end) {
              double sum = 0;
              for (int k = begin; k < end; ++k) {
                const SelfContact& c = touching_[k];

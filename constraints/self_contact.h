@@ -32,8 +32,10 @@ namespace drape {
 // How stiff the springs are [m/h^2]: for methods that solve for the end of a step, and for those that do not.
 inline constexpr double implicit_kappa = 30, explicit_kappa = 0.2;
 
+namespace internal {
 class Encounters;
 struct Meeting;
+}  // namespace internal
 
 // A triangle between particles that takes part.
 struct SelfFace {
@@ -45,18 +47,18 @@ struct SelfFace {
 struct SelfContact {
   Encounter who;
   std::array<double, 4> weights;
-  Vec3 normal;       // n: unit, towards the first side
-  Vec3 place;        // p at the start of the step [m]
-  Vec3 now;          // p at the point that the contacts were made for last [m]
-  double stiffness;  // k [N/m]
-  double thickness;  // r [m]
-  double friction;   // mu
-  double distance;   // m, when it was found
-  double before = 0;            // f at the end of the last step [N]
-  Vec3 hold = Vec3::Zero();     // t_0 [N]
-  bool active = false;          // whether it acts in the next solve
-  double push = 0;              // f of the last solve [N]
-  double share = 0;             // of the spring that friction is in the next solve, 0 to 1
+  Vec3 normal;               // n: unit, towards the first side
+  Vec3 place;                // p at the start of the step [m]
+  Vec3 now;                  // p at the point that the contacts were made for last [m]
+  double stiffness;          // k [N/m]
+  double thickness;          // r [m]
+  double friction;           // mu
+  double distance;           // m, when it was found
+  double before = 0;         // f at the end of the last step [N]
+  Vec3 hold = Vec3::Zero();  // t_0 [N]
+  bool active = false;       // whether it acts in the next solve
+  double push = 0;           // f of the last solve [N]
+  double share = 0;          // of the spring that friction is in the next solve, 0 to 1
 
   // The slope of the energy along a way of p [N]: of the law, and of the linear contact of the solve.
   Vec3 slope(const Vec3& p) const { return -push_at(p) * normal - rub_at(p, push); }
@@ -65,8 +67,8 @@ struct SelfContact {
   }
 
   double linear_push(const Vec3& p) const { return stiffness * (thickness - normal.dot(p)); }  // N
-  double push_at(const Vec3& p) const { return std::max(0.0, linear_push(p)); }                       // f
-  Vec3 drag_at(const Vec3& p) const {                                                                 // d
+  double push_at(const Vec3& p) const { return std::max(0.0, linear_push(p)); }                // f
+  Vec3 drag_at(const Vec3& p) const {                                                          // d
     const Vec3 moved = p - place;
     return hold - stiffness * (moved - normal.dot(moved) * normal);
   }
@@ -116,8 +118,10 @@ class SelfContacts {
 
   void look_again() { look_again_ = true; }  // the particles were moved from outside
   const std::vector<SelfContact>& touching() const { return touching_; }  // sorted
-  int pushing() const { return pushing_; }    // contacts that pushed at the end of the last step
-  bool crossing() const { return !through_.empty(); }  // whether the cloth passed through itself when the step began
+  int pushing() const { return pushing_; }  // contacts that pushed at the end of the last step
+  bool crossing() const {
+    return !through_.empty();
+  }  // whether the cloth passed through itself when the step began
 
  private:
   void prepare(const StepMotion& step);
@@ -126,11 +130,13 @@ class SelfContacts {
   bool exempt(const Encounter& e) const;
   bool has_contact(const Encounter& e) const;
   // The pairs that are not surely apart all the way from x to x_new, in order.
-  std::vector<Meeting>& meetings(const VecX& x, const VecX& x_new);
-  std::vector<Meeting>& near_ones(const StepMotion& step, double thickest);
-  void look_at_ends(std::vector<Meeting>::iterator begin, std::vector<Meeting>::iterator end) const;
+  std::vector<internal::Meeting>& meetings(const VecX& x, const VecX& x_new);
+  std::vector<internal::Meeting>& near_ones(const StepMotion& step, double thickest);
+  void look_at_ends(std::vector<internal::Meeting>::iterator begin,
+                    std::vector<internal::Meeting>::iterator end) const;
   void find_contacts(const StepMotion& step);
-  std::optional<SelfContact> contact_of(const StepMotion& step, const Encounter& who, const Nearest& near) const;
+  std::optional<SelfContact> contact_of(const StepMotion& step, const Encounter& who,
+                                        const Nearest& near) const;
   void take_over(SelfContact& contact, double recovery) const;
   void stiffen(SelfContact& contact, const StepMotion& step) const;
   double both_thicknesses(const Encounter& e) const;
@@ -138,23 +144,23 @@ class SelfContacts {
   double friction_of(const Encounter& e) const;
 
   std::vector<SelfFace> faces_;
-  std::unique_ptr<Encounters> encounters_;
+  std::unique_ptr<internal::Encounters> encounters_;
   bool stale_ = true, look_again_ = true;
   double kappa_ = 0, reach_ = 0;  // m/h^2; m, from which on pairs are looked at
-  int touched_ = 0;               // not 0: a pair touched at the start of the step, and may have crossed in it
+  int touched_ = 0;  // not 0: a pair touched at the start of the step, and may have crossed in it
   int pushing_ = 0;
   // By particle.
-  std::vector<double> thickness_, friction_;  // m, mu
-  std::vector<int> piece_;                    // the connected piece that it belongs to
-  std::vector<char> pass_, through_mark_;     // let_pass(); near triangles that cross
-  std::vector<int> through_;                  // particles of triangles that cross
-  VecX rest_;                                 // places when the faces were added [m]
-  std::vector<SelfContact> touching_, last_;  // of this step and of the last one, sorted
-  std::vector<SelfContact> met_;              // scratch
+  std::vector<double> thickness_, friction_;     // m, mu
+  std::vector<int> piece_;                       // the connected piece that it belongs to
+  std::vector<char> pass_, through_mark_;        // let_pass(); near triangles that cross
+  std::vector<int> through_;                     // particles of triangles that cross
+  VecX rest_;                                    // places when the faces were added [m]
+  std::vector<SelfContact> touching_, last_;     // of this step and of the last one, sorted
+  std::vector<SelfContact> met_;                 // scratch
   std::vector<double> way_, shorter_, nearest_;  // scratch, by particle
   VecX ahead_, v_at_, proven_;
-  bool accepted_ = false;       // whether v_at_ is of this step
-  bool is_proven_ = false;      // whether nothing meets on the way to proven_ in this step
+  bool accepted_ = false;   // whether v_at_ is of this step
+  bool is_proven_ = false;  // whether nothing meets on the way to proven_ in this step
 };
 
 }  // namespace drape

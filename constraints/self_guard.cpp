@@ -7,6 +7,9 @@
 #include "constraints/self_contact.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
 constexpr int most_rounds = 8;  // in which ways are shortened by shares; after them they are given up
@@ -21,13 +24,14 @@ double floor_of(const VecX& x, const VecX& x_new) {
 
 std::vector<Meeting>& SelfContacts::meetings(const VecX& x, const VecX& x_new) {
   const double floor = floor_of(x, x_new);
-  return encounters_->select(x, x_new, floor,
-                             [&](const Encounter& e, const FourPoints& start, const FourPoints& end, const Vec3& likely) {
-                               if (exempt(e)) return Approach{};
-                               const Approach found = approach_from_within(e.edges, start, end, floor, likely);
-                               if (found.touching) std::atomic_ref(touched_).store(1, std::memory_order_relaxed);
-                               return found;
-                             });
+  return encounters_->select(
+      x, x_new, floor,
+      [&](const Encounter& e, const FourPoints& start, const FourPoints& end, const Vec3& likely) {
+        if (exempt(e)) return Approach{};
+        const Approach found = approach_from_within(e.edges, start, end, floor, likely);
+        if (found.touching) std::atomic_ref(touched_).store(1, std::memory_order_relaxed);
+        return found;
+      });
 }
 
 bool SelfContacts::meet(const StepMotion& step, const VecX& x_new) {
@@ -70,7 +74,8 @@ int SelfContacts::guard(const StepMotion& step, VecX& x_new, VecX& v_new) {
     shorter_ = way_;
     for (const Meeting& meeting : failing)
       for (int v : meeting.who.v)
-        shorter_[v] = std::min(shorter_[v], round < most_rounds ? 0.9 * meeting.approach.until * way_[v] : 0.0);
+        shorter_[v] =
+            std::min(shorter_[v], round < most_rounds ? 0.9 * meeting.approach.until * way_[v] : 0.0);
     way_ = shorter_;
     for (std::size_t i = 0; i < way_.size(); ++i) {
       const auto k = 3 * static_cast<Eigen::Index>(i);

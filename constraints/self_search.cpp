@@ -7,10 +7,14 @@
 #include "constraints/self_contact.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
-constexpr double likely_acceleration = 10;  // m/s^2: what a step may add to a motion before a contact is found late
-constexpr double same_way = 0.5;            // the cosine from which two normals belong to one contact
+constexpr double likely_acceleration =
+    10;                           // m/s^2: what a step may add to a motion before a contact is found late
+constexpr double same_way = 0.5;  // the cosine from which two normals belong to one contact
 
 Vec3 across(const Vec3& n, const Vec3& a) { return a - n.dot(a) * n; }
 
@@ -93,7 +97,8 @@ std::vector<Meeting>& SelfContacts::near_ones(const StepMotion& step, double thi
   const double reach = reach_, more = reach_ - thickest;
   const auto inside = [](double w) { return std::abs(w) > 1e-3 && std::abs(w) < 1 - 1e-3; };
   return encounters_->select(
-      step.x, ahead_, reach, [&](const Encounter& e, const FourPoints& start, const FourPoints& end, const Vec3& likely) {
+      step.x, ahead_, reach,
+      [&](const Encounter& e, const FourPoints& start, const FourPoints& end, const Vec3& likely) {
         if (exempt(e) || std::all_of(e.v.begin(), e.v.end(), [&](int v) { return step.is_held(v); }))
           return Approach{};
         Approach near = approach(e.edges, start, end, reach, likely);
@@ -109,7 +114,8 @@ std::vector<Meeting>& SelfContacts::near_ones(const StepMotion& step, double thi
 
 // What the vertex meets on no way is pushed as it ends, not as it came, or it would stumble over the rim of a sheet that
 // it goes over. Otherwise the end may be on the other side.
-void SelfContacts::look_at_ends(std::vector<Meeting>::iterator begin, std::vector<Meeting>::iterator end) const {
+void SelfContacts::look_at_ends(std::vector<Meeting>::iterator begin,
+                                std::vector<Meeting>::iterator end) const {
   if (std::any_of(begin, end, [](const Meeting& m) { return m.approach.until < 1; })) return;
   for (auto m = begin; m != end; ++m) {
     FourPoints x;
@@ -129,7 +135,8 @@ void SelfContacts::find_contacts(const StepMotion& step) {
   const auto add = [&](const Meeting& m) {
     if (const auto contact = contact_of(step, m.who, m.approach.last)) touching_.push_back(*contact);
   };
-  const auto edges = std::partition(found.begin(), found.end(), [](const Meeting& m) { return !m.who.edges; });
+  const auto edges =
+      std::partition(found.begin(), found.end(), [](const Meeting& m) { return !m.who.edges; });
   std::sort(found.begin(), edges, [](const Meeting& a, const Meeting& b) { return a.who < b.who; });
   std::fill(nearest_.begin(), nearest_.end(), std::numeric_limits<double>::infinity());
   for (auto first = found.begin(); first != edges;) {

@@ -22,9 +22,14 @@ FourPoints any_pair(Random& random) {
   for (Vec3& p : x) p = any_point(random, 1);
   std::uniform_int_distribution<int> kind(0, 3);
   switch (kind(random)) {
-    case 1: x[3] = 0.5 * (x[1] + x[2]) + any_point(random, 1e-9); break;
-    case 2: x[3] = x[2] + (x[1] - x[0]) + any_point(random, 1e-7); break;
-    default: break;
+    case 1:
+      x[3] = 0.5 * (x[1] + x[2]) + any_point(random, 1e-9);
+      break;
+    case 2:
+      x[3] = x[2] + (x[1] - x[0]) + any_point(random, 1e-7);
+      break;
+    default:
+      break;
   }
   if (kind(random) == 0)
     for (Vec3& p : x) p += Vec3(1000, -700, 300);
@@ -54,7 +59,8 @@ double sampled(bool edges, const FourPoints& x) {
 
 }  // namespace
 
-TEST_CASE("the nearest points of a pair are nearer than any others, and their normal separates", "[approach]") {
+TEST_CASE("the nearest points of a pair are nearer than any others, and their normal separates",
+          "[approach]") {
   Random random(1);
   for (int k = 0; k < 4000; ++k) {
     const bool edges = k % 2 == 0;

@@ -26,7 +26,8 @@ TriangleMesh together(const std::vector<TriangleMesh>& meshes) {
   for (const TriangleMesh& mesh : meshes) {
     const int first = all.vertex_count();
     all.positions.insert(all.positions.end(), mesh.positions.begin(), mesh.positions.end());
-    for (const Triangle& t : mesh.triangles) all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    for (const Triangle& t : mesh.triangles)
+      all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
   }
   return all;
 }
@@ -168,7 +169,8 @@ TEST_CASE("sheets that collide keep their momentum and gain no energy", "[self-c
   }
 }
 
-TEST_CASE("a layer sticks on a slope below its friction and slides as Coulomb says above it", "[self-contact]") {
+TEST_CASE("a layer sticks on a slope below its friction and slides as Coulomb says above it",
+          "[self-contact]") {
   constexpr double mu = 0.4, h = 0.01;
   for (double tangent : {0.75 * mu, 2 * mu}) {
     INFO("tan " << tangent);
@@ -275,7 +277,8 @@ TEST_CASE("no integrator and no linear solver lets cloth through cloth", "[self-
     const bool implicit = name == "implicit-euler" || name == "bdf2" || name == "newton-kinsol";
     fall(name, "mpcg", implicit ? 0.01 : 1e-4);
   }
-  for (const LinearSolverInfo& solver : linear_solvers()) fall("implicit-euler", std::string(solver.name), 0.01);
+  for (const LinearSolverInfo& solver : linear_solvers())
+    fall("implicit-euler", std::string(solver.name), 0.01);
 }
 
 TEST_CASE("cloth that starts through cloth is left to move there, and meets elsewhere", "[self-contact]") {
@@ -292,7 +295,8 @@ TEST_CASE("cloth that starts through cloth is left to move there, and meets else
 TEST_CASE("a thickness and a friction that make no sense are refused", "[self-contact]") {
   const auto refused = [](const SelfContactOptions& options, const std::string& word) {
     Assembly all;
-    CHECK_THROWS_WITH(all.add({.mesh = sheet(3, 0.1, Vec3::Zero()), .self_contact = options}), Catch::Contains(word));
+    CHECK_THROWS_WITH(all.add({.mesh = sheet(3, 0.1, Vec3::Zero()), .self_contact = options}),
+                      Catch::Contains(word));
   };
   refused({.thickness = 0}, "thickness");
   refused({.thickness = -1e-3}, "thickness");

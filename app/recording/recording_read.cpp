@@ -132,6 +132,10 @@ void Recording::read_steps() {
       std::vector<double>& row = steps_.rows.emplace_back();
       for (const std::string& cell : rows[k].cells) row.push_back(number(cell));
     }
+    const auto told = static_cast<std::size_t>(std::max(0.0, run_["steps"].number(0)));
+    if (steps_.rows.size() < told)
+      throw InputError(file.string() + ": has " + std::to_string(steps_.rows.size()) + " of " +
+                       std::to_string(told) + " steps; was it cut short?");
   } catch (const InputError& error) {
     missing_.push_back(error.what());
   }

@@ -95,7 +95,8 @@ double separation(bool edges, const FourPoints& x, const Vec3& n) {
   return first - second - rounding;
 }
 
-Approach approach(bool edges, const FourPoints& start, const FourPoints& end, double gap, const Vec3& likely) {
+Approach approach(bool edges, const FourPoints& start, const FourPoints& end, double gap,
+                  const Vec3& likely) {
   if (const Approach found = along(edges, start, end, likely, gap); found.apart) return found;
   return advance(edges, start, end, gap, begin(edges, start));
 }

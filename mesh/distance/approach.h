@@ -31,8 +31,8 @@ using FourPoints = std::array<Vec3, 4>;
 // The points of the two sides that are nearest to each other: sum w_k x_k = distance * normal.
 struct Nearest {
   std::array<double, 4> weights = {};  // those of the first side add up to 1, those of the second to -1
-  Vec3 normal = Vec3::Zero();  // unit, from the second side to the first; zero when they touch
-  double distance = 0;  // m
+  Vec3 normal = Vec3::Zero();          // unit, from the second side to the first; zero when they touch
+  double distance = 0;                 // m
 };
 Nearest nearest(bool edges, const FourPoints& x);
 
@@ -40,11 +40,11 @@ Nearest nearest(bool edges, const FourPoints& x);
 double separation(bool edges, const FourPoints& x, const Vec3& n);
 
 struct Approach {
-  double start = 0;   // their separation at s = 0 [m]
-  double until = 1;   // they stay farther apart than the gap while s < until
-  bool apart = true;  // whether they stay farther apart than the gap up to s = 1
+  double start = 0;       // their separation at s = 0 [m]
+  double until = 1;       // they stay farther apart than the gap while s < until
+  bool apart = true;      // whether they stay farther apart than the gap up to s = 1
   bool touching = false;  // whether they touched at the start, so that nothing was proven
-  Nearest last = {};  // at the s at which was looked last
+  Nearest last = {};      // at the s at which was looked last
 };
 // gap [m] >= 0. When they are nearer than the gap at s = 0, until is 0. likely: a direction that may separate them, to be
 // tried first.
