@@ -45,6 +45,8 @@ class ContactStep {
  public:
   bool bodies() const { return !constraints_->bodies_.empty(); }
   bool meets_anything() const { return bodies() || constraints_->self_.any(); }
+  // Whether a solve may have to be answered by other contacts.
+  bool touches_anything() const { return bodies() || !constraints_->self_.touching().empty(); }
   bool holds_anything() const { return meets_anything() || !moving_pins().empty(); }
 
   void filter(const VecX& v, Filter& filter) const;  // S and z at the velocity v

@@ -48,7 +48,7 @@ class Bdf::ContactSolve {
         contacts_(contacts),
         report_(report),
         wanted_(bdf.options_.tolerance),
-        tolerance_(contacts.meets_anything() ? std::max(wanted_, 0.3 * std::sqrt(wanted_)) : wanted_) {
+        tolerance_(contacts.touches_anything() ? std::max(wanted_, 0.3 * std::sqrt(wanted_)) : wanted_) {
     for (int i = 0; i < bdf.system_.particles(); ++i)
       contacts.set_inertia(i, bdf.A_.inertia(i) / bdf.k().scale[i]);
   }
