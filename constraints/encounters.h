@@ -25,11 +25,16 @@ struct Meeting {
   Approach approach;
 };
 
+inline FourPoints corners(const VecX& x, const Encounter& e) {
+  FourPoints all;
+  for (std::size_t k = 0; k < 4; ++k) all[k] = x.segment<3>(3 * e.v[k]);
+  return all;
+}
+
 class Encounters {
  public:
   // Triangles between particles, each once; a triangle that names a particle twice does not count.
   void set(const std::vector<Triangle>& triangles, const VecX& x);
-  bool empty() const { return faces_.empty(); }
   double mean_edge() const { return mean_edge_; }  // when the triangles were set [m]
 
   // Prepares for select() with motions x -> x_new and gaps up to this one [m]. Searches only where what is known does
@@ -107,12 +112,7 @@ void Encounters::select_from(Pairs& pairs, bool beside, const VecX& x, const Vec
                    clock_end = beside ? clock_end_[pairs.clock[k]] : common_clock_end_;
       if (2 * (pairs.due[k] - clock_end) > gap) continue;
       const Encounter& e = pairs.list[k];
-      FourPoints start, finish;
-      for (std::size_t c = 0; c < 4; ++c) {
-        start[c] = x.segment<3>(3 * e.v[c]);
-        finish[c] = x_new.segment<3>(3 * e.v[c]);
-      }
-      Meeting one{.who = e, .approach = look(e, start, finish, pairs.normal[k])};
+      Meeting one{.who = e, .approach = look(e, corners(x, e), corners(x_new, e), pairs.normal[k])};
       pairs.due[k] = clock + 0.5 * one.approach.start;
       pairs.normal[k] = one.approach.last.normal;
       if (!one.approach.apart) found.push_back(one);

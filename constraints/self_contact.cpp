@@ -126,12 +126,6 @@ bool SelfContacts::exempt(const Encounter& e) const {
   return marked(0, cut) && marked(cut, 4);
 }
 
-bool SelfContacts::has_contact(const Encounter& e) const {
-  const auto at = std::lower_bound(touching_.begin(), touching_.end(), e,
-                                   [](const SelfContact& c, const Encounter& key) { return c.who < key; });
-  return at != touching_.end() && at->who == e;
-}
-
 // So that neither what the contact bears nor what arrives sinks in by more than a share of the thickness.
 void SelfContacts::stiffen(SelfContact& contact, const StepMotion& step) const {
   if (kappa_ < 1) return;

@@ -19,6 +19,7 @@
 // x [m], v [m/s], f [N], k [N/m], h [s].
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -53,7 +54,6 @@ struct SelfContact {
   double stiffness;          // k [N/m]
   double thickness;          // r [m]
   double friction;           // mu
-  double distance;           // m, when it was found
   double before = 0;         // f at the end of the last step [N]
   Vec3 hold = Vec3::Zero();  // t_0 [N]
   bool active = false;       // whether it acts in the next solve
@@ -119,9 +119,8 @@ class SelfContacts {
   void look_again() { look_again_ = true; }  // the particles were moved from outside
   const std::vector<SelfContact>& touching() const { return touching_; }  // sorted
   int pushing() const { return pushing_; }  // contacts that pushed at the end of the last step
-  bool crossing() const {
-    return !through_.empty();
-  }  // whether the cloth passed through itself when the step began
+  // Whether the cloth passed through itself when the step began.
+  bool crossing() const { return !through_.empty(); }
 
  private:
   void prepare(const StepMotion& step);

@@ -23,7 +23,16 @@ bool share_a_particle(const Encounter& a, const Encounter& b) {
                      [&](int v) { return std::find(b.v.begin() + 1, b.v.end(), v) != b.v.end(); });
 }
 
+// The contact of this pair in a sorted list; null when there is none.
+const SelfContact* find(const std::vector<SelfContact>& sorted, const Encounter& who) {
+  const auto at = std::lower_bound(sorted.begin(), sorted.end(), who,
+                                   [](const SelfContact& c, const Encounter& key) { return c.who < key; });
+  return at != sorted.end() && at->who == who ? &*at : nullptr;
+}
+
 }  // namespace
+
+bool SelfContacts::has_contact(const Encounter& e) const { return find(touching_, e) != nullptr; }
 
 double SelfContacts::both_thicknesses(const Encounter& e) const {
   return 0.5 * (thickness_[e.v[0]] + thickness_[e.v[3]]);
@@ -34,9 +43,7 @@ double SelfContacts::both_thicknesses(const Encounter& e) const {
 double SelfContacts::thickness_of(const Encounter& e) const {
   const double both = both_thicknesses(e);
   if (piece_[e.v[0]] != piece_[e.v[3]]) return both;
-  FourPoints rest;
-  for (std::size_t k = 0; k < 4; ++k) rest[k] = rest_.segment<3>(3 * e.v[k]);
-  return std::min(both, 0.5 * nearest(e.edges, rest).distance);
+  return std::min(both, 0.5 * nearest(e.edges, corners(rest_, e)).distance);
 }
 
 double SelfContacts::friction_of(const Encounter& e) const {
@@ -61,8 +68,7 @@ std::optional<SelfContact> SelfContacts::contact_of(const StepMotion& step, cons
                       .now = Vec3::Zero(),
                       .stiffness = kappa_ / (step.h * step.h * inverse),
                       .thickness = thickness_of(who),
-                      .friction = friction_of(who),
-                      .distance = near.distance};
+                      .friction = friction_of(who)};
   contact.place = contact.at(step.x);
   // What starts nearer than r begins with the distance that it has.
   contact.thickness = std::min(contact.thickness, std::max(contact.normal.dot(contact.place), near.distance));
@@ -73,19 +79,20 @@ std::optional<SelfContact> SelfContacts::contact_of(const StepMotion& step, cons
 // The forces of the last step, and the thickness reached there: of the same pair, or of the contact that the vertex
 // had on the same side.
 void SelfContacts::take_over(SelfContact& contact, double recovery) const {
-  const auto before = [](const SelfContact& c, const Encounter& key) { return c.who < key; };
-  auto at = std::lower_bound(last_.begin(), last_.end(), contact.who, before);
-  if ((at == last_.end() || at->who != contact.who) && !contact.who.edges) {
-    constexpr int lowest = std::numeric_limits<int>::min();
-    const Encounter first{.v = {contact.who.v[0], lowest, lowest, lowest}, .edges = false};
-    at = std::lower_bound(last_.begin(), last_.end(), first, before);
-    while (at != last_.end() && !at->who.edges && at->who.v[0] == contact.who.v[0] &&
-           (at->normal.dot(contact.normal) < same_way || !share_a_particle(at->who, contact.who)))
-      ++at;
-    if (at == last_.end() || at->who.edges || at->who.v[0] != contact.who.v[0]) return;
-  } else if (at == last_.end() || at->who != contact.who) {
-    return;
+  const SelfContact* at = find(last_, contact.who);
+  if (!at && !contact.who.edges) {
+    const auto of_vertex = [&](const SelfContact& c) {
+      return !c.who.edges && c.who.v[0] == contact.who.v[0];
+    };
+    auto c =
+        std::lower_bound(last_.begin(), last_.end(), contact.who.v[0],
+                         [](const SelfContact& one, int v) { return !one.who.edges && one.who.v[0] < v; });
+    while (c != last_.end() && of_vertex(*c) &&
+           (c->normal.dot(contact.normal) < same_way || !share_a_particle(c->who, contact.who)))
+      ++c;
+    if (c != last_.end() && of_vertex(*c)) at = &*c;
   }
+  if (!at) return;
   contact.before = at->before;
   contact.hold = across(contact.normal, at->hold);
   contact.thickness =
@@ -112,20 +119,18 @@ std::vector<Meeting>& SelfContacts::near_ones(const StepMotion& step, double thi
       });
 }
 
-// What the vertex meets on no way is pushed as it ends, not as it came, or it would stumble over the rim of a sheet that
-// it goes over. Otherwise the end may be on the other side.
+// A vertex that meets nothing on its way is pushed from the place where it ends: pushed from where it came near, it would
+// stumble over the rim of a sheet that it slides onto. A vertex that meets something may end on the other side of it, so
+// these contacts stay as they were when the vertex came near.
 void SelfContacts::look_at_ends(std::vector<Meeting>::iterator begin,
                                 std::vector<Meeting>::iterator end) const {
   if (std::any_of(begin, end, [](const Meeting& m) { return m.approach.until < 1; })) return;
-  for (auto m = begin; m != end; ++m) {
-    FourPoints x;
-    for (std::size_t k = 0; k < 4; ++k) x[k] = ahead_.segment<3>(3 * m->who.v[k]);
-    m->approach.last = nearest(m->who.edges, x);
-  }
+  for (auto m = begin; m != end; ++m) m->approach.last = nearest(m->who.edges, corners(ahead_, m->who));
 }
 
 // A vertex has one contact with each sheet beside it: the nearest, of triangles that share a particle and lie the
-// same way. Two edges that cross are a contact where they are clearly nearer than their ends are to the other sheet.
+// same way. Two edges that cross are a contact where they are clearly nearer than their ends are to the other sheet, and
+// stay one as long as they are near: or a rim would drop and be lifted by turns.
 void SelfContacts::find_contacts(const StepMotion& step) {
   touching_.clear();
   const double thickest = *std::max_element(thickness_.begin(), thickness_.end());
@@ -157,7 +162,7 @@ void SelfContacts::find_contacts(const StepMotion& step) {
   }
   for (auto m = edges; m != found.end(); ++m) {
     const auto farther = [&](int v) { return m->approach.last.distance < 0.7 * nearest_[v]; };
-    if (std::all_of(m->who.v.begin(), m->who.v.end(), farther)) add(*m);
+    if (find(last_, m->who) || std::all_of(m->who.v.begin(), m->who.v.end(), farther)) add(*m);
   }
 }
 

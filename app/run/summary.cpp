@@ -22,6 +22,9 @@ std::string hints(const RunRecord& record, const Output& output) {
             std::to_string(record.crossings_at_start) + " at the start): drape check " +
             output.folder().string() +
             " says where; a cloth with self_contact = true does not pass through itself and others\n";
+  if (record.self_guarded > 0)
+    text += "hint: vertices were stopped on their way " + counted(record.self_guarded, "time") +
+            ", so that no cloth passes through cloth: a smaller time step is smoother\n";
   if (record.max_penetration > 1e-4)
     text +=
         "hint: a vertex was inside a body by up to " + rounded(1000 * record.max_penetration, 2) + " mm\n";

@@ -3,7 +3,8 @@
 //   dropped   the same sheet, let go 1 cm above a ball of 0.3 m radius, friction 0.3
 // 0.2 kg/m^2, 1000 N/m, 10 uN.m, h = 10 ms, tolerance 1e-4. Iterations, solves and Newton iterations are those of a
 // step on average; the contact residual is the largest of the run. Arguments: SIDE ... (vertices along an edge; 32 and
-// 100 unless given), --steps N (100), --solver NAME (auto), --threads N, --model noh-jung|woven, --scene hung|dropped.
+// 100 unless given), --steps N (100), --solver NAME (auto), --threads N, --model noh-jung|woven, --scene hung|dropped,
+// --self-contact 1 (the sheet meets itself, thickness 1 mm).
 // Without a model, a scene or a number of threads each of them is measured in turn.
 #include <cmath>
 #include <cstdio>
@@ -14,6 +15,7 @@
 
 #include "mesh/base/threads.h"
 #include "solver/drape.h"
+#include "solver/forces/self_contact_force.h"
 #include "tests/bench/bench.h"
 
 namespace {
@@ -24,6 +26,7 @@ using namespace drape::bench;
 struct Run {
   int side, threads;
   std::string scene, model, solver;
+  bool self_contact = false;
 };
 
 struct Cost {
@@ -49,6 +52,12 @@ Cost measure(const Run& run, int steps) {
     constraints.add(Obstacle{.shape = Sphere{Vec3::Zero(), 0.3}, .friction = 0.3});
   else
     constraints.pin({0, run.side - 1});
+  if (run.self_contact) {
+    std::vector<SelfFace> faces;
+    for (const Triangle& t : sheet.triangles) faces.push_back({t, 1e-3, 0.3});
+    constraints.add_self_faces(faces);
+    system.add(self_contact_force(constraints));
+  }
   ImplicitEuler stepper(system, constraints, make_linear_solver(run.solver), {.tolerance = 1e-4});
   State state = at_rest(sheet);
   StepReport sum;
@@ -83,6 +92,7 @@ int main(int count, char** arguments) {
   std::vector<std::string> scenes = {"hung", "dropped"}, models = {"noh-jung", "woven"};
   std::string solver = "auto";
   int steps = 100;
+  bool self_contact = false;
   for (int k = 1; k < count; ++k) {
     const std::string name = arguments[k];
     if (name.rfind("--", 0) != 0) {
@@ -95,6 +105,7 @@ int main(int count, char** arguments) {
     if (name == "--threads") thread_counts = {std::atoi(arguments[k])};
     if (name == "--model") models = {arguments[k]};
     if (name == "--scene") scenes = {arguments[k]};
+    if (name == "--self-contact") self_contact = std::atoi(arguments[k]) != 0;
   }
   if (sides.empty()) sides = {32, 100};
   std::printf("%s, %d steps\n", solver.c_str(), steps);
@@ -106,7 +117,7 @@ int main(int count, char** arguments) {
       std::map<int, double> before;  // threads -> s a simulated second, of the smaller sheet
       for (std::size_t s = 0; s < sides.size(); ++s)
         for (int threads : thread_counts) {
-          const Cost c = measure({sides[s], threads, scene, model, solver}, steps);
+          const Cost c = measure({sides[s], threads, scene, model, solver, self_contact}, steps);
           const double growth =
               s == 0 ? NAN
                      : std::log(c.seconds / before[threads]) / (2 * std::log(1.0 * sides[s] / sides[s - 1]));
