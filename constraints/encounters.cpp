@@ -1,5 +1,6 @@
 #include "constraints/encounters.h"
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -104,30 +105,27 @@ void Encounters::set(const std::vector<Triangle>& triangles, const VecX& x) {
     next_start_.push_back(static_cast<int>(next_.size()));
   }
 
-  for (int f = 0; f < static_cast<int>(faces_.size()); ++f) {
-    std::vector<int> others;
-    for (int v : faces_[f].v)
-      for (int g : around[v])
-        if (g > f) others.push_back(g);
-    std::sort(others.begin(), others.end());
-    others.erase(std::unique(others.begin(), others.end()), others.end());
-    for (int g : others) {
-      list(f, g, beside_.list);
-      beside_.clock.resize(beside_.list.size(), common(f, g));
-    }
+  // A pair of triangles belongs to their lowest common vertex.
+  beside_start_.assign(1, 0);
+  for (int c = 0; c < static_cast<int>(particles); ++c) {
+    for (int f : around[c])
+      for (int g : around[c])
+        if (g > f && common(f, g) == c) list(f, g, beside_.list);
+    beside_start_.push_back(static_cast<int>(beside_.list.size()));
   }
+  beside_due_.assign(particles, never);
   beside_.due.assign(beside_.list.size(), never);
   beside_.normal.assign(beside_.list.size(), Vec3::Zero());
   clock_.assign(particles, 0);
   clock_end_.assign(particles, 0);
   spread(x, start_);
-  boxes_.emplace(faces_, start_);
-  box_of_.resize(faces_.size());
+  boxes_.emplace(faces_, start_, 1);
 }
 
 void Encounters::forget() {
   gap_ = -1;
   std::fill(beside_.due.begin(), beside_.due.end(), never);
+  std::fill(beside_due_.begin(), beside_due_.end(), never);
 }
 
 void Encounters::list(int first, int second, std::vector<Encounter>& found) const {
@@ -211,11 +209,6 @@ bool Encounters::search(const VecX& x, const VecX& x_new, double gap) {
   spread(x_new, end_);
   gap_ = gap;
   boxes_->refit(faces_, start_, end_);
-  for_chunks(static_cast<int>(faces_.size()), [&](int begin, int end) {
-    for (int f = begin; f < end; ++f)
-      box_of_[f] =
-          box_about({.v = {faces_[f].v[0], faces_[f].v[1], faces_[f].v[2], 0}, .edges = false}, 0, 3);
-  });
   // A list that became long is made again with less room: it is looked through in every step. One that is long even so
   // is of cloth that has exploded.
   const std::size_t most = most_pairs * start_.size();
@@ -240,35 +233,32 @@ bool Encounters::search(const VecX& x, const VecX& x_new, double gap) {
 // Lists the pairs that come within this distance. False: they are more than `most`.
 bool Encounters::list_near(double within, std::size_t most) {
   near_.list.clear();
-  candidates_.clear();
-  boxes_->pairs(
-      [&](int first, int second) {
-        candidates_.push_back({std::min(first, second), std::max(first, second)});
-        return candidates_.size() <= 10 * most;
-      },
-      within);
-  if (candidates_.size() > 10 * most) return false;
-  const int n = static_cast<int>(candidates_.size());
-  const auto count = static_cast<std::size_t>(chunk_count(n));
-  if (listed_.size() < count) listed_.resize(count);
-  for_chunks(n, [&](int begin, int end) {
-    std::vector<Encounter>& found = listed_[static_cast<std::size_t>(begin / chunk_size)];
+  const int parts = static_cast<int>(boxes_->parts().size());
+  listed_.resize(boxes_->parts().size());
+  std::atomic<std::size_t> count = 0;
+  parallel_for(parts, static_cast<int>(start_.size()) < serial_below, [&](int part) {
+    std::vector<Encounter>& found = listed_[part];
     found.clear();
-    for (int k = begin; k < end; ++k) {
-      const auto [first, second] = candidates_[k];
-      if (common(first, second) >= 0 || !touch(box_of_[first], box_of_[second], within)) continue;
-      const auto before = static_cast<std::ptrdiff_t>(found.size());
-      list(first, second, found);
-      const auto far = [&](const Encounter& e) {
-        const std::size_t cut = e.edges ? 2 : 1;
-        return !touch(box_about(e, 0, cut), box_about(e, cut, 4), within);
-      };
-      found.erase(std::remove_if(found.begin() + before, found.end(), far), found.end());
-    }
+    boxes_->pairs_of(
+        boxes_->parts()[part],
+        [&](int first, int second) {
+          if (common(first, second) >= 0) return true;
+          const auto before = static_cast<std::ptrdiff_t>(found.size());
+          list(std::min(first, second), std::max(first, second), found);
+          const auto far = [&](const Encounter& e) {
+            const std::size_t cut = e.edges ? 2 : 1;
+            return !touch(box_about(e, 0, cut), box_about(e, cut, 4), within);
+          };
+          found.erase(std::remove_if(found.begin() + before, found.end(), far), found.end());
+          const auto added = found.size() - static_cast<std::size_t>(before);
+          return added == 0 || count.fetch_add(added, std::memory_order_relaxed) + added <= most;
+        },
+        within);
   });
-  for (std::size_t k = 0; k < count && near_.list.size() <= most; ++k)
-    near_.list.insert(near_.list.end(), listed_[k].begin(), listed_[k].end());
-  return near_.list.size() <= most;
+  if (count > most) return false;
+  for (const std::vector<Encounter>& found : listed_)
+    near_.list.insert(near_.list.end(), found.begin(), found.end());
+  return true;
 }
 
 void Encounters::read_clocks(const VecX& x, const VecX& x_new) {

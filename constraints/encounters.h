@@ -10,6 +10,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -59,7 +60,10 @@ class Encounters {
     std::vector<Encounter> list;
     std::vector<double> due;   // m
     std::vector<Vec3> normal;  // that of the last look
-    std::vector<int> clock;    // of the pairs with a common vertex: that vertex
+  };
+  // The reading of a clock at the start and at the end of the motion [m].
+  struct Clock {
+    double start, end;
   };
   void list(int first, int second, std::vector<Encounter>& found) const;
   Box box_about(const Encounter& e, std::size_t from, std::size_t to) const;
@@ -70,22 +74,27 @@ class Encounters {
   bool search(const VecX& x, const VecX& x_new, double gap);
   void read_clocks(const VecX& x, const VecX& x_new);
   template <class Look>
-  void select_from(Pairs& pairs, bool beside, const VecX& x, const VecX& x_new, double gap, const Look& look);
+  double select_pair(Pairs& pairs, std::size_t k, Clock clock, const VecX& x, const VecX& x_new, double gap,
+                     const Look& look, std::vector<Meeting>& found) const;
+  template <class Select>
+  void select_chunks(int n, const Select& select);
 
   std::vector<Face> faces_;
   std::vector<unsigned char>
       owned_;  // of each face: bits 0 to 2 its vertices, bits 3 to 5 its edges k to k + 1
   std::optional<MovingBoxes> boxes_;
-  std::vector<Box> box_of_;
   std::vector<int> next_start_, next_;  // the vertices next to each one
+  // The pairs that have the common vertex c are the numbers beside_start_[c] to beside_start_[c + 1] of beside_, and
+  // none is due before beside_due_[c].
   Pairs beside_, near_;
+  std::vector<int> beside_start_;
+  std::vector<double> beside_due_;
   std::vector<Vec3> start_, end_;  // of the motion that was searched last
   double gap_ = -1, room_ = 0, mean_edge_ = 0;
   // Readings of the clocks at the start and at the end of the motion [m]: by vertex, and of all.
   std::vector<double> clock_, clock_end_;
   double common_clock_ = 0, common_clock_end_ = 0;
-  std::vector<std::pair<int, int>> candidates_;  // scratch of list_near()
-  std::vector<std::vector<Encounter>> listed_;
+  std::vector<std::vector<Encounter>> listed_;  // scratch of list_near()
   std::vector<std::vector<Meeting>> chunks_;  // scratch of select()
   std::vector<Meeting> selected_;
 };
@@ -93,33 +102,45 @@ class Encounters {
 template <class Look>
 std::vector<Meeting>& Encounters::select(const VecX& x, const VecX& x_new, double gap, const Look& look) {
   selected_.clear();
-  select_from(near_, false, x, x_new, gap, look);
-  select_from(beside_, true, x, x_new, gap, look);
+  select_chunks(static_cast<int>(near_.list.size()), [&](int k, std::vector<Meeting>& found) {
+    select_pair(near_, k, {common_clock_, common_clock_end_}, x, x_new, gap, look, found);
+  });
+  select_chunks(static_cast<int>(clock_.size()), [&](int c, std::vector<Meeting>& found) {
+    if (2 * (beside_due_[c] - clock_end_[c]) > gap) return;
+    double earliest = std::numeric_limits<double>::infinity();
+    for (int k = beside_start_[c]; k < beside_start_[c + 1]; ++k)
+      earliest = std::min(
+          earliest, select_pair(beside_, k, {clock_[c], clock_end_[c]}, x, x_new, gap, look, found));
+    beside_due_[c] = earliest;
+  });
   return selected_;
 }
 
-template <class Look>
-void Encounters::select_from(Pairs& pairs, bool beside, const VecX& x, const VecX& x_new, double gap,
-                             const Look& look) {
-  const int n = static_cast<int>(pairs.list.size());
+// Calls select(k, the list to add to) for k < n, by all threads.
+template <class Select>
+void Encounters::select_chunks(int n, const Select& select) {
   const auto count = static_cast<std::size_t>(chunk_count(n));
   if (chunks_.size() < count) chunks_.resize(count);
   for_chunks(n, [&](int begin, int end) {
     std::vector<Meeting>& found = chunks_[static_cast<std::size_t>(begin / chunk_size)];
     found.clear();
-    for (int k = begin; k < end; ++k) {
-      const double clock = beside ? clock_[pairs.clock[k]] : common_clock_,
-                   clock_end = beside ? clock_end_[pairs.clock[k]] : common_clock_end_;
-      if (2 * (pairs.due[k] - clock_end) > gap) continue;
-      const Encounter& e = pairs.list[k];
-      Meeting one{.who = e, .approach = look(e, corners(x, e), corners(x_new, e), pairs.normal[k])};
-      pairs.due[k] = clock + 0.5 * one.approach.start;
-      pairs.normal[k] = one.approach.last.normal;
-      if (!one.approach.apart) found.push_back(one);
-    }
+    for (int k = begin; k < end; ++k) select(k, found);
   });
   for (std::size_t k = 0; k < count; ++k)
     selected_.insert(selected_.end(), chunks_[k].begin(), chunks_[k].end());
+}
+
+// Returns when the pair is due.
+template <class Look>
+double Encounters::select_pair(Pairs& pairs, std::size_t k, Clock clock, const VecX& x, const VecX& x_new,
+                               double gap, const Look& look, std::vector<Meeting>& found) const {
+  if (2 * (pairs.due[k] - clock.end) > gap) return pairs.due[k];
+  const Encounter& e = pairs.list[k];
+  Meeting one{.who = e, .approach = look(e, corners(x, e), corners(x_new, e), pairs.normal[k])};
+  pairs.due[k] = clock.start + 0.5 * one.approach.start;
+  pairs.normal[k] = one.approach.last.normal;
+  if (!one.approach.apart) found.push_back(one);
+  return pairs.due[k];
 }
 
 }  // namespace drape::internal

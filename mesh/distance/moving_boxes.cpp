@@ -4,7 +4,8 @@
 #include <utility>
 
 namespace drape::internal {
-MovingBoxes::MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places) {
+MovingBoxes::MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places, int most_faces)
+    : most_faces_(most_faces) {
   std::vector<std::pair<Vec3, int>> middles;
   middles.reserve(faces.size());
   for (const Face& f : faces)
@@ -12,6 +13,19 @@ MovingBoxes::MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>
                          static_cast<int>(middles.size()));
   grow(middles, 0, static_cast<int>(middles.size()));
   for (const auto& [middle, face] : middles) order_.push_back(face);
+  constexpr int divided = 3;  // levels; some 200 parts
+  divide(0, divided);
+}
+
+// Lists the pairs below a node in parts.
+void MovingBoxes::divide(int node, int levels) {
+  for (int child = 0; child < 4; ++child) {
+    if (levels > 1 && nodes_[node].count[child] < 0)
+      divide(nodes_[node].first[child], levels - 1);
+    else
+      parts_.push_back({node, child, -1});
+    for (int other = child + 1; other < 4; ++other) parts_.push_back({node, child, other});
+  }
 }
 
 // Makes a node of middles[begin, end): they are halved across their longest side, and each half is halved
@@ -36,7 +50,7 @@ int MovingBoxes::grow(std::vector<std::pair<Vec3, int>>& middles, int begin, int
   const int cuts[] = {begin, halve(begin, half), half, halve(half, end), end};
   for (int k = 0; k < 4; ++k) {
     const int count = cuts[k + 1] - cuts[k];
-    const bool leaf = count <= most_faces;
+    const bool leaf = count <= most_faces_;
     const int first = leaf ? cuts[k] : grow(middles, cuts[k], cuts[k + 1]);
     nodes_[node].first[k] = first;
     nodes_[node].count[k] = leaf ? count : -1;
@@ -87,22 +101,31 @@ void MovingBoxes::refit(const std::vector<Face>& faces, const std::vector<Vec3>&
     }
 }
 
-bool MovingBoxes::overlap(const Node& node, int child, const Node& other, int other_child,
-                          float margin) const {
-  float enter = 0, leave = 1;  // the s at which they overlap along all axes looked at so far
-  const auto keep = [&](float at_0, float at_1) {
-    if (at_0 < 0 && at_1 < 0) leave = -1;
-    if (at_0 < 0 && at_1 >= 0) enter = std::max(enter, at_0 / (at_0 - at_1));
-    if (at_0 >= 0 && at_1 < 0) leave = std::min(leave, at_0 / (at_0 - at_1));
+// Which children of a node come within the margin of a child of another along all axes at a common s.
+unsigned MovingBoxes::near_children(int node, int child, int other, float margin) const {
+  typedef float Floats __attribute__((vector_size(16)));
+  const Node &a = nodes_[node], &b = nodes_[other];
+  const auto load = [](const Four& four) { return *reinterpret_cast<const Floats*>(four.data()); };
+  constexpr Floats zero = {0, 0, 0, 0};
+  Floats enter = zero, leave = zero + 1;  // the s at which they are near along all axes looked at so far
+  const auto keep = [&](Floats at_0, Floats at_1) {
+    const Floats at = at_0 / (at_0 - at_1);
+    const auto far_0 = at_0 < zero, far_1 = at_1 < zero;
+    enter = far_0 && (at > enter || far_1) ? (far_1 ? zero + 2 : at) : enter;
+    leave = !far_0 && far_1 && at < leave ? at : leave;
   };
-  for (int k = 0; k < 3; ++k) {
-    keep(node.upper[0][k][child] - other.lower[0][k][other_child] + margin,
-         node.upper[1][k][child] - other.lower[1][k][other_child] + margin);
-    keep(other.upper[0][k][other_child] - node.lower[0][k][child] + margin,
-         other.upper[1][k][other_child] - node.lower[1][k][child] + margin);
+  for (std::size_t k = 0; k < 3; ++k) {
+    keep(a.upper[0][k][child] - load(b.lower[0][k]) + margin,
+         a.upper[1][k][child] - load(b.lower[1][k]) + margin);
+    keep(load(b.upper[0][k]) - a.lower[0][k][child] + margin,
+         load(b.upper[1][k]) - a.lower[1][k][child] + margin);
   }
   // Rounding moves both ends of the span by a few parts in ten millions.
-  return enter <= leave + 1e-5f;
+  const auto near = enter <= leave + 1e-5f;
+  unsigned children = 0;
+  for (int k = 0; k < 4; ++k)
+    if (near[k] != 0 && b.count[k] != 0) children |= 1u << k;
+  return a.count[child] == 0 ? 0 : children;
 }
 
 }  // namespace drape::internal

@@ -21,8 +21,8 @@ namespace drape::internal {
 
 class MovingBoxes {
  public:
-  // Groups the faces by where they are when the vertices are at these places.
-  MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places);
+  // Groups the faces by where they are when the vertices are at these places, up to `most_faces` in a box.
+  MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places, int most_faces = 4);
 
   // Fits the boxes to a step. Allocates nothing.
   void refit(const std::vector<Face>& faces, const std::vector<Vec3>& start, const std::vector<Vec3>& end);
@@ -39,12 +39,20 @@ class MovingBoxes {
   template <class Ask>
   void along(const Vec3& x0, const Vec3& x1, double from, const Ask& ask, double beside = 0) const;
 
-  // Calls ask(face, other) once for every two faces that can come within `margin` [m] of each other at some s: they
-  // lie in leaves whose boxes come as near along each axis at a common s. ask returns whether to go on.
+  // Calls ask(face, other) once for every two faces that can come within `margin` [m] of each other at some s: their
+  // boxes come as near along each axis at a common s. ask returns whether to go on.
   template <class Ask>
   void pairs(const Ask& ask, double margin = 0) const {
-    if (!nodes_.empty()) pairs_within(0, static_cast<float>(margin * (1 + 1e-6)) + slack_, ask);
+    for (const Part& part : parts_)
+      if (!pairs_of(part, ask, margin)) return;
   }
+  // The same in parts, so that threads can share them: all parts together have every pair once.
+  struct Part {
+    int node, first, second;  // the pairs between two children of a node; second -1: those within the first
+  };
+  const std::vector<Part>& parts() const { return parts_; }
+  template <class Ask>
+  bool pairs_of(const Part& part, const Ask& ask, double margin) const;
 
  private:
   using Four = Eigen::Array<float, 4, 1>;
@@ -56,14 +64,14 @@ class MovingBoxes {
     int first, count;
     float squared;
   };
-  static constexpr int most_faces = 4;  // most faces of a leaf
   static constexpr int deepest = 64;    // most entries of a search's stack: three per level
 
   template <class Ask>
-  bool pairs_within(int node, float margin, const Ask& ask) const;
+  bool pairs_within(int node, int child, float margin, const Ask& ask) const;
   template <class Ask>
-  bool pairs_between(int node, int child, int other, int other_child, float margin, const Ask& ask) const;
-  bool overlap(const Node& node, int child, const Node& other, int other_child, float margin) const;
+  bool pairs_between(int node, int child, int other, unsigned others, float margin, const Ask& ask) const;
+  unsigned near_children(int node, int child, int other, float margin) const;
+  void divide(int node, int levels);
 
   int grow(std::vector<std::pair<Vec3, int>>& middles, int begin, int end);
   void fit_leaf(Node& node, int child, const std::vector<Face>& faces, const std::vector<Vec3>& start,
@@ -72,6 +80,8 @@ class MovingBoxes {
 
   std::vector<Node> nodes_;  // parents before their children
   std::vector<int> order_;   // face numbers, leaf by leaf
+  std::vector<Part> parts_;
+  int most_faces_;  // of a leaf
   Vec3 origin_ = Vec3::Zero();
   float slack_ = 0;  // m
 };
@@ -143,37 +153,53 @@ void MovingBoxes::along(const Vec3& x0, const Vec3& x1, double from, const Ask& 
 }
 
 template <class Ask>
-bool MovingBoxes::pairs_within(int node, float margin, const Ask& ask) const {
-  for (int child = 0; child < 4; ++child) {
-    const int first = nodes_[node].first[child], count = nodes_[node].count[child];
-    if (count < 0 && !pairs_within(first, margin, ask)) return false;
-    for (int i = first; i < first + count; ++i)
-      for (int k = i + 1; k < first + count; ++k)
-        if (!ask(order_[i], order_[k])) return false;
-    for (int other = child + 1; other < 4; ++other)
-      if (!pairs_between(node, child, node, other, margin, ask)) return false;
+bool MovingBoxes::pairs_of(const Part& part, const Ask& ask, double margin) const {
+  const float reach = static_cast<float>(margin * (1 + 1e-6)) + slack_;
+  if (part.second < 0) return pairs_within(part.node, part.first, reach, ask);
+  const unsigned second = near_children(part.node, part.first, part.node, reach) & 1u << part.second;
+  return pairs_between(part.node, part.first, part.node, second, reach, ask);
+}
+
+template <class Ask>
+bool MovingBoxes::pairs_within(int node, int child, float margin, const Ask& ask) const {
+  const int first = nodes_[node].first[child], count = nodes_[node].count[child];
+  for (int i = first; i < first + count; ++i)
+    for (int k = i + 1; k < first + count; ++k)
+      if (!ask(order_[i], order_[k])) return false;
+  if (count >= 0) return true;
+  for (int i = 0; i < 4; ++i) {
+    const unsigned after = ~(2u * (1u << i) - 1u);
+    if (!pairs_within(first, i, margin, ask) ||
+        !pairs_between(first, i, first, near_children(first, i, first, margin) & after, margin, ask))
+      return false;
   }
   return true;
 }
 
+// The pairs between a child of a node and those of the children of another that are marked in `others`: their boxes
+// come near.
 template <class Ask>
-bool MovingBoxes::pairs_between(int node, int child, int other, int other_child, float margin,
+bool MovingBoxes::pairs_between(int node, int child, int other, unsigned others, float margin,
                                 const Ask& ask) const {
-  const Node &a = nodes_[node], &b = nodes_[other];
-  const int count = a.count[child], other_count = b.count[other_child];
-  if (count == 0 || other_count == 0 || !overlap(a, child, b, other_child, margin)) return true;
-  const int first = a.first[child], second = b.first[other_child];
-  if (count > 0 && other_count > 0) {
-    for (int i = first; i < first + count; ++i)
-      for (int k = second; k < second + other_count; ++k)
-        if (!ask(order_[i], order_[k])) return false;
-    return true;
-  }
-  for (int i = 0; i < (count < 0 ? 4 : 1); ++i)
-    for (int k = 0; k < (other_count < 0 ? 4 : 1); ++k)
-      if (!pairs_between(count < 0 ? first : node, count < 0 ? i : child, other_count < 0 ? second : other,
-                         other_count < 0 ? k : other_child, margin, ask))
+  const int first = nodes_[node].first[child], count = nodes_[node].count[child];
+  for (int k = 0; k < 4; ++k) {
+    if ((others >> k & 1u) == 0) continue;
+    const int second = nodes_[other].first[k], other_count = nodes_[other].count[k];
+    if (count >= 0 && other_count >= 0) {
+      for (int i = first; i < first + count; ++i)
+        for (int l = second; l < second + other_count; ++l)
+          if (!ask(order_[i], order_[l])) return false;
+    } else if (other_count >= 0) {
+      if (!pairs_between(other, k, first, near_children(other, k, first, margin), margin, ask)) return false;
+    } else if (count >= 0) {
+      if (!pairs_between(node, child, second, near_children(node, child, second, margin), margin, ask))
         return false;
+    } else {
+      for (int i = 0; i < 4; ++i)
+        if (!pairs_between(first, i, second, near_children(first, i, second, margin), margin, ask))
+          return false;
+    }
+  }
   return true;
 }
 
