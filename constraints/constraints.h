@@ -45,6 +45,7 @@ class Constraints {
   // solver/forces/self_contact_force.h.
   void add_self_faces(const std::vector<SelfFace>& faces) { self_.add(faces); }
   // These particles may pass each other, in place of those named before.
+  void set_self_friction(const SelfFriction& pair) { self_.set_friction(pair); }
   void let_pass(const std::vector<int>& particles) { self_.let_pass(particles); }
   const SelfContacts& self() const { return self_; }
 

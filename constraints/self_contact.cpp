@@ -28,6 +28,7 @@ Vec3 SelfContact::rub_at(const Vec3& p, double normal_force) const {
 SelfContacts::SelfContacts() : encounters_(std::make_unique<Encounters>()) {}
 SelfContacts::SelfContacts(const SelfContacts& other) : SelfContacts() {
   add(other.faces_);
+  pairs_ = other.pairs_;
   pass_ = other.pass_;
 }
 SelfContacts& SelfContacts::operator=(const SelfContacts& other) { return *this = SelfContacts(other); }
@@ -77,11 +78,13 @@ void SelfContacts::prepare(const StepMotion& step) {
     mesh.positions.assign(n, Vec3::Zero());
     thickness_.assign(n, 0);
     friction_.assign(n, 0);
+    sheet_.assign(n, 0);
     for (const SelfFace& face : faces_) {
       mesh.triangles.push_back(face.particles);
       for (int particle : face.particles) {
         thickness_[particle] = std::max(thickness_[particle], face.thickness);
         friction_[particle] = std::max(friction_[particle], face.friction);
+        sheet_[particle] = face.sheet;
       }
     }
     piece_ = connected_pieces(mesh);

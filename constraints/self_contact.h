@@ -43,6 +43,13 @@ struct SelfFace {
   std::array<int, 3> particles;
   double thickness;  // m
   double friction;   // mu
+  int sheet = 0;     // the cloth or soft body that it is of
+};
+
+// How two sheets rub, or one on itself, instead of by the friction of both.
+struct SelfFriction {
+  int first, second;  // sheets, in any order
+  double friction;    // mu
 };
 
 struct SelfContact {
@@ -91,6 +98,7 @@ class SelfContacts {
   ~SelfContacts();
 
   void add(const std::vector<SelfFace>& faces);
+  void set_friction(const SelfFriction& pair) { pairs_.push_back(pair); }  // of equal pairs the last counts
   // Particle i gets the number particle_of[i]; a triangle of which two corners become one particle is removed.
   void renumber(const std::vector<int>& particle_of);
   // These particles may pass each other and what is beside them, such as those that are being sewn together.
@@ -143,6 +151,7 @@ class SelfContacts {
   double friction_of(const Encounter& e) const;
 
   std::vector<SelfFace> faces_;
+  std::vector<SelfFriction> pairs_;
   std::unique_ptr<internal::Encounters> encounters_;
   bool stale_ = true, look_again_ = true;
   double kappa_ = 0, reach_ = 0;  // m/h^2; m, from which on pairs are looked at
@@ -150,7 +159,7 @@ class SelfContacts {
   int pushing_ = 0;
   // By particle.
   std::vector<double> thickness_, friction_;     // m, mu
-  std::vector<int> piece_;                       // the connected piece that it belongs to
+  std::vector<int> piece_, sheet_;               // the connected piece, and the sheet, that it belongs to
   std::vector<char> pass_, through_mark_;        // let_pass(); near triangles that cross
   std::vector<int> through_;                     // particles of triangles that cross
   VecX rest_;                                    // places when the faces were added [m]

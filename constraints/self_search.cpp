@@ -47,6 +47,9 @@ double SelfContacts::thickness_of(const Encounter& e) const {
 }
 
 double SelfContacts::friction_of(const Encounter& e) const {
+  const auto between = std::minmax(sheet_[e.v[0]], sheet_[e.v[3]]);
+  for (auto pair = pairs_.rbegin(); pair != pairs_.rend(); ++pair)
+    if (std::minmax(pair->first, pair->second) == between) return pair->friction;
   return std::sqrt(friction_[e.v[0]] * friction_[e.v[3]]);
 }
 

@@ -265,4 +265,16 @@ TEST_CASE("check tells the crossings of a mesh, of a scene and of a run", "[cros
   CHECK(after.exit_code == 0);
   CHECK(after.out.find("crossings at the start: " + at_start + "\n") != std::string::npos);
   CHECK(after.out.find("crossings at the end: " + at_end + " pairs") != std::string::npos);
+  const std::string steps = content(folder.path / "o/steps.csv");
+  CHECK(steps.substr(0, steps.find('\n')).ends_with(",crossings"));
+  CHECK(steps.substr(steps.find_last_of(',', steps.size() - 2)) == "," + at_end + "\n");
+  CHECK(crossings["max"] >= crossings["end"]);
+
+  const Outcome refused = folder.drape("simulate scene.toml --set simulation.require_clean=true --out p");
+  INFO(refused.err);
+  CHECK(refused.exit_code == 2);
+  CHECK(refused.err.find("of triangles cross at the start, such as upper with lower at (") !=
+        std::string::npos);
+  CHECK(std::count(refused.err.begin(), refused.err.end(), '\n') == 1);
+  CHECK_FALSE(std::filesystem::exists(folder.path / "p"));
 }

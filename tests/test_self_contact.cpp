@@ -320,7 +320,7 @@ TEST_CASE("cloth that starts through cloth is left to move there, and meets else
 TEST_CASE("a thickness and a friction that make no sense are refused", "[self-contact]") {
   const auto refused = [](const SelfContactOptions& options, const std::string& word) {
     Assembly all;
-    CHECK_THROWS_WITH(all.add({.mesh = sheet(3, 0.1, Vec3::Zero()), .self_contact = options}),
+    CHECK_THROWS_WITH(all.add(ClothPart{.mesh = sheet(3, 0.1, Vec3::Zero()), .self_contact = options}),
                       Catch::Contains(word));
   };
   refused({.thickness = 0}, "thickness");

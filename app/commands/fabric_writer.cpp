@@ -34,7 +34,7 @@ class FabricFile {
     add_stretch();
     add_bend();
     for (const char* key :
-         {"buckling_clamp", "damping", "damping_kind", "neighbour_weighting", "compression", "viscosity",
+         {"thickness", "buckling_clamp", "damping", "damping_kind", "neighbour_weighting", "compression", "viscosity",
           "measured_drape", "measured_cantilever", "measured_bias_extension", "measured_picture_frame"})
       if (root_.members.contains(key)) keep(key);
     add_hysteresis();

@@ -123,6 +123,7 @@ class DropScene {
     Node cloth = Node::of_table("drape drop");
     cloth.members["mesh"] = Node::of_text(options_.cloth.string(), "drape drop");
     cloth.members["fabric"] = Node::of_text(options_.fabric, "--fabric");
+    cloth.members["self_contact"] = parse_toml_value("true", "drape drop");
     cloth.members["warp"] = Node::of_text("down", "drape drop");
     if (options_.scale) cloth.members["scale"] = parse_toml_value(*options_.scale, "--scale");
     Node pins = Node::of_list({}, "--pin");

@@ -17,6 +17,13 @@
 namespace drape::app {
 namespace {
 
+// Whether nothing in the scene may pass through anything else that is simulated.
+bool all_meet(const Scene& scene) {
+  const auto meets = [](const auto& part) { return part.self_contact; };
+  return std::all_of(scene.cloths.begin(), scene.cloths.end(), meets) &&
+         std::all_of(scene.softs.begin(), scene.softs.end(), meets);
+}
+
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -99,6 +106,7 @@ void Run::describe() {
   record_.settings = settings_json(simulation_.scene->settings);
   record_.warnings = simulation_.messages;
   record_.crossings_at_start = Sheets(simulation_.cloths, simulation_.state.x).crossings();
+  record_.crossings_max = row_.crossings = record_.crossings_at_start;
   const Scene& scene = *simulation_.scene;
   for (std::size_t k = 0; k < simulation_.cloths.size(); ++k) {
     const Cloth& c = simulation_.cloths[k];
@@ -131,6 +139,7 @@ const StepRow& Run::step() {
     return row_;
   }
   framed_ = false;
+  count_crossings();
   record_step(row_);
   write_due_frame();
   progress_.show(row_);
@@ -204,6 +213,19 @@ void Run::record_step(const StepRow& row) {
   }
 }
 
+// The caches of frames keep floats, so it is their rounded places that are looked at.
+void Run::count_crossings() {
+  if (!loop_.schedule().frame()) return;
+  const VecX written = simulation_.state.x.cast<float>().cast<double>();
+  row_.crossings = Sheets(simulation_.cloths, written).crossings();
+  record_.crossings_max = std::max(record_.crossings_max, row_.crossings);
+  if (all_meet(*simulation_.scene) && row_.crossings > record_.crossings_at_start)
+    tell_once(told_crossings_,
+              "warning: step " + std::to_string(row_.step) + " (" + rounded(row_.time, 4) + " s) has " +
+                  counted(row_.crossings, "pair") + " of triangles that cross, " +
+                  std::to_string(record_.crossings_at_start) + " at the start; 'drape check' says where");
+}
+
 void Run::write_frame() {
   framed_ = true;
   if (!output_) return;
@@ -264,6 +286,7 @@ const RunRecord& Run::finish() {
   for (double depth : simulation_.constraints->penetration(simulation_.state.x))
     record_.max_penetration = std::max(record_.max_penetration, depth);
   record_.crossings = Sheets(simulation_.cloths, simulation_.state.x).crossings();
+  record_.crossings_max = std::max(record_.crossings_max, record_.crossings);
   tell_of_open_seams();
   record_.bodies = body_records(simulation_);
   record_.state_hash = state_hash(simulation_.state);

@@ -48,6 +48,7 @@ class Run {
   bool slow(double cloth_speed) const;
   void record_step(const StepRow& row);
   void watch_settling();
+  void count_crossings();
   void write_due_frame();
   void write_frame();
   void note_failure(const StepFailure& failure);
@@ -69,7 +70,7 @@ class Run {
   bool settled_ = false;
   double last_motion_;         // s
   double settled_since_ = -1;  // s; -1: something moves
-  bool told_cut_ = false, told_not_converged_ = false;
+  bool told_cut_ = false, told_not_converged_ = false, told_crossings_ = false;
   std::string failure_;
 };
 

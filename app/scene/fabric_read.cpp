@@ -105,6 +105,8 @@ void read_fabric(Table& table, Fabric& fabric, FabricRecord& record) {
        "hardly bent",
        "chosen"});
   table.read("damping", fabric.damping, dimension::damping, Range::not_negative, "of every connection");
+  table.read("thickness", record.thickness, dimension::length, Range::positive,
+             {"of the fabric: with self_contact two layers rest at the mean of their thicknesses", "1 mm"});
   std::string kind = fabric.damping_kind == DampingKind::axial ? "axial" : "relative";
   table.read("damping_kind", kind, Names{"relative", "axial"},
              "relative: of every difference of velocity of two neighbours; axial: of what goes along their "

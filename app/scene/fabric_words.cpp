@@ -48,6 +48,7 @@ Names lines_of(const FabricRecord& record) {
   Names lines, given;
   for (const auto& [quantity, text] : record.given) given.push_back(text);
   if (!given.empty()) lines.push_back("as given: " + listed(given));
+  if (record.thickness) lines.push_back("thickness " + rounded(1000 * *record.thickness, 4) + " mm");
   if (record.bending_hysteresis)
     lines.push_back("hysteresis of bending 2HB " +
                     both(record.bending_hysteresis->warp, record.bending_hysteresis->weft, 1000, "mN") +

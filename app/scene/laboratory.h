@@ -32,6 +32,7 @@ struct FabricRecord {
   // model has that of shear.
   std::optional<Directions> bending_hysteresis;  // 2HB [N]
   std::optional<Directions> shear_hysteresis;    // 2HG [N/m]
+  std::optional<double> thickness;               // m
 };
 
 inline constexpr double standard_gravity = 9.80665;  // m/s^2, that of gf

@@ -98,7 +98,16 @@ struct SoftEntry {
   Vec3 spacing = Vec3::Zero();               // m; equal along x, y and z where a mesh is filled
   Placement placement;                       // of the mesh and the lattice together
   SoftMaterial material;
+  bool self_contact = false;  // whether it meets cloth and other soft bodies
+  SelfContactOptions self;    // how, where it does
   std::vector<PinEntry> pins;
+  std::string where;
+};
+
+// How two cloths or soft bodies rub on each other, or one on itself.
+struct FrictionEntry {
+  std::array<std::string, 2> between;  // names
+  double friction = 0;
   std::string where;
 };
 
@@ -147,6 +156,7 @@ struct SimulationOptions {
   StepOptions step;
   ContactOptions contact;
   int threads = 0;                 // 0: the number of processors
+  bool require_clean = false;      // refuses a start in which triangles pass through each other
   bool stop_when_settled = false;  // ends the run as soon as nothing has moved for settle_time
   double settle_speed = 1e-3;      // m/s; a cloth that is slower counts as settled
 };
@@ -160,6 +170,7 @@ struct Scene {
   std::vector<ClothEntry> cloths;
   std::vector<SoftEntry> softs;
   std::vector<ObstacleEntry> obstacles;
+  std::vector<FrictionEntry> frictions;
 
   // The pins of cloth k; numbers after the last cloth are soft bodies.
   const std::vector<PinEntry>& pins_of(std::size_t k) const {

@@ -1,20 +1,73 @@
 #include "app/scene/self_contact_read.h"
 
-namespace drape::app {
+#include <algorithm>
 
-void read_self_contact(Table& table, ClothEntry& cloth) {
+#include "mesh/base/errors.h"
+
+namespace drape::app {
+namespace {
+
+void read_switch(Table& table, bool& self_contact, SelfContactOptions& self) {
   table.read(
-      "self_contact", cloth.self_contact,
-      "whether it meets itself, and other cloths that have this: without it they pass through each other");
-  table.read("thickness", cloth.self.thickness, dimension::length, Range::positive,
-             "with self_contact: two layers rest at the mean of their thicknesses");
+      "self_contact", self_contact,
+      "whether it meets itself, and other cloths and soft bodies that have this: without it they pass "
+      "through each other");
   table.read(
-      "friction", cloth.self.friction, dimension::number, Range::not_negative,
+      "friction", self.friction, dimension::number, Range::not_negative,
       "with self_contact: Coulomb's coefficient between two layers; between two cloths it is the root of the "
-      "product of both");
+      "product of both, unless [[friction]] says otherwise");
+}
+
+void require_switch(const Table& table) {
   if (table.has("self_contact")) return;
   for (const char* key : {"thickness", "friction"})
     if (table.has(key)) table.fail(key, "goes with self_contact = true");
+}
+
+}  // namespace
+
+void read_self_contact(Table& table, ClothEntry& cloth) {
+  read_switch(table, cloth.self_contact, cloth.self);
+  cloth.self.thickness = cloth.fabric_record.thickness.value_or(cloth.self.thickness);
+  require_switch(table);
+}
+
+void read_self_contact(Table& table, SoftEntry& soft) {
+  read_switch(table, soft.self_contact, soft.self);
+  table.read("thickness", soft.self.thickness, dimension::length, Range::positive,
+             "with self_contact: what lies on it rests at the mean of both thicknesses");
+  require_switch(table);
+}
+
+FrictionEntry read_friction_pair(Table& table) {
+  FrictionEntry entry;
+  entry.where = table.where();
+  Names between;
+  table.read_required("between", between, "names of two cloths or soft bodies, or of one and itself");
+  if (between.size() != 2) table.fail("between", "expected two names, such as [\"shirt\", \"coat\"]");
+  std::copy(between.begin(), between.end(), entry.between.begin());
+  table.read_required("friction", entry.friction, dimension::number, Range::not_negative,
+                      "Coulomb's coefficient between the two, instead of that of both");
+  table.finish();
+  return entry;
+}
+
+void check_friction_pair(const FrictionEntry& entry, const Scene& scene) {
+  Names names, meeting;
+  const auto add = [&](const auto& part) {
+    names.push_back(part.name);
+    if (part.self_contact) meeting.push_back(part.name);
+  };
+  for (const ClothEntry& cloth : scene.cloths) add(cloth);
+  for (const SoftEntry& soft : scene.softs) add(soft);
+  for (const std::string& name : entry.between) {
+    const std::string start = entry.where + ": between: ";
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw InputError(start + "there is no cloth or soft body '" + one_line(name) + "'; " +
+                       suggestion(name, names));
+    if (std::find(meeting.begin(), meeting.end(), name) == meeting.end())
+      throw InputError(start + one_line(name) + " passes through others; set its self_contact = true");
+  }
 }
 
 }  // namespace drape::app

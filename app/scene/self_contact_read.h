@@ -1,4 +1,5 @@
-// How a cloth meets itself and others: the keys `self_contact`, `thickness` and `friction` of [[cloth]].
+// How cloths and soft bodies meet each other: the keys `self_contact`, `thickness` and `friction` of [[cloth]] and [[soft]],
+// and the table [[friction]] of pairs.
 #pragma once
 
 #include "app/base/table.h"
@@ -6,7 +7,12 @@
 
 namespace drape::app {
 
-// Sets cloth.self_contact and cloth.self.
+// Sets cloth.self_contact and cloth.self; to be called after the fabric is read, which may have a thickness.
 void read_self_contact(Table& table, ClothEntry& cloth);
+void read_self_contact(Table& table, SoftEntry& soft);
+
+FrictionEntry read_friction_pair(Table& table);
+// Throws InputError when one of the two is no cloth or soft body, or does not meet others.
+void check_friction_pair(const FrictionEntry& entry, const Scene& scene);
 
 }  // namespace drape::app

@@ -114,6 +114,7 @@ void load_parts(const Scene& scene, Simulation& simulation) {
   for (const SoftEntry& entry : scene.softs) {
     SoftPart part = load_soft(entry, simulation.messages);
     try {
+      if (entry.self_contact) part.self_contact = entry.self;
       simulation.add(std::move(part));
     } catch (const InputError& error) {
       throw InputError(entry.where + ": " + error.what());

@@ -4,6 +4,7 @@
 
 #include "app/simulation/obstacles.h"
 #include "app/simulation/parts.h"
+#include "app/simulation/sheets.h"
 #include "app/simulation/warnings.h"
 #include "mesh/base/errors.h"
 
@@ -33,6 +34,30 @@ void add_pins(const Scene& scene, Simulation& simulation) {
   }
 }
 
+void rub(const Scene& scene, Simulation& simulation) {
+  const auto number_of = [&](const std::string& name) {
+    const auto cloth = std::find_if(simulation.cloths.begin(), simulation.cloths.end(),
+                                    [&](const Cloth& one) { return one.name == name; });
+    return static_cast<std::size_t>(cloth - simulation.cloths.begin());
+  };
+  for (const FrictionEntry& pair : scene.frictions)
+    simulation.set_friction(number_of(pair.between[0]), number_of(pair.between[1]), pair.friction);
+}
+
+void require_clean(const Scene& scene, const Simulation& simulation) {
+  const Sheets sheets(simulation.cloths, simulation.state.x);
+  const std::vector<CrossingContour> contours = sheets.contours();
+  if (contours.empty()) return;
+  const auto [first, second] = contours.front().pairs.front();
+  const Vec3& place = contours.front().place;
+  throw InputError(scene.label + ": require_clean: " + counted(crossing_count(contours), "pair") +
+                   " of triangles cross at the start, such as " + one_line(sheets.name_of(first)) + " with " +
+                   (sheets.name_of(first) == sheets.name_of(second) ? "itself"
+                                                                    : one_line(sheets.name_of(second))) +
+                   " at (" + rounded(place[0], 4) + ", " + rounded(place[1], 4) + ", " +
+                   rounded(place[2], 4) + ") m; 'drape check' lists them");
+}
+
 }  // namespace
 
 Simulation make_simulation(const Scene& scene, bool keep_level_sets) {
@@ -42,6 +67,8 @@ Simulation make_simulation(const Scene& scene, bool keep_level_sets) {
   load_parts(scene, simulation);
   add_obstacles(scene, keep_level_sets, simulation);
   add_pins(scene, simulation);  // some of them to bodies
+  rub(scene, simulation);
+  if (options.require_clean) require_clean(scene, simulation);
   simulation.use(options.integrator, options.linear_solver, options.step);
   add_warnings(scene, simulation);
   return simulation;

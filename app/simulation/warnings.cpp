@@ -102,6 +102,28 @@ void warn_if_coarse_for_folds(const Cloth& cloth, Names& messages) {
                      "than the mesh");
 }
 
+// What contact of cloth with cloth takes for granted.
+void tell_of_self_contact(const ClothEntry& entry, const Cloth& cloth, Names& messages) {
+  constexpr double coarse = 20;  // edges that long, in thicknesses
+  if (!entry.self_contact) return;
+  const std::string start = "note: cloth " + cloth.name + ": ";
+  if (!entry.fabric_record.thickness)
+    messages.push_back(start + "no thickness is given: layers rest " +
+                       rounded(1000 * entry.self.thickness, 3) + " mm apart");
+  if (cloth.report.median_edge > coarse * entry.self.thickness)
+    messages.push_back(start + "its edges (median " + rounded(1000 * cloth.report.median_edge, 2) +
+                       " mm) are long for layers " + rounded(1000 * entry.self.thickness, 3) +
+                       " mm apart: where it is folded over, they lie farther apart; subdivide the mesh if "
+                       "that matters");
+}
+
+void tell_of_self_contact(const SoftEntry& entry, Names& messages) {
+  if (entry.self_contact && !entry.mesh.empty())
+    messages.push_back("note: soft body " + entry.name +
+                       ": cloth meets the surface of its lattice, which is up to a cell (" +
+                       rounded(1000 * entry.spacing[0], 3) + " mm) outside its mesh");
+}
+
 void warn_if_limp(const Cloth& cloth, Names& messages) {
   const double curvature = cloth.limp_below;
   if (!(curvature > 2 * limp_curvature(mean_bend(cloth.fabric), cloth.fabric.area_density))) return;
@@ -183,6 +205,9 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
     tell_of_damping(cloth, simulation.messages);
     tell_of_directions(cloth, simulation.messages);
   }
+  for (std::size_t k = 0; k < scene.cloths.size(); ++k)
+    tell_of_self_contact(scene.cloths[k], simulation.cloths[k], simulation.messages);
+  for (const SoftEntry& soft : scene.softs) tell_of_self_contact(soft, simulation.messages);
   warn_of_vertices_inside(scene, simulation);
   warn_if_coarse(scene, simulation);
   warn_of_restitution(scene, simulation.messages);

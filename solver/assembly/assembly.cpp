@@ -191,13 +191,8 @@ Cloth& Assembly::add(ClothPart part) {
   for (const Triangle& t : cloth.mesh.triangles)
     faces_.push_back({{first + t[0], first + t[1], first + t[2]},
                       cloth.fabric.stretch_spring.value_or(mean_stretch(cloth.fabric))});
-  if (part.self_contact) {
-    check_self_contact(cloth, *part.self_contact);
-    for (const Triangle& t : cloth.mesh.triangles)
-      self_.push_back({{first + t[0], first + t[1], first + t[2]},
-                       part.self_contact->thickness,
-                       part.self_contact->friction});
-  }
+  if (part.self_contact)
+    meet(cloth, *part.self_contact, cloth.mesh.triangles, [&](int vertex) { return first + vertex; });
   const std::vector<Vec3> positions = start_of(cloth);
   return take(std::move(cloth), positions, masses);
 }
@@ -239,7 +234,28 @@ Cloth& Assembly::add(SoftPart part) {
     const auto particle = [&](std::size_t k) { return first + on_surface[t[k]]; };
     faces_.push_back({{particle(0), particle(1), particle(2)}, stiffness});
   }
+  if (part.self_contact)
+    meet(cloth, *part.self_contact, surface.triangles, [&](int v) { return first + on_surface[v]; });
   return take(std::move(cloth), positions, masses);
+}
+
+// Lets the triangles of the next cloth take part in contact of cloth and cloth.
+template <class Particle>
+void Assembly::meet(const Cloth& cloth, const SelfContactOptions& options,
+                    const std::vector<Triangle>& triangles, const Particle& particle) {
+  check_self_contact(cloth, options);
+  for (const Triangle& t : triangles)
+    self_.push_back({{particle(t[0]), particle(t[1]), particle(t[2])},
+                     options.thickness,
+                     options.friction,
+                     static_cast<int>(cloths.size())});
+}
+
+void Assembly::set_friction(std::size_t k, std::size_t l, double friction) {
+  if (!(friction >= 0) || !std::isfinite(friction))
+    throw InputError("friction between " + cloths.at(k).name + " and " + cloths.at(l).name + " = " +
+                     std::to_string(friction) + ": it is finite and not negative");
+  constraints->set_self_friction({static_cast<int>(k), static_cast<int>(l), friction});
 }
 
 void Assembly::pin(const PinRule& rule, std::size_t k) {

@@ -49,6 +49,10 @@ struct Assembly {
   // nothing.
   void pin(const PinRule& rule, std::size_t k = 0);
 
+  // How cloths[k] and cloths[l] rub on each other (k = l: one on itself), instead of by the friction of both. Throws
+  // InputError when it is negative or not finite.
+  void set_friction(std::size_t k, std::size_t l, double friction);
+
   // Makes the system at the first call, and steps with this integrator from then on. If there are bodies by
   // the first call, their corners and rims are kept from coming through triangles.
   void use(MakeIntegrator make);
@@ -62,6 +66,9 @@ struct Assembly {
  private:
   using Forces = std::vector<std::unique_ptr<Force>>;
 
+  template <class Particle>
+  void meet(const Cloth& cloth, const SelfContactOptions& options, const std::vector<Triangle>& triangles,
+            const Particle& particle);
   Cloth& take(Cloth cloth, const std::vector<Vec3>& positions, const std::vector<double>& masses);
   // Adds the forces of a part, as far as it has been sewn, and notes its edges.
   void connect(Cloth& cloth, Forces& forces) const;

@@ -28,7 +28,8 @@ enum class ClothModel {
   woven      // membrane and plate, for any triangle mesh (solver/forces/woven.h)
 };
 
-// How a cloth meets itself and others that have this (constraints/self_contact.h).
+// How a cloth or a soft body meets itself and others that have this (constraints/self_contact.h). A soft body is met at
+// the surface of its lattice.
 struct SelfContactOptions {
   double thickness = 1e-3;  // m: two layers rest at the mean of their thicknesses
   double friction = 0.3;    // mu: between two cloths the root of the product of both
@@ -58,6 +59,7 @@ struct SoftPart {
   // the lattice, and the mass is that of the cells.
   std::optional<TriangleMesh> mesh = {};
   Pose place = {};  // where lattice and mesh are placed
+  std::optional<SelfContactOptions> self_contact = {};  // unset: cloth passes through it
 };
 
 // A pair of particles whose strain l / L - 1 [-] is watched.

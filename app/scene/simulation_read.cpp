@@ -1,0 +1,124 @@
+#include "app/scene/simulation_read.h"
+
+#include "mesh/base/errors.h"
+#include "mesh/base/threads.h"
+
+namespace drape::app {
+namespace {
+
+template <class Infos>
+Names names_of(const Infos& infos) {
+  Names names;
+  for (const auto& info : infos) names.emplace_back(info.name);
+  return names;
+}
+
+void read_step(Table& table, StepOptions& step) {
+  table.read("newton_iterations", step.newton_iterations, 1, "linear solves a step");
+  table.read("newton_tolerance", step.newton_tolerance, dimension::number, Range::positive,
+             "of the nonlinear residual, relative to the weight; without gravity the iterations end at "
+             "round-off");
+  table.read("tolerance", step.tolerance, dimension::number, Range::positive,
+             "relative residual of the linear solve; less than 1");
+  if (!(step.tolerance < 1))
+    table.fail("tolerance", "expected a part of the residual, less than 1, such as 1e-6");
+  table.read(
+      "max_linear_iterations", step.max_linear_iterations, 0,
+      "0: chosen by size, and reaching it is a failure; given: the solve stops there and the step counts "
+      "as not converged");
+  table.read(
+      "contact_tolerance", step.contact_tolerance, dimension::number, Range::positive,
+      {"the contacts have settled when the impulses that are wrong come to this, relative to the weight",
+       "ten times `tolerance`"});
+  table.read("max_contact_solves", step.max_contact_solves, 1,
+             "how often a step is solved again because a contact changed");
+  table.read("max_halvings", step.max_halvings, 0, "how often a step that fails is halved");
+  table.read("relative_tolerance", step.relative_tolerance, dimension::number, Range::positive,
+             "of `cvode-` and `arkode-`: the error of a velocity in an inner step, relative to the speed");
+  table.read("absolute_tolerance_position", step.absolute_tolerance_position, dimension::length,
+             Range::positive,
+             {"the error of a coordinate in an inner step",
+              "a hundredth of what the weight of a vertex stretches the cloth around it"});
+  table.read("absolute_tolerance_velocity", step.absolute_tolerance_velocity, dimension::speed,
+             Range::positive,
+             {"added to the error of a velocity", "as for a coordinate, at the stiffest vibration"});
+  table.read("max_inner_steps", step.max_inner_steps, 1, "of these, in one step; more is a failure");
+}
+
+void read_contact(Table& table, SimulationOptions& options) {
+  std::string word;
+  table.read("contact", word, names_of(contact_modes()),
+             {"constraint: held in the solve; velocity: velocities projected onto the surface, what explicit "
+              "integrators do when nothing is said; restitution: impacts spring back, for these only",
+              "by the integrator"});
+  if (!table.has("contact")) return;
+  for (const ContactModeInfo& info : contact_modes())
+    if (word == info.name) options.step.contact = info.mode;
+  try {
+    contact_mode(options.integrator, options.step.contact);
+  } catch (const InputError& error) {
+    throw InputError(table.find("contact")->where + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+SimulationOptions read_simulation(const Table* given) {
+  SimulationOptions options;
+  if (!given) return options;
+  Table table = *given;
+  table.read("duration", options.duration, dimension::time, Range::positive,
+             "what is simulated; the end is the last frame, also where it is no whole number of frames");
+  table.read("time_step", options.time_step, dimension::time, Range::positive,
+             "length of a step; shorter, equal from frame to frame, where no whole number of them comes to a "
+             "frame");
+  table.read("frame_rate", options.frame_rate, dimension::rate, Range::not_negative,
+             "of the frames that are written: frame k is the state at k / rate, the last frame the state at "
+             "the end; 0: only the last");
+  table.read("gravity", options.gravity, dimension::acceleration, "acts on all that has a mass");
+  table.read_part("integrator", options.integrator, names_of(integrators()), "how time goes on");
+  table.read_part("linear_solver", options.linear_solver, names_of(linear_solvers()),
+                  "what solves the system of a step, NAME or NAME+PRECONDITIONER");
+  read_contact(table, options);
+  read_step(table, options.step);
+  table.read("recovery_speed", options.contact.recovery_speed, dimension::speed, Range::positive,
+             "at which what starts inside a body is brought out");
+  table.read("threads", options.threads, 1,
+             {"how many; the result does not depend on it", "as many as processors"});
+  if (options.threads > most_threads)
+    table.fail("threads", "expected at most " + std::to_string(most_threads));
+  table.read("require_clean", options.require_clean,
+             "refuse a start in which triangles of cloths or soft bodies pass through each other");
+  table.read("stop_when_settled", options.stop_when_settled,
+             "end when no cloth and no body with a mass has been faster than settle_speed for 0.2 s, and no "
+             "motion or frame is still to come");
+  table.read("settle_speed", options.settle_speed, dimension::speed, Range::positive,
+             "also decides between \"settled\" and \"moving\" in run.json");
+  table.finish();
+  if (options.frame_rate * options.time_step > 10)
+    table.fail("frame_rate", "is more than ten frames in a step of " + rounded(options.time_step, 4) +
+                                 " s, which would be cut as often; check the units");
+  if (options.duration / options.time_step > 1e9)
+    table.fail(
+        table.has("time_step") ? "time_step" : "duration",
+        "the run would take " + rounded(options.duration / options.time_step, 3) + " steps; check the units");
+  return options;
+}
+
+std::optional<Air> read_air(std::vector<Table> given, const Table& scene) {
+  if (given.size() > 1) scene.fail("air", "there may be only one");
+  if (given.empty()) return {};
+  Air air;
+  Table& table = given.front();
+  table.read("wind", air.wind, dimension::speed, "the velocity of the air, the same everywhere and always");
+  table.read("density", air.density, dimension::density, Range::not_negative, "of the air");
+  table.read("drag", air.drag, dimension::number, Range::not_negative,
+             "C of a plate square to the wind: its force per area is density C v^2 / 2");
+  table.read("skin_friction", air.skin_friction, dimension::number, Range::not_negative,
+             "C of a plate along the wind, of both sides together");
+  table.finish();
+  return air;
+}
+
+
+}  // namespace drape::app
