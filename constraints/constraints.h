@@ -44,8 +44,8 @@ class Constraints {
   // Adds triangles of the cloth that meet each other. They are pushed by a force, which the System needs, too:
   // solver/forces/self_contact_force.h.
   void add_self_faces(const std::vector<SelfFace>& faces) { self_.add(faces); }
-  // These particles may pass each other, in place of those named before.
   void set_self_friction(const SelfFriction& pair) { self_.set_friction(pair); }
+  // These particles may pass each other, in place of those named before.
   void let_pass(const std::vector<int>& particles) { self_.let_pass(particles); }
   const SelfContacts& self() const { return self_; }
 

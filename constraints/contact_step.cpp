@@ -167,7 +167,15 @@ ContactReport ContactStep::finish(VecX& x_new, VecX& v_new) {
   if (!meets_anything()) return report;
   StepMotion& step = constraints_->step_;
   if (bodies()) constraints_->contacts_.guard(constraints_->bodies_, step, x_new, v_new, report);
-  report.self_guarded = constraints_->self_.guard(step, x_new, v_new);
+  report.self_guarded =
+      constraints_->self_.guard(step, constraints_->contacts_.touching(), true, x_new, v_new);
+  if (bodies() && report.self_guarded > 0) {
+    const int before = report.guarded;
+    constraints_->contacts_.guard(constraints_->bodies_, step, x_new, v_new, report);
+    if (report.guarded > before)  // a common way led into a body
+      report.self_guarded +=
+          constraints_->self_.guard(step, constraints_->contacts_.touching(), false, x_new, v_new);
+  }
   constraints_->self_.end_step(step, x_new);
   report.self_contacts = constraints_->self_.pushing();
   if (bodies()) {

@@ -95,7 +95,7 @@ class Encounters {
   std::vector<double> clock_, clock_end_;
   double common_clock_ = 0, common_clock_end_ = 0;
   std::vector<std::vector<Encounter>> listed_;  // scratch of list_near()
-  std::vector<std::vector<Meeting>> chunks_;  // scratch of select()
+  std::vector<std::vector<Meeting>> chunks_;    // scratch of select()
   std::vector<Meeting> selected_;
 };
 
@@ -109,8 +109,8 @@ std::vector<Meeting>& Encounters::select(const VecX& x, const VecX& x_new, doubl
     if (2 * (beside_due_[c] - clock_end_[c]) > gap) return;
     double earliest = std::numeric_limits<double>::infinity();
     for (int k = beside_start_[c]; k < beside_start_[c + 1]; ++k)
-      earliest = std::min(
-          earliest, select_pair(beside_, k, {clock_[c], clock_end_[c]}, x, x_new, gap, look, found));
+      earliest =
+          std::min(earliest, select_pair(beside_, k, {clock_[c], clock_end_[c]}, x, x_new, gap, look, found));
     beside_due_[c] = earliest;
   });
   return selected_;

@@ -13,8 +13,9 @@
 //   Within a solve a contact is linear: it acts or not, and friction is a spring weakened to share (t_0 - k s).
 //   react() corrects both until they agree with the solve.
 //   The guard: every vertex goes the share t_i of its way, at first all of it. The pairs that would come nearer than
-//   `floor` on the way are found [mesh/distance/approach.h], and their vertices are stopped before that, until none
-//   is left. A pair that stands still needs no proof, so this ends. It holds for every integrator.
+//   `floor` on the way are found [mesh/distance/approach.h]. Their vertices become a zone, which keeps the motion D that
+//   it has on the whole, or that of a body which it touches, so that cloth in motion is not held up: x_i + D + t_i (d_i - D). t_i is made less until no pair
+//   fails. Two that move alike need no proof, and zones only grow, so this ends. It holds for every integrator.
 //   Where the cloth starts through itself, the triangles there neither push nor are guarded while they cross.
 // x [m], v [m/s], f [N], k [N/m], h [s].
 #pragma once
@@ -25,6 +26,7 @@
 #include <optional>
 #include <vector>
 
+#include "constraints/contact.h"
 #include "constraints/step_motion.h"
 #include "mesh/distance/approach.h"
 
@@ -120,8 +122,11 @@ class SelfContacts {
   const VecX* accepted_velocity() const { return accepted_ ? &v_at_ : nullptr; }
   // Adds the pairs that would meet on the way to x_new and are no contacts yet; true when there are any.
   bool meet(const StepMotion& step, const VecX& x_new);
-  // Shortens the ways to x_new so that nothing meets; returns how many particles it stopped.
-  int guard(const StepMotion& step, VecX& x_new, VecX& v_new);
+  // Shortens the ways to x_new so that nothing meets; returns how many particles it stopped. on_bodies: the contacts with
+  // bodies. in_common: whether what is stopped goes on by a common way, which may lead into a body; without it, everything
+  // stays on its own way.
+  int guard(const StepMotion& step, const std::vector<Contact>& on_bodies, bool in_common, VecX& x_new,
+            VecX& v_new);
   void end_step(const StepMotion& step, const VecX& x_new);
 
   void look_again() { look_again_ = true; }  // the particles were moved from outside
@@ -133,6 +138,10 @@ class SelfContacts {
  private:
   void prepare(const StepMotion& step);
   void mark_crossings(const VecX& x);
+  int zone_of(int particle);
+  void go_shares(const StepMotion& step, const VecX& x_new, bool in_common);
+  void stop(const std::vector<internal::Meeting>& failing, const StepMotion& step, const VecX& x_new,
+            bool by_shares, bool in_common);
   double share_of_way(double slope, double curvature, const VecX& x_new) const;
   bool exempt(const Encounter& e) const;
   bool has_contact(const Encounter& e) const;
@@ -166,6 +175,12 @@ class SelfContacts {
   std::vector<SelfContact> touching_, last_;     // of this step and of the last one, sorted
   std::vector<SelfContact> met_;                 // scratch
   std::vector<double> way_, shorter_, nearest_;  // scratch, by particle
+  // Of the guard: in one zone are particles with the same root; the others are by root.
+  std::vector<int> zone_;
+  std::vector<Vec3> common_, kept_;
+  std::vector<double> weight_;
+  enum class Held : char { no, by_body, yes };
+  std::vector<Held> hold_, zone_hold_;  // of each particle; the firmest of its zone
   VecX ahead_, v_at_, proven_;
   bool accepted_ = false;   // whether v_at_ is of this step
   bool is_proven_ = false;  // whether nothing meets on the way to proven_ in this step

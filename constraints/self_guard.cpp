@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
 #include "constraints/encounters.h"
 #include "constraints/self_contact.h"
@@ -12,7 +13,9 @@ using namespace internal;
 
 namespace {
 
-constexpr int most_rounds = 8;  // in which ways are shortened by shares; after them they are given up
+// In so many rounds ways are shortened by shares, and then given up. What still fails then stands still, and after the last
+// round everything does.
+constexpr int rounds_by_shares = 8, rounds_in_common = 24, most_rounds = 40;
 
 // No two things come nearer than this [m]: places that are written as floats then do not cross, either.
 double floor_of(const VecX& x, const VecX& x_new) {
@@ -58,32 +61,81 @@ bool SelfContacts::meet(const StepMotion& step, const VecX& x_new) {
   return true;
 }
 
-int SelfContacts::guard(const StepMotion& step, VecX& x_new, VecX& v_new) {
+int SelfContacts::zone_of(int particle) {
+  while (zone_[particle] != particle) particle = zone_[particle] = zone_[zone_[particle]];
+  return particle;
+}
+
+// Sets ahead_ to where the particles come that go the shares way_ of their ways. A zone has one way in common: the mean
+// way of its particles that are held, if there are any, else of those that touch a body, else of all by mass. A zone of
+// the last kind keeps its mean, so no momentum is lost. Where particles are held that go different ways, it is none.
+void SelfContacts::go_shares(const StepMotion& step, const VecX& x_new, bool in_common) {
+  const int n = static_cast<int>(zone_.size());
+  const auto way = [&](int i) { return Vec3(x_new.segment<3>(3 * i) - step.x.segment<3>(3 * i)); };
+  const auto hold_on = [&](int i) { return step.is_held(i) ? Held::yes : hold_[i]; };
+  const auto weight = [&](int i) {
+    const Held of_zone = zone_hold_[zone_of(i)];
+    return hold_on(i) != of_zone ? 0.0 : of_zone == Held::no ? step.mass(i) : 1.0;
+  };
+  common_.assign(zone_.size(), Vec3::Zero());
+  weight_.assign(zone_.size(), 0);
+  zone_hold_.assign(zone_.size(), Held::no);
+  for (int i = 0; i < n; ++i) zone_hold_[zone_of(i)] = std::max(zone_hold_[zone_of(i)], hold_on(i));
+  for (int i = 0; i < n; ++i) {
+    common_[zone_of(i)] += weight(i) * way(i);
+    weight_[zone_of(i)] += weight(i);
+  }
+  for (int i = 0; i < n; ++i) {
+    if (weight_[i] > 0) common_[i] /= weight_[i];
+    if (!in_common) common_[i].setZero();
+  }
+  for (int i = 0; i < n; ++i)
+    if (step.is_held(i) && way(i) != common_[zone_of(i)]) common_[zone_of(i)].setZero();
+  kept_ = common_;
+  for (int i = 0; i < n; ++i) {
+    const int zone = zone_of(i);
+    if (in_common && zone_hold_[zone] == Held::no && weight_[zone] > 0)
+      kept_[zone] -= weight(i) / weight_[zone] * way_[i] * (way(i) - common_[zone]);
+  }
+  for (int i = 0; i < n; ++i)
+    if (way_[i] < 1)
+      ahead_.segment<3>(3 * i) =
+          step.x.segment<3>(3 * i) + kept_[zone_of(i)] + way_[i] * (way(i) - common_[zone_of(i)]);
+}
+
+// Joins the particles of the pairs to zones, and shortens the way of each against that of its zone.
+void SelfContacts::stop(const std::vector<Meeting>& failing, const StepMotion& step, const VecX& x_new,
+                        bool by_shares, bool in_common) {
+  shorter_ = way_;
+  for (const Meeting& meeting : failing)
+    for (int v : meeting.who.v) {
+      zone_[zone_of(v)] = zone_of(meeting.who.v[0]);
+      shorter_[v] = std::min(shorter_[v], by_shares ? 0.9 * meeting.approach.until * way_[v] : 0.0);
+    }
+  way_ = shorter_;
+  go_shares(step, x_new, in_common);
+}
+
+int SelfContacts::guard(const StepMotion& step, const std::vector<Contact>& on_bodies, bool in_common,
+                        VecX& x_new, VecX& v_new) {
   if (!any() || (is_proven_ && x_new == proven_) || !x_new.allFinite()) return 0;
   int stopped = 0;
+  hold_.assign(way_.size(), Held::no);
+  for (const Contact& contact : on_bodies)
+    if (contact.active()) hold_[contact.particle] = Held::by_body;
   std::fill(way_.begin(), way_.end(), 1.0);
+  zone_.resize(way_.size());
+  std::iota(zone_.begin(), zone_.end(), 0);
   ahead_ = x_new;
   for (int round = 0;; ++round) {
-    if (round > 2 * most_rounds || !encounters_->follow(step.x, ahead_, reach_)) {  // then nothing moves
+    if (round > most_rounds || !encounters_->follow(step.x, ahead_, reach_)) {  // then nothing moves
       std::fill(way_.begin(), way_.end(), 0.0);
       ahead_ = step.x;
       break;
     }
     const std::vector<Meeting>& failing = meetings(step.x, ahead_);
     if (failing.empty()) break;
-    shorter_ = way_;
-    for (const Meeting& meeting : failing)
-      for (int v : meeting.who.v)
-        shorter_[v] =
-            std::min(shorter_[v], round < most_rounds ? 0.9 * meeting.approach.until * way_[v] : 0.0);
-    way_ = shorter_;
-    for (std::size_t i = 0; i < way_.size(); ++i) {
-      const auto k = 3 * static_cast<Eigen::Index>(i);
-      if (way_[i] == 0)
-        ahead_.segment<3>(k) = step.x.segment<3>(k);
-      else if (way_[i] < 1)
-        ahead_.segment<3>(k) = step.x.segment<3>(k) + way_[i] * (x_new.segment<3>(k) - step.x.segment<3>(k));
-    }
+    stop(failing, step, x_new, round < rounds_by_shares, in_common && round < rounds_in_common);
   }
   for (std::size_t i = 0; i < way_.size(); ++i) {
     if (way_[i] == 1) continue;

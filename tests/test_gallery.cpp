@@ -53,6 +53,7 @@ const Part gallery[] = {
     {"soft-bowl", 0.8, 10},
     {"soft-plane", 0.5, 10},
     {"soft-sphere", 0.8, 10},     // turns over the ball
+    {"soft-stack", 0.5, 1},       // the cloth has come to both cubes
     {"soft-tilted", 0.8, 10},
     {"tablecloth", 0.6, 1},       // hangs over the rims
     {"tablecloth-pull", 1.6, 1},  // and is pulled from 1 s on

@@ -95,8 +95,7 @@ TEST_CASE("a sheet comes to rest on a soft cube, as far above it as they are thi
     CHECK(all.crossings() == 0);
     double top = -1, least = 1, most = -1;
     const Cloth &cube = all.cloths[0], &sheet = all.cloths[1];
-    for (int i = cube.first_particle; i < cube.end_particle; ++i)
-      top = std::max(top, all.state.x[3 * i + 1]);
+    for (int i = cube.first_particle; i < cube.end_particle; ++i) top = std::max(top, all.state.x[3 * i + 1]);
     for (int i = sheet.first_particle; i < sheet.end_particle; ++i) {
       least = std::min(least, all.state.x[3 * i + 1]);
       most = std::max(most, all.state.x[3 * i + 1]);

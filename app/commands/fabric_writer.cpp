@@ -33,9 +33,9 @@ class FabricFile {
     line("area_density", quantity(1000 * f.area_density, "g/m^2"));
     add_stretch();
     add_bend();
-    for (const char* key :
-         {"thickness", "buckling_clamp", "damping", "damping_kind", "neighbour_weighting", "compression", "viscosity",
-          "measured_drape", "measured_cantilever", "measured_bias_extension", "measured_picture_frame"})
+    for (const char* key : {"thickness", "buckling_clamp", "damping", "damping_kind", "neighbour_weighting",
+                            "compression", "viscosity", "measured_drape", "measured_cantilever",
+                            "measured_bias_extension", "measured_picture_frame"})
       if (root_.members.contains(key)) keep(key);
     add_hysteresis();
     text_ += "\n";

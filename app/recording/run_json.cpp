@@ -125,9 +125,9 @@ std::string run_json(const RunRecord& record) {
       {"contact_residual", record.contact_residual},
       {"self_contacts", Json::Members{{"end", record.self_contacts}, {"max", record.self_contacts_max}}},
       {"self_guarded", record.self_guarded},
-      {"crossings", Json::Members{{"start", record.crossings_at_start},
-                                  {"end", record.crossings},
-                                  {"max", record.crossings_max}}},
+      {"crossings",
+       Json::Members{
+           {"start", record.crossings_at_start}, {"end", record.crossings}, {"max", record.crossings_max}}},
       {"largest_speed", record.largest_speed},
       {"largest_edge_strain", record.largest_edge_strain},
       {"substeps_max", record.substeps_max},

@@ -27,8 +27,7 @@ void StepsWriter::add(const StepRow& row) {
       r.assemble_ms, r.solve_ms, r.collide_ms, r.step_ms, r.substeps, r.converged ? 1 : 0, r.guarded,
       r.linear_solves, r.penetration, r.inner_steps, r.inner_rejected, row.contact_energy, row.strains.least,
       row.strains.first_percent, row.strains.largest, row.strains.area_least, row.strains.area_kept,
-      r.contact_residual, r.multigrid_solves, r.self_contacts, r.self_guarded,
-      row.crossings);
+      r.contact_residual, r.multigrid_solves, r.self_contacts, r.self_guarded, row.crossings);
   file_.write(text, static_cast<std::size_t>(length));
 }
 

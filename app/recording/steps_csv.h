@@ -19,7 +19,8 @@ struct StepRow {
   double max_speed = 0;                                                                   // m/s
   double max_edge_strain = 0;
   TriangleStrains strains;
-  int crossings = 0;  // pairs of triangles that pass through each other in the last frame so far, as it is written
+  int crossings =
+      0;  // pairs of triangles that pass through each other in the last frame so far, as it is written
 };
 
 class StepsWriter {

@@ -17,6 +17,12 @@
 namespace drape::app {
 namespace {
 
+// The caches of frames keep floats, so it is their rounded places that are looked at.
+int crossings_as_written(const Simulation& simulation) {
+  const VecX written = simulation.state.x.cast<float>().cast<double>();
+  return Sheets(simulation.cloths, written).crossings();
+}
+
 // Whether nothing in the scene may pass through anything else that is simulated.
 bool all_meet(const Scene& scene) {
   const auto meets = [](const auto& part) { return part.self_contact; };
@@ -106,7 +112,8 @@ void Run::describe() {
   record_.settings = settings_json(simulation_.scene->settings);
   record_.warnings = simulation_.messages;
   record_.crossings_at_start = Sheets(simulation_.cloths, simulation_.state.x).crossings();
-  record_.crossings_max = row_.crossings = record_.crossings_at_start;
+  record_.crossings_max = record_.crossings_at_start;
+  first_crossings_ = row_.crossings = crossings_as_written(simulation_);
   const Scene& scene = *simulation_.scene;
   for (std::size_t k = 0; k < simulation_.cloths.size(); ++k) {
     const Cloth& c = simulation_.cloths[k];
@@ -213,17 +220,19 @@ void Run::record_step(const StepRow& row) {
   }
 }
 
-// The caches of frames keep floats, so it is their rounded places that are looked at.
 void Run::count_crossings() {
   if (!loop_.schedule().frame()) return;
-  const VecX written = simulation_.state.x.cast<float>().cast<double>();
-  row_.crossings = Sheets(simulation_.cloths, written).crossings();
+  row_.crossings = crossings_as_written(simulation_);
   record_.crossings_max = std::max(record_.crossings_max, row_.crossings);
-  if (all_meet(*simulation_.scene) && row_.crossings > record_.crossings_at_start)
-    tell_once(told_crossings_,
-              "warning: step " + std::to_string(row_.step) + " (" + rounded(row_.time, 4) + " s) has " +
-                  counted(row_.crossings, "pair") + " of triangles that cross, " +
-                  std::to_string(record_.crossings_at_start) + " at the start; 'drape check' says where");
+  if (row_.crossings > first_crossings_) tell_of_crossings(row_.crossings);
+}
+
+void Run::tell_of_crossings(int crossings) {
+  if (!all_meet(*simulation_.scene)) return;
+  tell_once(told_crossings_, "warning: after step " + std::to_string(row_.step) + " (" +
+                                 rounded(row_.time, 4) + " s) " + counted(crossings, "pair") +
+                                 " of triangles cross, " + std::to_string(record_.crossings_at_start) +
+                                 " at the start; 'drape check' says where");
 }
 
 void Run::write_frame() {
@@ -287,6 +296,7 @@ const RunRecord& Run::finish() {
     record_.max_penetration = std::max(record_.max_penetration, depth);
   record_.crossings = Sheets(simulation_.cloths, simulation_.state.x).crossings();
   record_.crossings_max = std::max(record_.crossings_max, record_.crossings);
+  if (record_.crossings > record_.crossings_at_start) tell_of_crossings(record_.crossings);
   tell_of_open_seams();
   record_.bodies = body_records(simulation_);
   record_.state_hash = state_hash(simulation_.state);

@@ -49,6 +49,7 @@ class Run {
   void record_step(const StepRow& row);
   void watch_settling();
   void count_crossings();
+  void tell_of_crossings(int crossings);
   void write_due_frame();
   void write_frame();
   void note_failure(const StepFailure& failure);
@@ -71,6 +72,7 @@ class Run {
   double last_motion_;         // s
   double settled_since_ = -1;  // s; -1: something moves
   bool told_cut_ = false, told_not_converged_ = false, told_crossings_ = false;
+  int first_crossings_ = 0;  // of the start, as it is written
   std::string failure_;
 };
 

@@ -8,10 +8,9 @@ namespace drape::app {
 namespace {
 
 void read_switch(Table& table, bool& self_contact, SelfContactOptions& self) {
-  table.read(
-      "self_contact", self_contact,
-      "whether it meets itself, and other cloths and soft bodies that have this: without it they pass "
-      "through each other");
+  table.read("self_contact", self_contact,
+             "whether it meets itself, and other cloths and soft bodies that have this: without it they pass "
+             "through each other");
   table.read(
       "friction", self.friction, dimension::number, Range::not_negative,
       "with self_contact: Coulomb's coefficient between two layers; between two cloths it is the root of the "
@@ -60,6 +59,13 @@ void check_friction_pair(const FrictionEntry& entry, const Scene& scene) {
   };
   for (const ClothEntry& cloth : scene.cloths) add(cloth);
   for (const SoftEntry& soft : scene.softs) add(soft);
+  const auto same = [&](const FrictionEntry& other) {
+    return std::is_permutation(other.between.begin(), other.between.end(), entry.between.begin());
+  };
+  if (const auto first = std::find_if(scene.frictions.begin(), scene.frictions.end(), same);
+      first->where != entry.where)
+    throw InputError(entry.where + ": between: " + first->where +
+                     " has the same pair; leave one of them out");
   for (const std::string& name : entry.between) {
     const std::string start = entry.where + ": between: ";
     if (std::find(names.begin(), names.end(), name) == names.end())

@@ -12,7 +12,7 @@ void read_self_contact(Table& table, ClothEntry& cloth);
 void read_self_contact(Table& table, SoftEntry& soft);
 
 FrictionEntry read_friction_pair(Table& table);
-// Throws InputError when one of the two is no cloth or soft body, or does not meet others.
+// Throws InputError when one of the two is no cloth or soft body, or does not meet others, or the scene has the pair twice.
 void check_friction_pair(const FrictionEntry& entry, const Scene& scene);
 
 }  // namespace drape::app

@@ -120,5 +120,4 @@ std::optional<Air> read_air(std::vector<Table> given, const Table& scene) {
   return air;
 }
 
-
 }  // namespace drape::app

@@ -50,12 +50,12 @@ void require_clean(const Scene& scene, const Simulation& simulation) {
   if (contours.empty()) return;
   const auto [first, second] = contours.front().pairs.front();
   const Vec3& place = contours.front().place;
-  throw InputError(scene.label + ": require_clean: " + counted(crossing_count(contours), "pair") +
-                   " of triangles cross at the start, such as " + one_line(sheets.name_of(first)) + " with " +
-                   (sheets.name_of(first) == sheets.name_of(second) ? "itself"
-                                                                    : one_line(sheets.name_of(second))) +
-                   " at (" + rounded(place[0], 4) + ", " + rounded(place[1], 4) + ", " +
-                   rounded(place[2], 4) + ") m; 'drape check' lists them");
+  throw InputError(
+      scene.label + ": require_clean: " + counted(crossing_count(contours), "pair") +
+      " of triangles cross at the start, such as " + one_line(sheets.name_of(first)) + " with " +
+      (sheets.name_of(first) == sheets.name_of(second) ? "itself" : one_line(sheets.name_of(second))) +
+      " at (" + rounded(place[0], 4) + ", " + rounded(place[1], 4) + ", " + rounded(place[2], 4) +
+      ") m; 'drape check' lists them");
 }
 
 }  // namespace

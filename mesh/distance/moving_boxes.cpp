@@ -124,7 +124,7 @@ unsigned MovingBoxes::near_children(int node, int child, int other, float margin
   const auto near = enter <= leave + 1e-5f;
   unsigned children = 0;
   for (int k = 0; k < 4; ++k)
-    if (near[k] != 0 && b.count[k] != 0) children |= 1u << k;
+    if (b.count[k] != 0 && near[k] != 0) children |= 1u << k;
   return a.count[child] == 0 ? 0 : children;
 }
 

@@ -64,7 +64,7 @@ class MovingBoxes {
     int first, count;
     float squared;
   };
-  static constexpr int deepest = 64;    // most entries of a search's stack: three per level
+  static constexpr int deepest = 64;  // most entries of a search's stack: three per level
 
   template <class Ask>
   bool pairs_within(int node, int child, float margin, const Ask& ask) const;

@@ -252,8 +252,9 @@ void Assembly::meet(const Cloth& cloth, const SelfContactOptions& options,
 }
 
 void Assembly::set_friction(std::size_t k, std::size_t l, double friction) {
+  const Cloth &first = cloths.at(k), &second = cloths.at(l);
   if (!(friction >= 0) || !std::isfinite(friction))
-    throw InputError("friction between " + cloths.at(k).name + " and " + cloths.at(l).name + " = " +
+    throw InputError("friction between " + first.name + " and " + second.name + " = " +
                      std::to_string(friction) + ": it is finite and not negative");
   constraints->set_self_friction({static_cast<int>(k), static_cast<int>(l), friction});
 }

@@ -58,7 +58,7 @@ struct SoftPart {
   // A closed mesh that the lattice carries; the mass is that of its volume. Unset: the mesh is the surface of
   // the lattice, and the mass is that of the cells.
   std::optional<TriangleMesh> mesh = {};
-  Pose place = {};  // where lattice and mesh are placed
+  Pose place = {};                                      // where lattice and mesh are placed
   std::optional<SelfContactOptions> self_contact = {};  // unset: cloth passes through it
 };
 
