@@ -76,7 +76,8 @@ TEST_CASE("the library sews the poncho as the scene does, to the bit", "[sewing]
                        .fabric = fabric,
                        .model = ClothModel::woven,
                        .warp = Vec3::UnitY(),
-                       .seams = declared_seam_plans(flat, 0.2)});
+                       .seams = declared_seam_plans(flat, 0.2),
+                       .self_contact = SelfContactOptions{}});
   const auto body = std::make_shared<const SurfaceDistance>(read_obj(data / "meshes/body.obj"));
   poncho.constraints->add(Obstacle{.shape = body, .friction = 0.4, .margin = 0.003});
   poncho.use("implicit-euler", "auto", {.tolerance = 1e-4});

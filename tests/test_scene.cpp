@@ -213,7 +213,7 @@ TEST_CASE("a woven cloth is read, and refused where its directions are not known
   CHECK(layer.self.thickness == Approx(2e-3));
   CHECK(layer.self.friction == 0.4);
   const Scene rubbing = read(cloth +
-                             "name = \"a\"\nself_contact = true\n[[friction]]\n"
+                             "name = \"a\"\nself_contact = true\n[[pair]]\n"
                              "between = [\"a\", \"a\"]\nfriction = 0.2\n");
   CHECK(rubbing.frictions.at(0).friction == 0.2);
   CHECK_FALSE(read(cloth + "self_contact = false\nthickness = \"2 mm\"\n").cloths[0].self_contact);
@@ -235,11 +235,11 @@ TEST_CASE("a woven cloth is read, and refused where its directions are not known
       {woven + "rest_angle = 1\n[[cloth.seams]]\n", "scene.toml:4:", "with seams"},
       {woven + "imperfection = -1\n", "scene.toml:4:", "imperfection"},
       {cloth + "thickness = \"1 mm\"\n", "scene.toml:3:", "goes with self_contact = true"},
-      {cloth + "self_contact = true\n[[friction]]\nbetween = [\"sheet\", \"coat\"]\nfriction = 0.3\n",
+      {cloth + "self_contact = true\n[[pair]]\nbetween = [\"sheet\", \"coat\"]\nfriction = 0.3\n",
        "scene.toml:4:", "no cloth or soft body 'coat'"},
-      {cloth + "[[friction]]\nbetween = [\"sheet\", \"sheet\"]\nfriction = 0.3\n",
+      {cloth + "[[pair]]\nbetween = [\"sheet\", \"sheet\"]\nfriction = 0.3\n",
        "scene.toml:3:", "set its self_contact = true"},
-      {cloth + "[[friction]]\nbetween = [\"sheet\"]\nfriction = 0.3\n", "scene.toml:4:", "two names"},
+      {cloth + "[[pair]]\nbetween = [\"sheet\"]\nfriction = 0.3\n", "scene.toml:4:", "two names"},
       {cloth + "self_contact = true\nthickness = 0\n", "scene.toml:4:", "thickness"},
       {cloth + "self_contact = true\nfriction = -1\n", "scene.toml:4:", "friction"},
       {cloth + "viscosity = { bend = 1 }\n", "scene.toml:3:", "goes with model = \"woven\""},

@@ -40,8 +40,13 @@ kes  = {}
 fast = {}
 
 [[soft]]
-particles = [2, 2, 2]
-spacing   = 0.1
+particles    = [2, 2, 2]
+spacing      = 0.1
+self_contact = true
+
+[[pair]]
+between  = ["soft", "soft"]
+friction = 0.3
 
 [[soft]]
 mesh    = "body.obj"

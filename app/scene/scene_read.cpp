@@ -272,8 +272,8 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path
   std::vector<Table> cloths = table.tables("cloth", "each a cloth"),
                      softs = table.tables("soft", "each a soft body, a lattice of springs"),
                      obstacles = table.tables("obstacle", "each a body that the cloth meets"),
-                     frictions = table.tables(
-                         "friction", {"each how two cloths or soft bodies rub", "by the friction of both"});
+                     pairs = table.tables(
+                         "pair", {"each how two cloths or soft bodies meet", "by what is said of both"});
   refuse_misplaced(table, "scene");
   table.finish();  // before anything is missed: it may be there with its name mistyped
   if (simulation.size() > 1) table.fail("simulation", "there may be only one");
@@ -283,7 +283,7 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path
   for (Table& cloth : cloths) scene.cloths.push_back(read_cloth(cloth, folder));
   for (Table& soft : softs) scene.softs.push_back(read_whole_soft(soft, folder));
   for (Table& obstacle : obstacles) scene.obstacles.push_back(read_obstacle(obstacle, folder));
-  for (Table& pair : frictions) scene.frictions.push_back(read_friction_pair(pair));
+  for (Table& pair : pairs) scene.frictions.push_back(read_friction_pair(pair));
   if (scene.cloths.empty() && scene.softs.empty()) table.fail("cloth", "there is no cloth");
   check_names(scene);
   for (const FrictionEntry& pair : scene.frictions) check_friction_pair(pair, scene);

@@ -14,7 +14,7 @@ void read_switch(Table& table, bool& self_contact, SelfContactOptions& self) {
   table.read(
       "friction", self.friction, dimension::number, Range::not_negative,
       "with self_contact: Coulomb's coefficient between two layers; between two cloths it is the root of the "
-      "product of both, unless [[friction]] says otherwise");
+      "product of both, unless [[pair]] says otherwise");
 }
 
 void require_switch(const Table& table) {

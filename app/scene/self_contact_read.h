@@ -1,5 +1,5 @@
 // How cloths and soft bodies meet each other: the keys `self_contact`, `thickness` and `friction` of [[cloth]] and [[soft]],
-// and the table [[friction]] of pairs.
+// and the table [[pair]] of pairs.
 #pragma once
 
 #include "app/base/table.h"
