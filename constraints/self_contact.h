@@ -12,10 +12,10 @@
 //   kappa is larger where the load, or what arrives, would sink in by more than a share of r.
 //   Within a solve a contact is linear: it acts or not, and friction is a spring weakened to share (t_0 - k s).
 //   react() corrects both until they agree with the solve.
-//   The guard: every vertex goes the share t_i of its way, at first all of it. The pairs that would come nearer than
-//   `floor` on the way are found [mesh/distance/approach.h]. Their vertices become a zone, which keeps the motion D that
-//   it has on the whole, or that of a body which it touches, so that cloth in motion is not held up: x_i + D + t_i (d_i - D). t_i is made less until no pair
-//   fails. Two that move alike need no proof, and zones only grow, so this ends. It holds for every integrator.
+//   The guard: every vertex goes all of its way d_i at first. The pairs that would come nearer than `floor` on the way are
+//   found [mesh/distance/approach.h]. Their vertices become a zone, which keeps the motion D that it has on the whole, or
+//   that of pins or of a body in it, so that cloth in motion is not held up: x_i + D + t_i (d_i - D). t_i is made less
+//   until no pair fails, and after a fixed number of rounds all stands still. It holds for every integrator.
 //   Where the cloth starts through itself, the triangles there neither push nor are guarded while they cross.
 // x [m], v [m/s], f [N], k [N/m], h [s].
 #pragma once

@@ -66,9 +66,9 @@ int SelfContacts::zone_of(int particle) {
   return particle;
 }
 
-// Sets ahead_ to where the particles come that go the shares way_ of their ways. A zone has one way in common: the mean
-// way of its particles that are held, if there are any, else of those that touch a body, else of all by mass. A zone of
-// the last kind keeps its mean, so no momentum is lost. Where particles are held that go different ways, it is none.
+// Sets ahead_ to where the particles come that go the shares way_ of their ways. A zone has one way in common: that of its
+// particles that are held, if there are any and they go the same way (else it stands); or the mean way of those that touch
+// a body; or else of all by mass. A zone of the last kind keeps its mean, so no momentum is lost.
 void SelfContacts::go_shares(const StepMotion& step, const VecX& x_new, bool in_common) {
   const int n = static_cast<int>(zone_.size());
   const auto way = [&](int i) { return Vec3(x_new.segment<3>(3 * i) - step.x.segment<3>(3 * i)); };
@@ -87,10 +87,11 @@ void SelfContacts::go_shares(const StepMotion& step, const VecX& x_new, bool in_
   }
   for (int i = 0; i < n; ++i) {
     if (weight_[i] > 0) common_[i] /= weight_[i];
-    if (!in_common) common_[i].setZero();
   }
+  for (int i = n; i-- > 0;)  // the first one's exactly, not a mean that is rounded
+    if (step.is_held(i)) common_[zone_of(i)] = way(i);
   for (int i = 0; i < n; ++i)
-    if (step.is_held(i) && way(i) != common_[zone_of(i)]) common_[zone_of(i)].setZero();
+    if (!in_common || (step.is_held(i) && way(i) != common_[zone_of(i)])) common_[zone_of(i)].setZero();
   kept_ = common_;
   for (int i = 0; i < n; ++i) {
     const int zone = zone_of(i);

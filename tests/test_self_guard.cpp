@@ -83,6 +83,18 @@ TEST_CASE("the guard moves no pin, and nothing that lies on a body at rest", "[s
       CHECK(two.way(two.half() + i)[1] > -0.0045);
     }
   }
+  Guarded carried(5);  // three pins that are led the same way lead what would meet them
+  const Vec3 along(0.1, 0.07, -0.03);
+  for (int i = 0; i < carried.half(); ++i) {
+    carried.move(i, along);
+    carried.move(carried.half() + i, along + Vec3(0, -0.02, 0));
+  }
+  for (int i : {0, 6, 12}) carried.step.held[i] = 1;
+  const VecX asked = carried.x_new;
+  CHECK(carried.guard() > 0);
+  for (int i : {0, 6, 12}) CHECK((carried.x_new - asked).segment<3>(3 * i).norm() < 1e-15);
+  for (int i = 0; i < carried.half(); ++i) CHECK((carried.way(carried.half() + i) - along).norm() < 0.02);
+
   Guarded led(5);  // a pin at rest, and one that is led into it
   led.step.held[0] = led.step.held[led.half()] = 1;
   for (int i = 0; i < led.half(); ++i) led.move(led.half() + i, {0, -0.02, 0});
