@@ -169,7 +169,7 @@ ContactReport ContactStep::finish(VecX& x_new, VecX& v_new) {
   if (bodies()) constraints_->contacts_.guard(constraints_->bodies_, step, x_new, v_new, report);
   report.self_guarded =
       constraints_->self_.guard(step, constraints_->contacts_.touching(), true, x_new, v_new);
-  if (bodies() && report.self_guarded > 0) {
+  if (bodies() && (report.self_guarded > 0 || constraints_->self_.crossing())) {
     const int before = report.guarded;
     constraints_->contacts_.guard(constraints_->bodies_, step, x_new, v_new, report);
     if (report.guarded > before)  // a common way led into a body
@@ -178,8 +178,9 @@ ContactReport ContactStep::finish(VecX& x_new, VecX& v_new) {
   }
   constraints_->self_.end_step(step, x_new);
   report.self_contacts = constraints_->self_.pushing();
+  report.tangled = constraints_->self_.tangled();
   if (bodies()) {
-    if (report.self_guarded > 0)
+    if (report.self_guarded > 0 || report.tangled > 0)
       constraints_->contacts_.look_again();  // these went otherwise than bodies were told
     constraints_->contacts_.commit();
     constraints_->faces_.end_step(constraints_->bodies_, step.x, x_new);

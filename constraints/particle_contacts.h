@@ -35,6 +35,7 @@ struct ContactReport {
   double deepest = 0;     // how deep the deepest particle was inside a body when the step began [m]
   int self_contacts = 0;  // pairs of cloth and cloth that push each other
   int self_guarded = 0;   // particles whose way was shortened so that no cloth passes through cloth
+  int tangled = 0;        // particles where cloth passes through cloth
 };
 
 // An impulse of a body on a particle, see constraints/response.h.

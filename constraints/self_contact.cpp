@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "constraints/encounters.h"
+#include "constraints/tangles.h"
 #include "mesh/base/parallel.h"
-#include "mesh/distance/triangle_crossings.h"
 #include "mesh/triangles/topology.h"
 
 namespace drape {
@@ -16,6 +16,8 @@ using namespace internal;
 namespace {
 
 constexpr double load_sinks = 0.1, arrival_sinks = 0.5;  // shares of the thickness
+// How much stiffer a contact becomes so, at most: 300 times the weight of its lighter side sinks in by load_sinks.
+constexpr double stiffest = 100;
 
 }  // namespace
 
@@ -25,7 +27,8 @@ Vec3 SelfContact::rub_at(const Vec3& p, double normal_force) const {
   return size <= most ? d : Vec3(most / size * d);
 }
 
-SelfContacts::SelfContacts() : encounters_(std::make_unique<Encounters>()) {}
+SelfContacts::SelfContacts()
+    : encounters_(std::make_unique<Encounters>()), tangles_(std::make_unique<Tangles>()) {}
 SelfContacts::SelfContacts(const SelfContacts& other) : SelfContacts() {
   add(other.faces_);
   pairs_ = other.pairs_;
@@ -40,6 +43,7 @@ void SelfContacts::add(const std::vector<SelfFace>& faces) {
   faces_.insert(faces_.end(), faces.begin(), faces.end());
   stale_ = true;
   rest_.resize(0);
+  tangled_.clear();
 }
 
 void SelfContacts::renumber(const std::vector<int>& particle_of) {
@@ -94,7 +98,15 @@ void SelfContacts::prepare(const StepMotion& step) {
     stale_ = false;
     look_again_ = true;
   }
-  if (look_again_ || crossing() || touched_ != 0) mark_crossings(step.x);
+  if (look_again_ || touched_ != 0) {
+    std::vector<Triangle> triangles;
+    for (const SelfFace& face : faces_) triangles.push_back(face.particles);
+    tangles_->begin(std::move(triangles), step.x);
+  }
+  if (tangled_.size() != n) {
+    tangled_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) tangled_[i] = tangles_->tangle(static_cast<int>(i)) >= 0;
+  }
   touched_ = 0;
   if (look_again_) {
     last_.clear();
@@ -103,40 +115,31 @@ void SelfContacts::prepare(const StepMotion& step) {
   look_again_ = false;
 }
 
-void SelfContacts::mark_crossings(const VecX& x) {
-  std::vector<Vec3> places(static_cast<std::size_t>(x.size() / 3));
-  for (std::size_t i = 0; i < places.size(); ++i) places[i] = x.segment<3>(3 * static_cast<Eigen::Index>(i));
-  std::vector<Triangle> triangles;
-  for (const SelfFace& face : faces_) triangles.push_back(face.particles);
-  through_.clear();
-  for (const CrossingContour& contour : crossing_contours(places, triangles))
-    for (const TrianglePair& pair : contour.pairs)
-      for (int triangle : {pair.first, pair.second})
-        through_.insert(through_.end(), triangles[triangle].begin(), triangles[triangle].end());
-  std::sort(through_.begin(), through_.end());
-  through_.erase(std::unique(through_.begin(), through_.end()), through_.end());
-  through_mark_.assign(places.size(), 0);
-  for (int particle : through_) through_mark_[particle] = 1;
-}
+bool SelfContacts::crossing() const { return tangles_->any(); }
+int SelfContacts::tangled() const { return tangles_->particles(); }
 
-// Whether both sides are let pass each other.
+// Whether both sides are let pass each other: they are of one tangle, or let_pass() names a vertex of each.
 bool SelfContacts::exempt(const Encounter& e) const {
-  const auto marked = [&](std::size_t from, std::size_t to) {
-    return std::any_of(e.v.begin() + from, e.v.begin() + to,
-                       [&](int v) { return pass_[v] != 0 || through_mark_[v] != 0; });
+  const int tangle = tangles_->tangle(e.v[0]);
+  if (tangle >= 0 &&
+      std::all_of(e.v.begin(), e.v.end(), [&](int v) { return tangles_->tangle(v) == tangle; }))
+    return true;
+  const auto passes = [&](std::size_t from, std::size_t to) {
+    return std::any_of(e.v.begin() + from, e.v.begin() + to, [&](int v) { return pass_[v] != 0; });
   };
   const std::size_t cut = e.edges ? 2 : 1;
-  return marked(0, cut) && marked(cut, 4);
+  return passes(0, cut) && passes(cut, 4);
 }
 
-// So that neither what the contact bears nor what arrives sinks in by more than a share of the thickness.
+// So that neither what the contact bears nor what arrives sinks in by more than a share of the thickness. What cannot give
+// way, as between two layers that cross, would become stiffer in every step: so there is a limit.
 void SelfContacts::stiffen(SelfContact& contact, const StepMotion& step) const {
   if (kappa_ < 1) return;
   const double mass = contact.stiffness * step.h * step.h / kappa_;
   const double stops = mass * std::max(0.0, -contact.normal.dot(contact.at(step.v))) / step.h;
   const double load = std::max(contact.before / load_sinks, stops / arrival_sinks);
   const double sinks = std::max(contact.thickness, 0.1 * both_thicknesses(contact.who));
-  contact.stiffness = std::max(contact.stiffness, load / sinks);
+  contact.stiffness = std::clamp(load / sinks, contact.stiffness, stiffest * contact.stiffness);
 }
 
 void SelfContacts::begin_step(const StepMotion& step, double recovery, double kappa) {
@@ -144,6 +147,7 @@ void SelfContacts::begin_step(const StepMotion& step, double recovery, double ka
   prepare(step);
   accepted_ = is_proven_ = false;
   kappa_ = kappa;
+  recovery_ = recovery;
   ahead_ = step.x + step.h * step.v;
   find_contacts(step);
   std::sort(touching_.begin(), touching_.end(),
@@ -229,6 +233,7 @@ void SelfContacts::end_step(const StepMotion& step, const VecX& x_new) {
     pushing_ += push > 0;
   }
   encounters_->went(step.x, x_new);
+  if (crossing()) tangles_->end_step(x_new);
 }
 
 }  // namespace drape

@@ -16,7 +16,7 @@
 //   found [mesh/distance/approach.h]. Their vertices become a zone, which keeps the motion D that it has on the whole, or
 //   that of pins or of a body in it, so that cloth in motion is not held up: x_i + D + t_i (d_i - D). t_i is made less
 //   until no pair fails, and after a fixed number of rounds all stands still. It holds for every integrator.
-//   Where the cloth starts through itself, the triangles there neither push nor are guarded while they cross.
+//   Where the cloth starts through itself, nothing near there pushes or is guarded until it is apart [tangles.h].
 // x [m], v [m/s], f [N], k [N/m], h [s].
 #pragma once
 
@@ -38,6 +38,7 @@ inline constexpr double implicit_kappa = 30, explicit_kappa = 0.2;
 namespace internal {
 class Encounters;
 struct Meeting;
+class Tangles;
 }  // namespace internal
 
 // A triangle between particles that takes part.
@@ -133,15 +134,18 @@ class SelfContacts {
   const std::vector<SelfContact>& touching() const { return touching_; }  // sorted
   int pushing() const { return pushing_; }  // contacts that pushed at the end of the last step
   // Whether the cloth passed through itself when the step began.
-  bool crossing() const { return !through_.empty(); }
+  bool crossing() const;
+  int tangled() const;  // particles near triangles that pass through each other at the end of the last step
 
  private:
   void prepare(const StepMotion& step);
-  void mark_crossings(const VecX& x);
   int zone_of(int particle);
   void go_shares(const StepMotion& step, const VecX& x_new, bool in_common);
   void stop(const std::vector<internal::Meeting>& failing, const StepMotion& step, const VecX& x_new,
             bool by_shares, bool in_common);
+  void stop_tangles(const std::vector<int>& tangles);
+  void find_relief(const StepMotion& step, const std::vector<Contact>& on_bodies);
+  void shorten(const StepMotion& step, const VecX& x_new, bool in_common);
   double share_of_way(double slope, double curvature, const VecX& x_new) const;
   bool exempt(const Encounter& e) const;
   bool has_contact(const Encounter& e) const;
@@ -162,16 +166,18 @@ class SelfContacts {
   std::vector<SelfFace> faces_;
   std::vector<SelfFriction> pairs_;
   std::unique_ptr<internal::Encounters> encounters_;
+  std::unique_ptr<internal::Tangles> tangles_;
   bool stale_ = true, look_again_ = true;
   double kappa_ = 0, reach_ = 0;  // m/h^2; m, from which on pairs are looked at
+  double recovery_ = 0;           // m, by which tangles move in a step at most
   int touched_ = 0;  // not 0: a pair touched at the start of the step, and may have crossed in it
   int pushing_ = 0;
   // By particle.
   std::vector<double> thickness_, friction_;     // m, mu
   std::vector<int> piece_, sheet_;               // the connected piece, and the sheet, that it belongs to
-  std::vector<char> pass_, through_mark_;        // let_pass(); near triangles that cross
-  std::vector<int> through_;                     // particles of triangles that cross
+  std::vector<char> pass_;                       // let_pass()
   VecX rest_;                                    // places when the faces were added [m]
+  std::vector<char> tangled_;                    // there
   std::vector<SelfContact> touching_, last_;     // of this step and of the last one, sorted
   std::vector<SelfContact> met_;                 // scratch
   std::vector<double> way_, shorter_, nearest_;  // scratch, by particle
@@ -181,6 +187,8 @@ class SelfContacts {
   std::vector<double> weight_;
   enum class Held : char { no, by_body, yes };
   std::vector<Held> hold_, zone_hold_;  // of each particle; the firmest of its zone
+  std::vector<char> still_;             // of a tangle that moves as a whole, but for its relief
+  VecX relief_;                         // m, see Tangles
   VecX ahead_, v_at_, proven_;
   bool accepted_ = false;   // whether v_at_ is of this step
   bool is_proven_ = false;  // whether nothing meets on the way to proven_ in this step

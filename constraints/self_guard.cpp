@@ -6,6 +6,7 @@
 
 #include "constraints/encounters.h"
 #include "constraints/self_contact.h"
+#include "constraints/tangles.h"
 
 namespace drape {
 
@@ -68,7 +69,8 @@ int SelfContacts::zone_of(int particle) {
 
 // Sets ahead_ to where the particles come that go the shares way_ of their ways. A zone has one way in common: that of its
 // particles that are held, if there are any and they go the same way (else it stands); or the mean way of those that touch
-// a body; or else of all by mass. A zone of the last kind keeps its mean, so no momentum is lost.
+// a body; or else of all by mass. A zone of the last kind keeps its mean, so no momentum is lost. A tangle that is still
+// has nothing but this way in common, and its relief.
 void SelfContacts::go_shares(const StepMotion& step, const VecX& x_new, bool in_common) {
   const int n = static_cast<int>(zone_.size());
   const auto way = [&](int i) { return Vec3(x_new.segment<3>(3 * i) - step.x.segment<3>(3 * i)); };
@@ -92,16 +94,18 @@ void SelfContacts::go_shares(const StepMotion& step, const VecX& x_new, bool in_
     if (step.is_held(i)) common_[zone_of(i)] = way(i);
   for (int i = 0; i < n; ++i)
     if (!in_common || (step.is_held(i) && way(i) != common_[zone_of(i)])) common_[zone_of(i)].setZero();
+  const auto share = [&](int i) { return still_[i] != 0 ? 0 : way_[i]; };
   kept_ = common_;
   for (int i = 0; i < n; ++i) {
     const int zone = zone_of(i);
     if (in_common && zone_hold_[zone] == Held::no && weight_[zone] > 0)
-      kept_[zone] -= weight(i) / weight_[zone] * way_[i] * (way(i) - common_[zone]);
+      kept_[zone] -= weight(i) / weight_[zone] * share(i) * (way(i) - common_[zone]);
   }
   for (int i = 0; i < n; ++i)
-    if (way_[i] < 1)
-      ahead_.segment<3>(3 * i) =
-          step.x.segment<3>(3 * i) + kept_[zone_of(i)] + way_[i] * (way(i) - common_[zone_of(i)]);
+    if (way_[i] < 1 || still_[i] != 0)
+      ahead_.segment<3>(3 * i) = step.x.segment<3>(3 * i) + kept_[zone_of(i)] +
+                                 share(i) * (way(i) - common_[zone_of(i)]) +
+                                 way_[i] * relief_.segment<3>(3 * i);
 }
 
 // Joins the particles of the pairs to zones, and shortens the way of each against that of its zone.
@@ -117,33 +121,70 @@ void SelfContacts::stop(const std::vector<Meeting>& failing, const StepMotion& s
   go_shares(step, x_new, in_common);
 }
 
+// Joins the particles of each of these tangles to a zone, in which they move as a whole, but for their relief; and without
+// it where that did not help.
+void SelfContacts::stop_tangles(const std::vector<int>& tangles) {
+  for (int i = 0; i < static_cast<int>(zone_.size()); ++i) {
+    if (!std::binary_search(tangles.begin(), tangles.end(), tangles_->tangle(i))) continue;
+    if (still_[i] != 0) way_[i] = 0;
+    still_[i] = 1;
+    zone_[zone_of(i)] = zone_of(tangles_->tangle(i));
+  }
+}
+
+// Sets relief_, which leads nothing into a body that it touches.
+void SelfContacts::find_relief(const StepMotion& step, const std::vector<Contact>& on_bodies) {
+  relief_ = tangles_->relief(step, recovery_);
+  for (const Contact& contact : on_bodies)
+    for (int k = 0; k < contact.planes; ++k) {
+      auto relief = relief_.segment<3>(3 * contact.particle);
+      const Vec3& n = contact.plane[k].normal;
+      relief -= std::min(0.0, n.dot(relief)) * n;
+    }
+}
+
+// Shortens the ways until nothing meets, and no more triangles cross than may; ahead_ is then where they end.
+void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_common) {
+  for (int round = 0; round <= most_rounds && encounters_->follow(step.x, ahead_, reach_); ++round) {
+    const bool together = in_common && round < rounds_in_common;
+    const std::vector<Meeting>& failing = meetings(step.x, ahead_);
+    if (!failing.empty()) {
+      stop(failing, step, x_new, round < rounds_by_shares, together);
+      continue;
+    }
+    if (!crossing()) return;
+    const std::vector<int>& growing = tangles_->growing(ahead_);
+    if (growing.empty()) return;
+    stop_tangles(growing);
+    go_shares(step, x_new, together);
+  }
+  std::fill(way_.begin(), way_.end(), 0.0);
+  ahead_ = step.x;
+}
+
 int SelfContacts::guard(const StepMotion& step, const std::vector<Contact>& on_bodies, bool in_common,
                         VecX& x_new, VecX& v_new) {
-  if (!any() || (is_proven_ && x_new == proven_) || !x_new.allFinite()) return 0;
-  int stopped = 0;
+  if (!any() || (is_proven_ && !crossing() && x_new == proven_) || !x_new.allFinite()) return 0;
   hold_.assign(way_.size(), Held::no);
   for (const Contact& contact : on_bodies)
     if (contact.active()) hold_[contact.particle] = Held::by_body;
   std::fill(way_.begin(), way_.end(), 1.0);
+  still_.assign(way_.size(), 0);
   zone_.resize(way_.size());
   std::iota(zone_.begin(), zone_.end(), 0);
-  ahead_ = x_new;
-  for (int round = 0;; ++round) {
-    if (round > most_rounds || !encounters_->follow(step.x, ahead_, reach_)) {  // then nothing moves
-      std::fill(way_.begin(), way_.end(), 0.0);
-      ahead_ = step.x;
-      break;
-    }
-    const std::vector<Meeting>& failing = meetings(step.x, ahead_);
-    if (failing.empty()) break;
-    stop(failing, step, x_new, round < rounds_by_shares, in_common && round < rounds_in_common);
-  }
+  relief_.setZero(x_new.size());
+  if (crossing() && in_common) find_relief(step, on_bodies);
+  ahead_ = x_new + relief_;
+  shorten(step, x_new, in_common);
+  int stopped = 0;
   for (std::size_t i = 0; i < way_.size(); ++i) {
-    if (way_[i] == 1) continue;
     const auto k = 3 * static_cast<Eigen::Index>(i);
-    v_new.segment<3>(k) -= (x_new.segment<3>(k) - ahead_.segment<3>(k)) / step.h;
+    if (way_[i] < 1 || still_[i] != 0) {
+      v_new.segment<3>(k) -=
+          (x_new.segment<3>(k) + way_[i] * relief_.segment<3>(k) - ahead_.segment<3>(k)) / step.h;
+      ++stopped;
+    }
     x_new.segment<3>(k) = ahead_.segment<3>(k);
-    ++stopped;
   }
   return stopped;
 }

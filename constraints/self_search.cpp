@@ -39,11 +39,14 @@ double SelfContacts::both_thicknesses(const Encounter& e) const {
 }
 
 // The thickness at which the pair comes to rest: the mean of both sides. Where one piece of cloth is near itself at
-// rest, no more than half the distance there.
+// rest, no more than half the distance there; but so much that springs can bear it. A distance between what passes through
+// each other at rest says nothing: there it is a quarter of an edge.
 double SelfContacts::thickness_of(const Encounter& e) const {
-  const double both = both_thicknesses(e);
+  const double both = both_thicknesses(e), edge = encounters_->mean_edge();
   if (piece_[e.v[0]] != piece_[e.v[3]]) return both;
-  return std::min(both, 0.5 * nearest(e.edges, corners(rest_, e)).distance);
+  const bool tangled = std::all_of(e.v.begin(), e.v.end(), [&](int v) { return tangled_[v] != 0; });
+  const double at_rest = 0.5 * nearest(e.edges, corners(rest_, e)).distance;
+  return std::min(both, std::max(at_rest, tangled ? 0.25 * edge : std::min(0.1 * both, 0.05 * edge)));
 }
 
 double SelfContacts::friction_of(const Encounter& e) const {

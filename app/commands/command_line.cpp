@@ -13,6 +13,7 @@
 #include "app/commands/fit.h"
 #include "app/commands/keys.h"
 #include "app/commands/triangulate_command.h"
+#include "app/commands/untangle.h"
 #include "app/compare/compare.h"
 #include "app/export/export.h"
 #include "app/picture/picture.h"
@@ -262,6 +263,24 @@ void add_triangulate(CLI::App& app, int& exit_code) {
   command->callback([=, &exit_code] { exit_code = triangulate_file(*words); });
 }
 
+void add_untangle(CLI::App& app, int& exit_code) {
+  CLI::App* const command = app.add_subcommand(
+      "untangle", "brings a mesh apart where it passes through itself, and changes as little else as it can");
+  auto words = std::make_shared<UntangleWords>();
+  command->add_option("MESH", words->mesh, "OBJ file; its sheets may be several")->required();
+  command->add_option("-o,--out", words->out, "the OBJ file")->type_name("FILE")->required();
+  const auto option = [&](const char* name, std::string& value, const char* type, const char* help) {
+    command->add_option(name, value, help)->type_name(type);
+  };
+  option("--fabric", words->fabric, "NAME", "see 'drape list' (cotton-poplin), or a fabric file (.toml)");
+  option("--thickness", words->thickness, "LENGTH", "how far apart layers come (the fabric's, else 1 mm)");
+  option("--scale", words->scale, "X", "of the mesh, such as 0.01 for files in cm; it is written as it was");
+  option("--duration", words->duration, "TIME", "given up after so much simulated time (10 s)");
+  command->add_flag("--quiet", words->quiet, "nothing but errors");
+  command->footer("Exit code: 0 nothing crosses any more; 1 something still does; 2 bad input.");
+  command->callback([=, &exit_code] { exit_code = untangle_file(*words); });
+}
+
 void add_view(CLI::App& app, int& exit_code) {
   CLI::App* const command =
       app.add_subcommand("view", "makes an output folder one HTML file that plays it in a browser, offline");
@@ -395,6 +414,7 @@ int parse_and_run(int argc, char** argv) {
   add_test_fabric(app, exit_code);
   add_level_set(app, exit_code);
   add_triangulate(app, exit_code);
+  add_untangle(app, exit_code);
   add_view(app, exit_code);
   add_picture(app, exit_code);
   add_export(app, exit_code);

@@ -63,6 +63,8 @@ void add_reports_of_steps(py::module_& m) {
                     "pairs of cloth and cloth that push each other")
       .def_readonly("self_guarded", &StepReport::self_guarded,
                     "particles whose way was shortened so that no cloth passes through cloth")
+      .def_readonly("tangled", &StepReport::tangled,
+                    "particles where cloth passes through cloth, and is brought apart")
       .def_readonly("residual", &StepReport::residual,
                     "relative, the worst of the solves that the step ended with")
       .def_readonly("converged", &StepReport::converged,

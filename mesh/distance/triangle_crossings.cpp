@@ -15,13 +15,10 @@ using internal::Face;
 using internal::MovingBoxes;
 using internal::orient3d;
 
-// An edge passes through a triangle, as one of a pair that crosses.
-struct Passage {
-  int a, b;      // the edge, a < b
-  int triangle;  // that it passes through
-  int pair;      // place in the list of pairs
+struct PairPassage : Passage {
+  int pair;  // place in the list of pairs
 
-  auto where() const { return std::array{a, b, triangle}; }
+  auto where() const { return std::array{a, b, through}; }
 };
 
 bool share_a_vertex(const Triangle& s, const Triangle& t) {
@@ -38,8 +35,8 @@ class Search {
     const Triangle &s = triangles_[first], &t = triangles_[second];
     if (share_a_vertex(s, t) || !boxes_touch(s, t)) return;
     const auto before = passages_.size();
-    look_through(s, second);
-    look_through(t, first);
+    look_through(first, second);
+    look_through(second, first);
     if (passages_.size() == before) return;
     pairs_.push_back({std::min(first, second), std::max(first, second)});
   }
@@ -57,9 +54,9 @@ class Search {
     return true;
   }
 
-  // Finds the edges of s that pass through the triangle.
-  void look_through(const Triangle& s, int triangle) {
-    const Triangle& t = triangles_[triangle];
+  // Finds the edges of one triangle that pass through the other.
+  void look_through(int of, int through) {
+    const Triangle &s = triangles_[of], &t = triangles_[through];
     std::array<int, 3> side;
     for (std::size_t k = 0; k < 3; ++k) side[k] = orient3d(x_[t[0]], x_[t[1]], x_[t[2]], x_[s[k]]);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -71,12 +68,12 @@ class Search {
         left = left || turn > 0;
         right = right || turn < 0;
       }
-      if (left != right) passages_.push_back({a, b, triangle, static_cast<int>(pairs_.size())});
+      if (left != right) passages_.push_back({{a, b, of, through}, static_cast<int>(pairs_.size())});
     }
   }
 
   Vec3 place_of(const Passage& passage) const {
-    const Triangle& t = triangles_[passage.triangle];
+    const Triangle& t = triangles_[passage.through];
     const Vec3 normal = (x_[t[1]] - x_[t[0]]).cross(x_[t[2]] - x_[t[0]]);
     const double from = normal.dot(x_[passage.a] - x_[t[0]]), to = normal.dot(x_[passage.b] - x_[t[0]]);
     const double share = from == to ? 0.5 : std::clamp(from / (from - to), 0.0, 1.0);
@@ -86,7 +83,7 @@ class Search {
   const std::vector<Vec3>& x_;
   const std::vector<Triangle>& triangles_;
   std::vector<TrianglePair> pairs_;
-  std::vector<Passage> passages_;
+  std::vector<PairPassage> passages_;
 };
 
 // Two pairs are joined when they have the passage of an edge through a triangle in common. Where only one pair has it,
@@ -98,11 +95,11 @@ std::vector<CrossingContour> Search::contours() {
     while (root[pair] != pair) pair = root[pair] = root[root[pair]];
     return pair;
   };
-  std::sort(passages_.begin(), passages_.end(), [&](const Passage& p, const Passage& q) {
+  std::sort(passages_.begin(), passages_.end(), [&](const PairPassage& p, const PairPassage& q) {
     return std::tuple(p.where(), pairs_[p.pair]) < std::tuple(q.where(), pairs_[q.pair]);
   });
   std::vector<char> ends(pairs_.size(), 0);
-  std::vector<const Passage*> passage_of(pairs_.size(), nullptr);
+  std::vector<const PairPassage*> passage_of(pairs_.size(), nullptr);
   for (std::size_t k = 0; k < passages_.size();) {
     const std::size_t first = k;
     for (; k < passages_.size() && passages_[k].where() == passages_[first].where(); ++k) {
@@ -121,11 +118,13 @@ std::vector<CrossingContour> Search::contours() {
     int& number = contour_of[root_of(pair)];
     if (number < 0) {
       number = static_cast<int>(contours.size());
-      contours.push_back({.pairs = {}, .closed = true, .place = place_of(*passage_of[pair])});
+      contours.push_back({.pairs = {}, .passages = {}, .closed = true, .place = place_of(*passage_of[pair])});
     }
     contours[number].pairs.push_back(pairs_[pair]);
     if (ends[pair]) contours[number].closed = false;
   }
+  for (const PairPassage& passage : passages_)
+    contours[contour_of[root_of(passage.pair)]].passages.push_back(passage);
   std::stable_sort(contours.begin(), contours.end(),
                    [](const auto& a, const auto& b) { return a.pairs.size() > b.pairs.size(); });
   return contours;

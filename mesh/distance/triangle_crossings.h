@@ -21,8 +21,17 @@ struct TrianglePair {
   }
 };
 
+// An edge passes through a triangle.
+struct Passage {
+  int a, b;  // the edge's ends, a < b
+  int of;  // a triangle that has this edge; it crosses the other one, and their common line begins at the edge
+  int through;  // the other triangle
+};
+
 struct CrossingContour {
   std::vector<TrianglePair> pairs;  // sorted
+  std::vector<Passage>
+      passages;  // in fixed order; an edge between two triangles that both cross is told for each
   bool closed = false;
   Vec3 place = Vec3::Zero();  // the point of the contour that its first pair has [m]
 };

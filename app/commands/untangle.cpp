@@ -1,0 +1,123 @@
+#include "app/commands/untangle.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "app/base/table.h"
+#include "app/base/words.h"
+#include "app/scene/load_mesh.h"
+#include "app/simulation/sheets.h"
+#include "app/simulation/time_loop.h"
+#include "mesh/obj/obj.h"
+
+namespace drape::app {
+namespace {
+
+constexpr double rests_for = 0.3;  // s, after the last crossing: layers come apart up to their thickness
+
+// The mesh in weightless air: nothing moves it but its stiffness, and what brings it apart.
+Scene weightless(const UntangleWords& words) {
+  const std::string label = "drape untangle " + words.mesh;
+  const auto text = [&](const std::string& value) { return Node::of_text(value, label); };
+  Node simulation = Node::of_table(label), cloth = Node::of_table(label), root = Node::of_table(label);
+  simulation.members["duration"] =
+      words.duration.empty() ? text("10 s") : parse_toml_value(words.duration, "--duration");
+  simulation.members["gravity"] = parse_toml_value("[0, 0, 0]", label);
+  cloth.members["mesh"] = text(words.mesh);
+  cloth.members["fabric"] = Node::of_text(words.fabric, "--fabric");
+  cloth.members["warp"] = text("down");
+  cloth.members["rest_angle"] = text("mesh");
+  cloth.members["imperfection"] = text("0 m");
+  cloth.members["self_contact"] = parse_toml_value("true", label);
+  if (!words.scale.empty()) cloth.members["scale"] = parse_toml_value(words.scale, "--scale");
+  if (!words.thickness.empty()) cloth.members["thickness"] = parse_toml_value(words.thickness, "--thickness");
+  root.members["simulation"] = std::move(simulation);
+  root.members["air"] = Node::of_table(label);
+  root.members["cloth"] = Node::of_list({std::move(cloth)}, label);
+  return read_scene(root, {}, {}, label);
+}
+
+// The state with the fewest crossings so far, and how it came about.
+class Search {
+ public:
+  explicit Search(Simulation& simulation) : simulation_(simulation), best_(simulation.state) {
+    at_start_ = fewest_ = Sheets(simulation.cloths, best_.x).crossings();
+  }
+  void look() {
+    const State& state = simulation_.state;
+    const int crossings = Sheets(simulation_.cloths, state.x).crossings();
+    if (crossings > fewest_) return;
+    if (crossings < fewest_) since_ = state.time;
+    fewest_ = crossings;
+    best_ = state;
+  }
+  bool over() const {
+    return at_start_ == 0 || (fewest_ == 0 && simulation_.state.time >= since_ + rests_for);
+  }
+  const State& best() const { return best_; }
+  int at_start() const { return at_start_; }
+  int fewest() const { return fewest_; }
+  double since() const { return since_; }  // s
+
+ private:
+  Simulation& simulation_;
+  State best_;
+  int at_start_, fewest_;
+  double since_ = 0;
+};
+
+// [m]
+std::string moved(const VecX& from, const VecX& to) {
+  double most = 0;
+  for (Eigen::Index i = 0; i < from.size() / 3; ++i)
+    most = std::max(most, (to - from).segment<3>(3 * i).norm());
+  return rounded(1000 * most, 3) + " mm";
+}
+
+void write(const UntangleWords& words, const Scene& scene, const Cloth& cloth, const VecX& x) {
+  std::vector<Vec3> places = cloth.embedding.positions(x);
+  const double scale = scene.cloths.front().placement.scale;
+  for (Vec3& place : places) place /= scale;
+  write_obj(words.out, read_obj(words.mesh), places);
+}
+
+}  // namespace
+
+int untangle_file(const UntangleWords& words) {
+  if (!std::filesystem::path(words.mesh).extension().compare(".toml"))
+    throw InputError(words.mesh + ": expected a mesh (.obj); a scene is untangled while it runs");
+  if (std::filesystem::path(words.out).extension() != ".obj")
+    throw InputError(words.out + ": expected a name that ends in .obj");
+  const Scene scene = weightless(words);
+  Simulation simulation = make_simulation(scene);
+  const VecX start = simulation.state.x;
+  Search search(simulation);
+  TimeLoop loop(simulation, Schedule(StepGrid(scene.simulation.time_step), 0, scene.simulation.duration));
+  catch_interrupts();
+  while (!loop.over() && !interrupted() && !search.over()) {
+    const StepReport& report = loop.step();
+    if (!report.done) {
+      std::fprintf(stderr, "error: the step from %s s failed: %s\n",
+                   rounded(simulation.state.time, 4).c_str(), one_line(report.failure.what).c_str());
+      break;
+    }
+    search.look();
+  }
+  if (interrupted()) return 130;
+  write(words, scene, simulation.cloths.front(), search.best().x);
+  if (!words.quiet) {
+    std::printf("crossings: %s at the start, %s after %s s\n", counted(search.at_start(), "pair").c_str(),
+                search.fewest() == 0 ? "none" : std::to_string(search.fewest()).c_str(),
+                rounded(search.since(), 3).c_str());
+    std::printf("no vertex has moved by more than %s\nwrote %s\n", moved(start, search.best().x).c_str(),
+                words.out.c_str());
+  }
+  if (search.fewest() == 0) return 0;
+  std::fprintf(
+      stderr,
+      "error: %s still cross: a longer --duration may bring them apart; 'drape check %s' says where\n",
+      counted(search.fewest(), "pair").c_str(), words.out.c_str());
+  return 1;
+}
+
+}  // namespace drape::app

@@ -1,0 +1,18 @@
+// `drape untangle`: brings a mesh apart where it passes through itself (constraints/tangles.h).
+#pragma once
+
+#include <string>
+
+namespace drape::app {
+
+struct UntangleWords {
+  std::string mesh, out, fabric = "cotton-poplin";
+  std::string scale, thickness, duration;  // as on the command line; empty when not given
+  bool quiet = false;
+};
+
+// Returns the exit code: 0 when nothing crosses any more, 1 when something still does; the mesh is written in both
+// cases. Throws InputError.
+int untangle_file(const UntangleWords& words);
+
+}  // namespace drape::app
