@@ -16,7 +16,8 @@ constexpr double steepest = 0.2;
 constexpr double stretches = 0.1;  // of an edge in a step, at most
 constexpr int spreadings = 6;      // over so many triangles
 constexpr double spread_share = 0.3;
-constexpr int few = 8;  // pairs that may cross beyond a quarter
+constexpr int few = 8;          // pairs that may cross beyond a quarter
+constexpr double patience = 2;  // s, without fewer pairs that cross
 
 class Roots {
  public:
@@ -91,7 +92,7 @@ void Tangles::begin(std::vector<Triangle> triangles, const VecX& x) {
   side_.assign(triangles_.size(), 0);
   way_.setZero(x.size());
   seen_.resize(0);
-  most_ = std::numeric_limits<int>::max();
+  fewest_ = std::numeric_limits<int>::max();
   end_step(x);
 }
 
@@ -108,7 +109,8 @@ void Tangles::end_step(const VecX& x) {
   look(x);
   contours_ = found_;
   const int crossings = crossing_count(contours_);
-  most_ = std::min(most_, crossings + crossings / 4 + few);
+  if (crossings < fewest_) stalled_ = 0;
+  fewest_ = std::min(fewest_, crossings);
   mark();
 }
 
@@ -271,6 +273,8 @@ void Tangles::add_relief(double most) {
 const VecX& Tangles::relief(const StepMotion& step, double most) {
   look(step.x);
   relief_.setZero(step.x.size());
+  if (stalled_ > patience) return relief_;
+  stalled_ += step.h;
   find_regions(step);
   for (const CrossingContour& contour : contours_) {
     gather(contour);
@@ -285,7 +289,7 @@ const VecX& Tangles::relief(const StepMotion& step, double most) {
 const std::vector<int>& Tangles::growing(const VecX& x) {
   look(x);
   growing_.clear();
-  if (crossing_count(found_) <= most_) return growing_;
+  if (crossing_count(found_) <= fewest_ + fewest_ / 4 + few) return growing_;
   std::vector<TrianglePair> before;
   for (const CrossingContour& contour : contours_)
     before.insert(before.end(), contour.pairs.begin(), contour.pairs.end());

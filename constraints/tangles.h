@@ -12,7 +12,8 @@
 //   These are displacements without velocity, which spread to the triangles around. Masses share them, so that no
 //   momentum is made. They are bounded by a speed, and by how much they stretch an edge in a step.
 //   The number of pairs that cross goes up and down while a contour moves over triangles. It may exceed its least so far
-//   by a quarter and a few; where a step makes more, the tangles that grow move as wholes.
+//   by a quarter and a few; where a step makes more, the tangles that grow move as wholes. When it has not become less for
+//   2 s, the tangles are left as they are.
 // Internal to the library's constraints.
 #pragma once
 
@@ -55,7 +56,8 @@ class Tangles {
   std::vector<Vec3> places_;  // seen_
   std::vector<CrossingContour> contours_, found_;  // where the step began, and at seen_
   VecX seen_;
-  int most_ = 0;  // pairs that may cross
+  int fewest_ = 0;      // pairs that crossed at the end of a step so far
+  double stalled_ = 0;  // s, since it became less
   int particles_ = 0;
   std::vector<int> tangle_;
   // Regions: that of each particle, and the mass of each [kg], infinite where a particle is held.

@@ -13,7 +13,8 @@
 namespace drape::app {
 namespace {
 
-constexpr double rests_for = 0.3;  // s, after the last crossing: layers come apart up to their thickness
+constexpr double rests_for = 0.3;     // s, after the last crossing: layers come apart up to their thickness
+constexpr double gives_up_after = 2;  // s, without fewer crossings
 
 // The mesh in weightless air: nothing moves it but its stiffness, and what brings it apart.
 Scene weightless(const UntangleWords& words) {
@@ -46,13 +47,13 @@ class Search {
   void look() {
     const State& state = simulation_.state;
     const int crossings = Sheets(simulation_.cloths, state.x).crossings();
-    if (crossings > fewest_) return;
+    if (crossings > fewest_ || (crossings == fewest_ && crossings > 0)) return;
     if (crossings < fewest_) since_ = state.time;
     fewest_ = crossings;
     best_ = state;
   }
   bool over() const {
-    return at_start_ == 0 || (fewest_ == 0 && simulation_.state.time >= since_ + rests_for);
+    return at_start_ == 0 || simulation_.state.time >= since_ + (fewest_ == 0 ? rests_for : gives_up_after);
   }
   const State& best() const { return best_; }
   int at_start() const { return at_start_; }
@@ -101,6 +102,7 @@ int untangle_file(const UntangleWords& words) {
                    rounded(simulation.state.time, 4).c_str(), one_line(report.failure.what).c_str());
       break;
     }
+    simulation.state.v.setZero();  // what was moved does not coast
     search.look();
   }
   if (interrupted()) return 130;

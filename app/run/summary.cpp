@@ -22,7 +22,7 @@ std::string hints(const RunRecord& record, const Output& output) {
             std::to_string(record.crossings_at_start) + " at the start): drape check " +
             output.folder().string() +
             " says where; cloth that starts clean, with self_contact = true, does not pass through itself "
-            "and others\n";
+            "and others; drape untangle brings a mesh apart\n";
   if (record.self_guarded > 0)
     text += "hint: vertices were stopped on their way " + counted(record.self_guarded, "time") +
             ", so that no cloth passes through cloth: a smaller time step is smoother\n";
