@@ -9,7 +9,7 @@
 //         t = d while |d| <= mu f (it sticks), else mu f d/|d| (it slides)         [Cundall & Strack 1979]
 //     k = kappa m / h^2,  1/m = sum w_k^2 / m_k     as stiff as the time step allows, whatever the mesh: a layer sinks
 //                                                   into the thickness by g h^2 / kappa, 33 um with h = 10 ms
-//   kappa is larger where the load, or what arrives, would sink in by more than a share of r.
+//   kappa is larger, up to a limit, where the load, or what arrives, would sink in by more than a share of r.
 //   Within a solve a contact is linear: it acts or not, and friction is a spring weakened to share (t_0 - k s).
 //   react() corrects both until they agree with the solve.
 //   The guard: every vertex goes all of its way d_i at first. The pairs that would come nearer than `floor` on the way are
@@ -145,6 +145,7 @@ class SelfContacts {
             bool by_shares, bool in_common);
   void stop_tangles(const std::vector<int>& tangles);
   void find_relief(const StepMotion& step, const std::vector<Contact>& on_bodies);
+  int go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX& v_new);
   void shorten(const StepMotion& step, const VecX& x_new, bool in_common);
   double share_of_way(double slope, double curvature, const VecX& x_new) const;
   bool exempt(const Encounter& e) const;
@@ -177,7 +178,7 @@ class SelfContacts {
   std::vector<int> piece_, sheet_;               // the connected piece, and the sheet, that it belongs to
   std::vector<char> pass_;                       // let_pass()
   VecX rest_;                                    // places when the faces were added [m]
-  std::vector<char> tangled_;                    // there
+  std::vector<char> tangled_;                    // whether it was in a tangle there
   std::vector<SelfContact> touching_, last_;     // of this step and of the last one, sorted
   std::vector<SelfContact> met_;                 // scratch
   std::vector<double> way_, shorter_, nearest_;  // scratch, by particle
@@ -188,7 +189,7 @@ class SelfContacts {
   enum class Held : char { no, by_body, yes };
   std::vector<Held> hold_, zone_hold_;  // of each particle; the firmest of its zone
   std::vector<char> still_;             // of a tangle that moves as a whole, but for its relief
-  VecX relief_;                         // m, see Tangles
+  VecX relief_, given_;                 // m, see Tangles; what the first guard of the step gave of it
   VecX ahead_, v_at_, proven_;
   bool accepted_ = false;   // whether v_at_ is of this step
   bool is_proven_ = false;  // whether nothing meets on the way to proven_ in this step

@@ -162,6 +162,25 @@ void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_co
   ahead_ = step.x;
 }
 
+// Takes the particles to ahead_, and from their velocity what they lose of their way; relief is none of it. Returns how many
+// lose some. The second guard of a step finds the relief of the first one in x_new.
+int SelfContacts::go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX& v_new) {
+  int stopped = 0;
+  if (first) given_.setZero(x_new.size());
+  for (std::size_t i = 0; i < way_.size(); ++i) {
+    const auto k = 3 * static_cast<Eigen::Index>(i);
+    const Vec3 relief = way_[i] * relief_.segment<3>(k);
+    if (way_[i] < 1 || still_[i] != 0) {
+      const Vec3 kept = x_new.segment<3>(k) - (still_[i] != 0 ? 1 : 1 - way_[i]) * given_.segment<3>(k);
+      v_new.segment<3>(k) -= (kept + relief - ahead_.segment<3>(k)) / step.h;
+      ++stopped;
+    }
+    if (first) given_.segment<3>(k) = relief;
+    x_new.segment<3>(k) = ahead_.segment<3>(k);
+  }
+  return stopped;
+}
+
 int SelfContacts::guard(const StepMotion& step, const std::vector<Contact>& on_bodies, bool in_common,
                         VecX& x_new, VecX& v_new) {
   if (!any() || (is_proven_ && !crossing() && x_new == proven_) || !x_new.allFinite()) return 0;
@@ -176,17 +195,7 @@ int SelfContacts::guard(const StepMotion& step, const std::vector<Contact>& on_b
   if (crossing() && in_common) find_relief(step, on_bodies);
   ahead_ = x_new + relief_;
   shorten(step, x_new, in_common);
-  int stopped = 0;
-  for (std::size_t i = 0; i < way_.size(); ++i) {
-    const auto k = 3 * static_cast<Eigen::Index>(i);
-    if (way_[i] < 1 || still_[i] != 0) {
-      v_new.segment<3>(k) -=
-          (x_new.segment<3>(k) + way_[i] * relief_.segment<3>(k) - ahead_.segment<3>(k)) / step.h;
-      ++stopped;
-    }
-    x_new.segment<3>(k) = ahead_.segment<3>(k);
-  }
-  return stopped;
+  return go_ahead(step, in_common, x_new, v_new);
 }
 
 }  // namespace drape

@@ -39,14 +39,19 @@ double SelfContacts::both_thicknesses(const Encounter& e) const {
 }
 
 // The thickness at which the pair comes to rest: the mean of both sides. Where one piece of cloth is near itself at
-// rest, no more than half the distance there; but so much that springs can bear it. A distance between what passes through
-// each other at rest says nothing: there it is a quarter of an edge.
+// rest, no more than half the distance there. Of what passes through each other at rest that says nothing: there it may
+// always be a quarter of the shortest edge between the four.
 double SelfContacts::thickness_of(const Encounter& e) const {
-  const double both = both_thicknesses(e), edge = encounters_->mean_edge();
+  const double both = both_thicknesses(e);
   if (piece_[e.v[0]] != piece_[e.v[3]]) return both;
-  const bool tangled = std::all_of(e.v.begin(), e.v.end(), [&](int v) { return tangled_[v] != 0; });
-  const double at_rest = 0.5 * nearest(e.edges, corners(rest_, e)).distance;
-  return std::min(both, std::max(at_rest, tangled ? 0.25 * edge : std::min(0.1 * both, 0.05 * edge)));
+  const FourPoints x = corners(rest_, e);
+  const double half = 0.5 * nearest(e.edges, x).distance;
+  if (std::any_of(e.v.begin(), e.v.end(), [&](int v) { return tangled_[v] == 0; }))
+    return std::min(both, half);
+  const double shortest = e.edges
+                              ? std::min((x[1] - x[0]).norm(), (x[3] - x[2]).norm())
+                              : std::min({(x[2] - x[1]).norm(), (x[3] - x[2]).norm(), (x[1] - x[3]).norm()});
+  return std::min(both, std::max(half, 0.25 * shortest));
 }
 
 double SelfContacts::friction_of(const Encounter& e) const {

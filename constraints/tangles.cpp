@@ -77,8 +77,11 @@ struct Crossing {
 
 }  // namespace
 
-void Tangles::begin(std::vector<Triangle> triangles, const VecX& x) {
+void Tangles::begin(std::vector<Triangle> triangles, const std::vector<char>& pass, const VecX& x) {
   triangles_ = std::move(triangles);
+  passes_.clear();
+  for (const Triangle& t : triangles_)
+    passes_.push_back(std::any_of(t.begin(), t.end(), [&](int v) { return pass[v] != 0; }));
   const auto n = static_cast<std::size_t>(x.size() / 3);
   first_.assign(n + 1, 0);
   for (const Triangle& t : triangles_)
@@ -102,7 +105,19 @@ void Tangles::look(const VecX& x) {
   for (std::size_t i = 0; i < places_.size(); ++i)
     places_[i] = x.segment<3>(3 * static_cast<Eigen::Index>(i));
   found_ = crossing_contours(places_, triangles_);
+  leave_out_passing();
   seen_ = x;
+}
+
+void Tangles::leave_out_passing() {
+  if (std::find(passes_.begin(), passes_.end(), 1) == passes_.end()) return;
+  for (CrossingContour& contour : found_) {
+    std::erase_if(contour.pairs,
+                  [&](const TrianglePair& p) { return passes_[p.first] != 0 && passes_[p.second] != 0; });
+    std::erase_if(contour.passages,
+                  [&](const Passage& p) { return passes_[p.of] != 0 && passes_[p.through] != 0; });
+  }
+  std::erase_if(found_, [](const CrossingContour& contour) { return contour.pairs.empty(); });
 }
 
 void Tangles::end_step(const VecX& x) {
@@ -177,18 +192,25 @@ int Tangles::lighter_end(const Passage& passage) const {
 // Triangles that cross lie on two sides of their contour. Where it crosses itself, there are no sides.
 void Tangles::sort_sides(const CrossingContour& contour) {
   for (int k : near_) side_[k] = 0;
-  side_[contour.pairs.front().first] = 1;
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (const TrianglePair& pair : contour.pairs) {
-      signed char &a = side_[pair.first], &b = side_[pair.second];
-      if (a != 0 && a == b) {
-        for (int k : near_) side_[k] = 0;
+  std::vector<std::array<int, 2>> across;
+  for (const TrianglePair& pair : contour.pairs) {
+    across.push_back({pair.first, pair.second});
+    across.push_back({pair.second, pair.first});
+  }
+  std::sort(across.begin(), across.end());
+  std::vector<int> queue = {contour.pairs.front().first};
+  side_[queue.front()] = 1;
+  for (std::size_t k = 0; k < queue.size(); ++k) {
+    const int here = queue[k];
+    auto next = std::lower_bound(across.begin(), across.end(), std::array{here, 0});
+    for (; next != across.end() && (*next)[0] == here; ++next) {
+      signed char& there = side_[(*next)[1]];
+      if (there == side_[here]) {
+        for (int triangle : near_) side_[triangle] = 0;
         return;
       }
-      if ((a == 0) == (b == 0)) continue;
-      (a == 0 ? a : b) = static_cast<signed char>(-(a == 0 ? b : a));
-      changed = true;
+      if (there == 0) queue.push_back((*next)[1]);
+      there = static_cast<signed char>(-side_[here]);
     }
   }
 }
@@ -252,22 +274,41 @@ void Tangles::spread(const StepMotion& step) {
     }
 }
 
+// By how much these displacements exceed what is allowed at the triangle, as a factor.
+double Tangles::excess_of(const Triangle& t, const VecX& ways, double most) const {
+  double excess = 1;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const int v = t[j], w = t[(j + 1) % 3];
+    const Vec3 way = ways.segment<3>(3 * v), other = ways.segment<3>(3 * w);
+    excess = std::max(excess, way.norm() / most);
+    if (way != other)
+      excess = std::max(excess, (way - other).norm() / (stretches * (places_[v] - places_[w]).norm()));
+  }
+  return excess;
+}
+
 void Tangles::add_relief(double most) {
   double excess = 1;
-  for (int k : near_) {
-    const Triangle& t = triangles_[k];
-    for (std::size_t j = 0; j < 3; ++j) {
-      const int v = t[j], w = t[(j + 1) % 3];
-      const Vec3 way = way_.segment<3>(3 * v), other = way_.segment<3>(3 * w);
-      excess = std::max(excess, way.norm() / most);
-      excess = std::max(excess, (way - other).norm() / (stretches * (places_[v] - places_[w]).norm()));
-    }
-  }
+  for (int k : near_) excess = std::max(excess, excess_of(triangles_[k], way_, most));
   for (int k : near_)
     for (int v : triangles_[k]) {
       if (std::isfinite(excess)) relief_.segment<3>(3 * v) += way_.segment<3>(3 * v) / excess;
       way_.segment<3>(3 * v).setZero();
     }
+}
+
+// Where contours lie close their displacements add up, and at the rim of a tangle the cloth beyond does not move: one factor
+// for each tangle, which keeps its momentum.
+void Tangles::limit_relief(double most) {
+  excess_.assign(places_.size(), 1);
+  for (const Triangle& t : triangles_) {
+    if (tangle_[t[0]] < 0 && tangle_[t[1]] < 0 && tangle_[t[2]] < 0) continue;
+    const double excess = excess_of(t, relief_, most);
+    for (int v : t)
+      if (tangle_[v] >= 0) excess_[tangle_[v]] = std::max(excess_[tangle_[v]], excess);
+  }
+  for (int i = 0; i < static_cast<int>(tangle_.size()); ++i)
+    if (tangle_[i] >= 0) relief_.segment<3>(3 * i) /= excess_[tangle_[i]];
 }
 
 const VecX& Tangles::relief(const StepMotion& step, double most) {
@@ -283,6 +324,7 @@ const VecX& Tangles::relief(const StepMotion& step, double most) {
     spread(step);
     add_relief(most);
   }
+  limit_relief(most);
   return relief_;
 }
 
@@ -290,19 +332,31 @@ const std::vector<int>& Tangles::growing(const VecX& x) {
   look(x);
   growing_.clear();
   if (crossing_count(found_) <= fewest_ + fewest_ / 4 + few) return growing_;
-  std::vector<TrianglePair> before;
-  for (const CrossingContour& contour : contours_)
-    before.insert(before.end(), contour.pairs.begin(), contour.pairs.end());
-  std::sort(before.begin(), before.end());
-  for (const CrossingContour& contour : found_)
-    for (const TrianglePair& pair : contour.pairs) {
-      if (std::binary_search(before.begin(), before.end(), pair)) continue;
-      for (int triangle : {pair.first, pair.second})
-        for (int v : triangles_[triangle])
-          if (tangle_[v] >= 0) growing_.push_back(tangle_[v]);
-    }
-  std::sort(growing_.begin(), growing_.end());
-  growing_.erase(std::unique(growing_.begin(), growing_.end()), growing_.end());
+  const auto pairs_of = [](const std::vector<CrossingContour>& contours) {
+    std::vector<TrianglePair> pairs;
+    for (const CrossingContour& contour : contours)
+      pairs.insert(pairs.end(), contour.pairs.begin(), contour.pairs.end());
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+  };
+  const std::vector<TrianglePair> before = pairs_of(contours_), after = pairs_of(found_);
+  gain_.assign(places_.size(), 0);
+  std::vector<int> of_pair;
+  const auto count = [&](const TrianglePair& pair, int gain) {
+    of_pair.clear();
+    for (int triangle : {pair.first, pair.second})
+      for (int v : triangles_[triangle])
+        if (tangle_[v] >= 0) of_pair.push_back(tangle_[v]);
+    std::sort(of_pair.begin(), of_pair.end());
+    of_pair.erase(std::unique(of_pair.begin(), of_pair.end()), of_pair.end());
+    for (int tangle : of_pair) gain_[tangle] += gain;
+  };
+  for (const TrianglePair& pair : after)
+    if (!std::binary_search(before.begin(), before.end(), pair)) count(pair, 1);
+  for (const TrianglePair& pair : before)
+    if (!std::binary_search(after.begin(), after.end(), pair)) count(pair, -1);
+  for (int i = 0; i < static_cast<int>(gain_.size()); ++i)
+    if (gain_[i] > 0) growing_.push_back(i);
   return growing_;
 }
 

@@ -26,8 +26,9 @@ namespace drape::internal {
 
 class Tangles {
  public:
-  // Looks where the triangles cross.
-  void begin(std::vector<Triangle> triangles, const VecX& x);
+  // Looks where the triangles cross. pass: for each particle whether what is near it may cross; two triangles that both
+  // have such a one make no tangle.
+  void begin(std::vector<Triangle> triangles, const std::vector<char>& pass, const VecX& x);
   void end_step(const VecX& x);  // the step has ended at x
 
   bool any() const { return !contours_.empty(); }
@@ -40,6 +41,7 @@ class Tangles {
 
  private:
   void look(const VecX& x);
+  void leave_out_passing();
   void mark();
   void find_regions(const StepMotion& step);
   int lighter_end(const Passage& passage) const;
@@ -48,9 +50,12 @@ class Tangles {
   void gather(const CrossingContour& contour);
   void add_ways(const CrossingContour& contour, const StepMotion& step);
   void spread(const StepMotion& step);
+  double excess_of(const Triangle& t, const VecX& ways, double most) const;
   void add_relief(double most);
+  void limit_relief(double most);
 
   std::vector<Triangle> triangles_;
+  std::vector<char> passes_;  // by triangle
   std::vector<int> first_,
       around_;                // the triangles at particle i: around_[first_[i]] up to around_[first_[i + 1]]
   std::vector<Vec3> places_;  // seen_
@@ -67,8 +72,9 @@ class Tangles {
   std::vector<int> near_;
   std::vector<char> is_near_;
   std::vector<signed char> side_;
-  VecX way_, relief_;  // m
-  std::vector<int> growing_;
+  VecX way_, relief_;           // m
+  std::vector<double> excess_;  // by tangle
+  std::vector<int> gain_, growing_;
 };
 
 }  // namespace drape::internal

@@ -277,7 +277,8 @@ void add_untangle(CLI::App& app, int& exit_code) {
   option("--scale", words->scale, "X", "of the mesh, such as 0.01 for files in cm; it is written as it was");
   option("--duration", words->duration, "TIME", "given up after so much simulated time (10 s)");
   command->add_flag("--quiet", words->quiet, "nothing but errors");
-  command->footer("Exit code: 0 nothing crosses any more; 1 something still does; 2 bad input.");
+  command->footer(
+      "Exit code: 0 nothing crosses any more; 1 something still does; 2 bad input; 130 interrupted.");
   command->callback([=, &exit_code] { exit_code = untangle_file(*words); });
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "app/base/atomic_file.h"
 #include "app/base/table.h"
 #include "app/base/words.h"
 #include "app/scene/load_mesh.h"
@@ -75,11 +76,21 @@ std::string moved(const VecX& from, const VecX& to) {
   return rounded(1000 * most, 3) + " mm";
 }
 
-void write(const UntangleWords& words, const Scene& scene, const Cloth& cloth, const VecX& x) {
-  std::vector<Vec3> places = cloth.embedding.positions(x);
+// Returns how many pairs cross in what was written; a polygon may be cut otherwise there. What crosses nowhere is written as
+// it was read.
+int write(const UntangleWords& words, const Scene& scene, const Cloth& cloth, const Search& search) {
+  const TriangleMesh mesh = read_obj(words.mesh);
+  std::vector<Vec3> places = mesh.positions;
   const double scale = scene.cloths.front().placement.scale;
-  for (Vec3& place : places) place /= scale;
-  write_obj(words.out, read_obj(words.mesh), places);
+  if (search.at_start() > 0) {
+    places = cloth.embedding.positions(search.best().x);
+    for (Vec3& place : places) place /= scale;
+  }
+  write_obj(words.out, mesh, places);
+  const TriangleMesh written = read_obj(words.out);
+  Sheets sheets;
+  sheets.add(words.out, written.triangles, written.positions);
+  return sheets.crossings();
 }
 
 }  // namespace
@@ -89,37 +100,36 @@ int untangle_file(const UntangleWords& words) {
     throw InputError(words.mesh + ": expected a mesh (.obj); a scene is untangled while it runs");
   if (std::filesystem::path(words.out).extension() != ".obj")
     throw InputError(words.out + ": expected a name that ends in .obj");
+  (void)AtomicFile(words.out);  // whether it can be written: now, and not when all is computed
   const Scene scene = weightless(words);
   Simulation simulation = make_simulation(scene);
+  if (!words.quiet)
+    for (const std::string& message : simulation.messages)
+      if (!message.starts_with("note")) std::fprintf(stderr, "%s\n", one_line(message).c_str());
   const VecX start = simulation.state.x;
   Search search(simulation);
   TimeLoop loop(simulation, Schedule(StepGrid(scene.simulation.time_step), 0, scene.simulation.duration));
   catch_interrupts();
+  bool failed = false;
   while (!loop.over() && !interrupted() && !search.over()) {
     const StepReport& report = loop.step();
-    if (!report.done) {
+    failed = !report.done;
+    if (failed)
       std::fprintf(stderr, "error: the step from %s s failed: %s\n",
                    rounded(simulation.state.time, 4).c_str(), one_line(report.failure.what).c_str());
-      break;
-    }
     simulation.state.v.setZero();  // what was moved does not coast
     search.look();
   }
-  if (interrupted()) return 130;
-  write(words, scene, simulation.cloths.front(), search.best().x);
-  if (!words.quiet) {
-    std::printf("crossings: %s at the start, %s after %s s\n", counted(search.at_start(), "pair").c_str(),
-                search.fewest() == 0 ? "none" : std::to_string(search.fewest()).c_str(),
-                rounded(search.since(), 3).c_str());
-    std::printf("no vertex has moved by more than %s\nwrote %s\n", moved(start, search.best().x).c_str(),
-                words.out.c_str());
-  }
-  if (search.fewest() == 0) return 0;
-  std::fprintf(
-      stderr,
-      "error: %s still cross: a longer --duration may bring them apart; 'drape check %s' says where\n",
-      counted(search.fewest(), "pair").c_str(), words.out.c_str());
-  return 1;
+  const int crossings = write(words, scene, simulation.cloths.front(), search);
+  if (!words.quiet)
+    std::printf("crossings: %s at the start, %s after %s s\nno vertex has moved by more than %s\nwrote %s\n",
+                counted(search.at_start(), "pair").c_str(),
+                crossings == 0 ? "none" : std::to_string(crossings).c_str(),
+                rounded(search.since(), 3).c_str(), moved(start, search.best().x).c_str(), words.out.c_str());
+  if (crossings > 0)
+    std::fprintf(stderr, "error: %s still cross; 'drape check %s' says where\n",
+                 counted(crossings, "pair").c_str(), words.out.c_str());
+  return interrupted() ? 130 : failed || crossings > 0 ? 1 : 0;
 }
 
 }  // namespace drape::app
