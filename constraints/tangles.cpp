@@ -129,34 +129,43 @@ void Tangles::end_step(const VecX& x) {
   mark();
 }
 
-// Gathers the triangles that the contour has, and all that share a vertex with them.
-void Tangles::gather(const CrossingContour& contour) {
+// Gathers the triangles that the contour has and those that share a vertex with them; with two rings once more those that
+// share a vertex with these.
+void Tangles::gather(const CrossingContour& contour, int rings) {
   near_.clear();
+  const auto add_around = [&](int triangle) {
+    for (int v : triangles_[triangle])
+      for (int k = first_[v]; k < first_[v + 1]; ++k)
+        if (std::exchange(is_near_[around_[k]], char{1}) == 0) near_.push_back(around_[k]);
+  };
   for (const TrianglePair& pair : contour.pairs)
-    for (int crossing : {pair.first, pair.second})
-      for (int v : triangles_[crossing])
-        for (int k = first_[v]; k < first_[v + 1]; ++k)
-          if (std::exchange(is_near_[around_[k]], char{1}) == 0) near_.push_back(around_[k]);
+    for (int crossing : {pair.first, pair.second}) add_around(crossing);
+  for (std::size_t k = 0, first_ring = near_.size(); rings == 2 && k < first_ring; ++k) add_around(near_[k]);
   for (int k : near_) is_near_[k] = 0;
   std::sort(near_.begin(), near_.end());
 }
 
 void Tangles::mark() {
   Roots roots(places_.size());
-  std::vector<char> in(places_.size(), 0);
+  std::vector<char> crosses(places_.size(), 0), moves(places_.size(), 0);
   for (const CrossingContour& contour : contours_) {
-    gather(contour);
+    gather(contour, 2);
     for (int k : near_)
       for (int v : triangles_[k]) {
-        in[v] = 1;
+        moves[v] = 1;
         roots.join(v, triangles_[near_.front()][0]);
       }
+    gather(contour, 1);
+    for (int k : near_)
+      for (int v : triangles_[k]) crosses[v] = 1;
   }
   tangle_.assign(places_.size(), -1);
+  moved_.assign(places_.size(), -1);
   particles_ = 0;
   for (int i = 0; i < static_cast<int>(places_.size()); ++i) {
-    if (in[i] == 0) continue;
-    tangle_[i] = roots.of(i);
+    if (moves[i] != 0) moved_[i] = roots.of(i);
+    if (crosses[i] == 0) continue;
+    tangle_[i] = moved_[i];
     ++particles_;
   }
 }
@@ -302,23 +311,24 @@ void Tangles::add_relief(double most) {
 void Tangles::limit_relief(double most) {
   excess_.assign(places_.size(), 1);
   for (const Triangle& t : triangles_) {
-    if (tangle_[t[0]] < 0 && tangle_[t[1]] < 0 && tangle_[t[2]] < 0) continue;
+    if (moved_[t[0]] < 0 && moved_[t[1]] < 0 && moved_[t[2]] < 0) continue;
     const double excess = excess_of(t, relief_, most);
     for (int v : t)
-      if (tangle_[v] >= 0) excess_[tangle_[v]] = std::max(excess_[tangle_[v]], excess);
+      if (moved_[v] >= 0) excess_[moved_[v]] = std::max(excess_[moved_[v]], excess);
   }
-  for (int i = 0; i < static_cast<int>(tangle_.size()); ++i)
-    if (tangle_[i] >= 0) relief_.segment<3>(3 * i) /= excess_[tangle_[i]];
+  for (int i = 0; i < static_cast<int>(moved_.size()); ++i)
+    if (moved_[i] >= 0) relief_.segment<3>(3 * i) /= excess_[moved_[i]];
 }
 
 const VecX& Tangles::relief(const StepMotion& step, double most) {
   look(step.x);
   relief_.setZero(step.x.size());
   if (stalled_ > patience) return relief_;
+  const int rings = stalled_ < 0.5 * patience ? 2 : 1;
   stalled_ += step.h;
   find_regions(step);
   for (const CrossingContour& contour : contours_) {
-    gather(contour);
+    gather(contour, rings);
     sort_sides(contour);
     add_ways(contour, step);
     spread(step);

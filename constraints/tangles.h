@@ -9,7 +9,8 @@
 //     G = sum_i (R_i - (R_i . E) / (E . N) N)                     [Volino & Magnenat-Thalmann 2006, section 3]
 //   R_i: the direction in which the contour goes on from the edge, one for each triangle at the edge that crosses; both
 //   sides move as wholes along the sum of G, besides.
-//   These are displacements without velocity, which spread to the triangles around. Masses share them, so that no
+//   These are displacements without velocity, which spread to two rings of triangles around, or to one when
+//   that has not helped for 1 s: narrow folds would move as wholes. Masses share them, so that no
 //   momentum is made. They are bounded by a speed, and by how much they stretch an edge in a step.
 //   The number of pairs that cross goes up and down while a contour moves over triangles. It may exceed its least so far
 //   by a quarter and a few; where a step makes more, the tangles that grow move as wholes. When it has not become less for
@@ -34,7 +35,8 @@ class Tangles {
   bool any() const { return !contours_.empty(); }
   int tangle(int particle) const { return tangle_[particle]; }  // a number; -1: it is in none
   int particles() const { return particles_; }                  // in all tangles
-  // Displacements that bring the sides of the contours apart, by `most` [m] at most; zero outside of the tangles.
+  // Displacements that bring the sides of the contours apart, by `most` [m] at most; zero farther than
+  // a ring of triangles outside of the tangles.
   const VecX& relief(const StepMotion& step, double most);
   // The tangles that have to stand, when more pairs would cross at x than may; sorted.
   const std::vector<int>& growing(const VecX& x);
@@ -47,7 +49,7 @@ class Tangles {
   int lighter_end(const Passage& passage) const;
   void sort_sides(const CrossingContour& contour);
   int lightest_side(const CrossingContour& contour) const;
-  void gather(const CrossingContour& contour);
+  void gather(const CrossingContour& contour, int rings);
   void add_ways(const CrossingContour& contour, const StepMotion& step);
   void spread(const StepMotion& step);
   double excess_of(const Triangle& t, const VecX& ways, double most) const;
@@ -64,7 +66,7 @@ class Tangles {
   int fewest_ = 0;      // pairs that crossed at the end of a step so far
   double stalled_ = 0;  // s, since it became less
   int particles_ = 0;
-  std::vector<int> tangle_;
+  std::vector<int> tangle_, moved_;  // the number of the tangle that a particle is in, and that moves it
   // Regions: that of each particle, and the mass of each [kg], infinite where a particle is held.
   std::vector<int> region_;
   std::vector<double> region_mass_;
