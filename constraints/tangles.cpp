@@ -213,13 +213,13 @@ void Tangles::sort_sides(const CrossingContour& contour) {
     const int here = queue[k];
     auto next = std::lower_bound(across.begin(), across.end(), std::array{here, 0});
     for (; next != across.end() && (*next)[0] == here; ++next) {
-      signed char& there = side_[(*next)[1]];
+      int& there = side_[(*next)[1]];
       if (there == side_[here]) {
         for (int triangle : near_) side_[triangle] = 0;
         return;
       }
       if (there == 0) queue.push_back((*next)[1]);
-      there = static_cast<signed char>(-side_[here]);
+      there = -side_[here];
     }
   }
 }

@@ -73,7 +73,7 @@ class Tangles {
   // Of the contour that is looked at: the triangles at it and around it, their side, 1 or -1, 0: unknown, and displacements.
   std::vector<int> near_;
   std::vector<char> is_near_;
-  std::vector<signed char> side_;
+  std::vector<int> side_;
   VecX way_, relief_;           // m
   std::vector<double> excess_;  // by tangle
   std::vector<int> gain_, growing_;
