@@ -13,7 +13,7 @@ namespace {
 struct Guarded {
   explicit Guarded(int n) : sheet(grid(n, n, 0.1, 0.1)) {
     std::vector<Vec3> places = sheet.positions;
-    for (Vec3 x : sheet.positions) places.push_back(x + Vec3(0.003, 0.004, 0.002));
+    for (const Vec3& x : sheet.positions) places.push_back(x + Vec3(0.003, 0.004, 0.002));
     step.h = 0.01;
     step.x = stacked(places);
     step.masses.assign(places.size(), 1e-4);
