@@ -76,7 +76,7 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
       if (foresight != Foresight::ahead) faces_.limit_dampers(masses, h);
     }
   }
-  self_.begin_step(step_, options_.recovery_speed * h, kappa);
+  self_.begin_step(step_, bodies_, options_.recovery_speed * h, kappa);
   return ContactStep(*this);
 }
 

@@ -69,10 +69,11 @@ void ContactStep::receive_pin(const MovingPin& pin, const Vec3& impulse) {
 
 void ContactStep::receive_faces(const VecX& v) {
   FaceContacts& faces = constraints_->faces_;
-  if (faces.touching().empty()) return;
+  if (faces.touching().empty() && constraints_->self_.touching().empty()) return;
   const StepMotion& step = constraints_->step_;
   VecX& x_new = constraints_->x_new_;
   x_new = step.x + step.h * v + correction();
+  constraints_->step_.work += constraints_->self_.push_bodies(constraints_->bodies_, x_new);
   faces.take_impulse(step.h, x_new, v);
   for (const FaceContact& c : faces.touching()) {
     constraints_->step_.work += c.body_velocity.dot(c.impulse);
@@ -117,6 +118,7 @@ bool ContactStep::move_bodies(double noise) {
   if (!moved) return false;
   constraints_->contacts_.follow(bodies, constraints_->step_);
   constraints_->faces_.follow(bodies);
+  constraints_->self_.follow(bodies);
   constraints_->pins_.move(bodies, constraints_->step_);
   return true;
 }
@@ -168,17 +170,18 @@ ContactReport ContactStep::finish(VecX& x_new, VecX& v_new) {
   StepMotion& step = constraints_->step_;
   if (bodies()) constraints_->contacts_.guard(constraints_->bodies_, step, x_new, v_new, report);
   report.self_guarded =
-      constraints_->self_.guard(step, constraints_->contacts_.touching(), true, x_new, v_new);
+      constraints_->self_.guard(constraints_->bodies_, constraints_->contacts_.touching(), true, x_new, v_new);
   if (bodies() && (report.self_guarded > 0 || constraints_->self_.crossing())) {
     const int before = report.guarded;
     constraints_->contacts_.guard(constraints_->bodies_, step, x_new, v_new, report);
     if (report.guarded > before)  // a common way led into a body
       report.self_guarded +=
-          constraints_->self_.guard(step, constraints_->contacts_.touching(), false, x_new, v_new);
+          constraints_->self_.guard(constraints_->bodies_, constraints_->contacts_.touching(), false, x_new, v_new);
   }
-  constraints_->self_.end_step(step, x_new);
+  constraints_->self_.end_step(x_new);
   report.self_contacts = constraints_->self_.pushing();
   report.tangled = constraints_->self_.tangled();
+  report.pinched = constraints_->self_.pinched();
   if (bodies()) {
     if (report.self_guarded > 0 || report.tangled > 0)
       constraints_->contacts_.look_again();  // these went otherwise than bodies were told

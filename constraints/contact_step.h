@@ -73,7 +73,7 @@ class ContactStep {
   // Finds where cloth would pass through cloth on the way to x_new, and no spring keeps it off yet.
   ContactChange meet(const VecX& x_new) {
     if (constraints_->step_.foresight != Foresight::ahead) return {};
-    return {.met = constraints_->self_.meet(constraints_->step_, x_new)};
+    return {.met = constraints_->self_.meet(x_new)};
   }
   // Ends the rounds: the contacts stay as the solve with this v and r had them.
   void settle(const VecX& v, const VecX& r) {

@@ -19,11 +19,6 @@ Vec3 place(const VecX& x, std::size_t particle) {
   return x.segment<3>(3 * static_cast<Eigen::Index>(particle));
 }
 
-void spread(const VecX& x, std::vector<Vec3>& places) {
-  places.resize(static_cast<std::size_t>(x.size() / 3));
-  for (std::size_t i = 0; i < places.size(); ++i) places[i] = place(x, i);
-}
-
 struct Sum {
   Vec3 value = Vec3::Zero();
   Sum& operator+=(const Sum& other) {
@@ -70,16 +65,28 @@ double largest(int n, const F& f) {
 
 }  // namespace
 
-void Encounters::set(const std::vector<Triangle>& triangles, const VecX& x) {
+void Encounters::spread(const VecX& x, std::vector<Vec3>& places) const {
+  places.resize(static_cast<std::size_t>(particles_));
+  for (std::size_t i = 0; i < places.size(); ++i) places[i] = place(x, i);
+}
+
+void Encounters::set(const std::vector<Triangle>& triangles, int particle_count, std::size_t of_cloth,
+                     const VecX& x) {
   faces_.clear();
-  for (const Triangle& t : triangles)
-    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) faces_.push_back({t, {-1, -1, -1}});
+  of_cloth_ = 0;
+  particles_ = particle_count;
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    const Triangle& t = triangles[k];
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    of_cloth_ += of_cloth < triangles.size() && k < of_cloth;
+    faces_.push_back({t, {-1, -1, -1}});
+  }
   boxes_.reset();
   beside_ = near_ = {};
   forget();
   if (faces_.empty()) return;
 
-  const auto particles = static_cast<std::size_t>(x.size() / 3);
+  const auto particles = static_cast<std::size_t>(particle_count);
   owned_.assign(faces_.size(), 0);
   std::vector<char> has_owner(particles, 0);
   std::map<std::pair<int, int>, int> owner;
@@ -110,7 +117,7 @@ void Encounters::set(const std::vector<Triangle>& triangles, const VecX& x) {
   for (int c = 0; c < static_cast<int>(particles); ++c) {
     for (int f : around[c])
       for (int g : around[c])
-        if (g > f && common(f, g) == c) list(f, g, beside_.list);
+        if (g > f && of_cloth_ == 0 && common(f, g) == c) list(f, g, beside_.list);
     beside_start_.push_back(static_cast<int>(beside_.list.size()));
   }
   beside_due_.assign(particles, never);
@@ -119,7 +126,7 @@ void Encounters::set(const std::vector<Triangle>& triangles, const VecX& x) {
   clock_.assign(particles, 0);
   clock_end_.assign(particles, 0);
   spread(x, start_);
-  boxes_.emplace(faces_, start_, 1);
+  boxes_.emplace(faces_, start_, 1, of_cloth_);
 }
 
 void Encounters::forget() {
@@ -134,7 +141,7 @@ void Encounters::list(int first, int second, std::vector<Encounter>& found) cons
     return std::find(triangle.begin(), triangle.end(), v) != triangle.end();
   };
   for (std::size_t k = 0; k < 3; ++k) {
-    if ((owned_[first] >> k & 1u) != 0 && !has(t, s[k]))
+    if (of_cloth_ == 0 && (owned_[first] >> k & 1u) != 0 && !has(t, s[k]))
       found.push_back({.v = {s[k], t[0], t[1], t[2]}, .edges = false});
     if ((owned_[second] >> k & 1u) != 0 && !has(s, t[k]))
       found.push_back({.v = {t[k], s[0], s[1], s[2]}, .edges = false});
@@ -243,6 +250,7 @@ bool Encounters::list_near(double within, std::size_t most) {
         boxes_->parts()[part],
         [&](int first, int second) {
           if (common(first, second) >= 0) return true;
+          if (of_cloth_ != 0 && (first < of_cloth_) == (second < of_cloth_)) return true;
           const auto before = static_cast<std::ptrdiff_t>(found.size());
           list(std::min(first, second), std::max(first, second), found);
           const auto far = [&](const Encounter& e) {
@@ -266,6 +274,7 @@ void Encounters::read_clocks(const VecX& x, const VecX& x_new) {
   const auto motion = [&](int i) { return Vec3(x_new.segment<3>(3 * i) - x.segment<3>(3 * i)); };
   const Vec3 common = mean(n, motion);
   common_clock_end_ = common_clock_ + largest(n, [&](int i) { return (motion(i) - common).norm(); });
+  if (beside_.list.empty()) return;
   for_chunks(n, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const Vec3 own = motion(i);

@@ -34,8 +34,10 @@ inline FourPoints corners(const VecX& x, const Encounter& e) {
 
 class Encounters {
  public:
-  // Triangles between particles, each once; a triangle that names a particle twice does not count.
-  void set(const std::vector<Triangle>& triangles, const VecX& x);
+  // Triangles between the first so many particles, each once; a triangle that names a particle twice does not count.
+  // of_cloth: so many of the triangles are of cloth, and only their pairs with the others are looked for, without those
+  // of a vertex of cloth; all are of cloth: the pairs between all are.
+  void set(const std::vector<Triangle>& triangles, int particles, std::size_t of_cloth, const VecX& x);
   double mean_edge() const { return mean_edge_; }  // when the triangles were set [m]
 
   // Prepares for select() with motions x -> x_new and gaps up to this one [m]. Searches only where what is known does
@@ -66,6 +68,7 @@ class Encounters {
     double start, end;
   };
   void list(int first, int second, std::vector<Encounter>& found) const;
+  void spread(const VecX& x, std::vector<Vec3>& places) const;
   Box box_about(const Encounter& e, std::size_t from, std::size_t to) const;
   bool touch(const Box& a, const Box& b, double reach) const;
   int common(int first, int second) const;  // the lowest common vertex; -1: none
@@ -80,6 +83,7 @@ class Encounters {
   void select_chunks(int n, const Select& select);
 
   std::vector<Face> faces_;
+  int particles_ = 0, of_cloth_ = 0;  // of_cloth_: faces, 0 where pairs between all are looked for
   std::vector<unsigned char>
       owned_;  // of each face: bits 0 to 2 its vertices, bits 3 to 5 its edges k to k + 1
   std::optional<MovingBoxes> boxes_;

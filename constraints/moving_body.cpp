@@ -10,6 +10,12 @@ MovingBody::MovingBody(Obstacle obstacle, int number) : obstacle_(std::move(obst
   if (obstacle_.rigid) reacting_.emplace(*obstacle_.rigid, now_);
 }
 
+const SurfaceDistance* MovingBody::surface() const {
+  if (const DeformingBody* const body = deforming(obstacle_.shape)) return body->surface.get();
+  const MeshBody* const mesh = std::get_if<MeshBody>(&obstacle_.shape);
+  return mesh ? mesh->get() : nullptr;
+}
+
 void MovingBody::begin_step(double t, double h) {
   h_ = h;
   move(obstacle_.shape, t, t + h);

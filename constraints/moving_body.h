@@ -39,6 +39,12 @@ class MovingBody {
   };
   Mark mark(const Vec3& x) const;
 
+  // Of a body that is a mesh, its surface and where the vertices of that are when the step begins and ends [m]; null for
+  // all others.
+  const SurfaceDistance* surface() const;
+  Vec3 vertex_at_start(int v) const { return start_.to_world(surface()->vertex(v, 0)); }
+  Vec3 vertex_at_end(int v) const { return end_.to_world(surface()->vertex(v, 1)); }
+
   void begin_step(double t, double h);
   bool end_step();  // false: the reaction has not converged. A step that is abandoned does not move the body.
 

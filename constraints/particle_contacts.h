@@ -36,6 +36,7 @@ struct ContactReport {
   int self_contacts = 0;  // pairs of cloth and cloth that push each other
   int self_guarded = 0;   // particles whose way was shortened so that no cloth passes through cloth
   int tangled = 0;        // particles where cloth passes through cloth
+  int pinched = 0;        // particles that a body could not be kept off
 };
 
 // An impulse of a body on a particle, see constraints/response.h.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "constraints/encounters.h"
+#include "constraints/surfaces.h"
 #include "constraints/tangles.h"
 #include "mesh/base/parallel.h"
 #include "mesh/triangles/topology.h"
@@ -29,7 +30,10 @@ Vec3 SelfContact::rub_at(const Vec3& p, double normal_force) const {
 }
 
 SelfContacts::SelfContacts()
-    : encounters_(std::make_unique<Encounters>()), tangles_(std::make_unique<Tangles>()) {}
+    : encounters_(std::make_unique<Encounters>()),
+      on_bodies_(std::make_unique<Encounters>()),
+      surfaces_(std::make_unique<Surfaces>()),
+      tangles_(std::make_unique<Tangles>()) {}
 SelfContacts::SelfContacts(const SelfContacts& other) : SelfContacts() {
   add(other.faces_);
   pairs_ = other.pairs_;
@@ -78,17 +82,18 @@ void SelfContacts::let_pass(const std::vector<int>& particles) {
   }
 }
 
-void SelfContacts::prepare(const StepMotion& step) {
+void SelfContacts::set_particles(const StepMotion& step) {
   const auto n = static_cast<std::size_t>(step.x.size() / 3);
+  const int cloth = cloth_particles();
   pass_.resize(n, 0);
-  if (stale_) {
-    if (rest_.size() != step.x.size()) rest_ = step.x;
-    TriangleMesh mesh;
-    mesh.positions.assign(n, Vec3::Zero());
-    thickness_.assign(n, 0);
-    friction_.assign(n, 0);
-    sheet_.assign(n, 0);
-    for (const SelfFace& face : faces_) {
+  if (rest_.size() != 3 * cloth) rest_ = step.x.head(3 * cloth);
+  TriangleMesh mesh;
+  mesh.positions.assign(n, Vec3::Zero());
+  thickness_.assign(n, 0);
+  friction_.assign(n, 0);
+  sheet_.assign(n, 0);
+  const auto take = [&](const std::vector<SelfFace>& faces) {
+    for (const SelfFace& face : faces) {
       mesh.triangles.push_back(face.particles);
       for (int particle : face.particles) {
         thickness_[particle] = std::max(thickness_[particle], face.thickness);
@@ -96,35 +101,60 @@ void SelfContacts::prepare(const StepMotion& step) {
         sheet_[particle] = face.sheet;
       }
     }
-    piece_ = connected_pieces(mesh);
-    encounters_->set(mesh.triangles, step.x);
-    way_.assign(n, 1);
-    nearest_.assign(n, 0);
-    stale_ = false;
-    look_again_ = true;
+  };
+  take(faces_);
+  encounters_->set(mesh.triangles, cloth, mesh.triangles.size(), step.x);
+  if (surfaces_->any()) {
+    take(surfaces_->faces());
+    on_bodies_->set(mesh.triangles, static_cast<int>(n), faces_.size(), step.x);
   }
+  piece_ = connected_pieces(mesh);
+  way_.assign(n, 1);
+  nearest_.assign(n, 0);
+}
+
+void SelfContacts::prepare(const StepMotion& step, const std::vector<MovingBody>& bodies) {
+  if (stale_) set_particles(step);
+  look_again_ = look_again_ || stale_;
+  stale_ = false;
   if (look_again_ || (touched_ != 0 && !crossing())) {
     std::vector<Triangle> triangles;
     for (const SelfFace& face : faces_) triangles.push_back(face.particles);
     tangles_->begin(std::move(triangles), pass_, step.x);
   }
-  if (tangled_.size() != n) {
-    tangled_.resize(n);
-    for (std::size_t i = 0; i < n; ++i) tangled_[i] = tangles_->tangle(static_cast<int>(i)) >= 0;
+  const auto cloth = static_cast<std::size_t>(cloth_particles());
+  if (tangled_.size() != cloth) {
+    tangled_.resize(cloth);
+    for (std::size_t i = 0; i < cloth; ++i) tangled_[i] = tangles_->tangle(static_cast<int>(i)) >= 0;
   }
   touched_ = 0;
   if (look_again_) {
     last_.clear();
     encounters_->forget();
+    on_bodies_->forget();
+    surfaces_->look(bodies, faces_);
+  } else {
+    surfaces_->look_again(bodies, faces_);
   }
   look_again_ = false;
 }
 
+int SelfContacts::cloth_particles() const { return surfaces_->cloth(); }
 bool SelfContacts::crossing() const { return tangles_->any(); }
 int SelfContacts::tangled() const { return tangles_->particles(); }
+int SelfContacts::pinched() const { return surfaces_->pinched(); }
 
-// Whether both sides are let pass each other: they are of one tangle, or let_pass() names a vertex of each.
+bool SelfContacts::is_on_body(const Encounter& e) const {
+  return e.v[0] >= cloth_particles() || e.v[3] >= cloth_particles();
+}
+
+// Whether both sides are let pass each other: they are of one tangle, or let_pass() names a vertex of each. A body may
+// pass where it pinches the cloth, or where the cloth is held.
 bool SelfContacts::exempt(const Encounter& e) const {
+  if (is_on_body(e))
+    return std::any_of(e.v.begin(), e.v.end(), [&](int v) {
+      return v < cloth_particles() && (surfaces_->is_pinched(v) || surfaces_->step().is_held(v));
+    });
   const int tangle = tangles_->tangle(e.v[0]);
   if (tangle >= 0 &&
       std::all_of(e.v.begin(), e.v.end(), [&](int v) { return tangles_->tangle(v) == tangle; }))
@@ -141,15 +171,18 @@ bool SelfContacts::exempt(const Encounter& e) const {
 void SelfContacts::stiffen(SelfContact& contact, const StepMotion& step) const {
   if (kappa_ < 1) return;
   const double mass = contact.stiffness * step.h * step.h / kappa_;
-  const double stops = mass * std::max(0.0, -contact.normal.dot(contact.at(step.v))) / step.h;
+  const double stops = mass * std::max(0.0, -contact.normal.dot(contact.over(step.v))) / step.h;
   const double load = std::max(contact.before / load_sinks, stops / arrival_sinks);
   const double sinks = std::max(contact.thickness, 0.1 * both_thicknesses(contact.who));
   contact.stiffness = std::clamp(load / sinks, contact.stiffness, stiffest * contact.stiffness);
 }
 
-void SelfContacts::begin_step(const StepMotion& step, double recovery, double kappa) {
+void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<MovingBody>& bodies,
+                              double recovery, double kappa) {
   if (!any()) return;
-  prepare(step);
+  stale_ = surfaces_->begin_step(bodies, of_cloth) || stale_;
+  const StepMotion& step = surfaces_->step();
+  prepare(step, bodies);
   accepted_ = is_proven_ = false;
   kappa_ = kappa;
   recovery_ = recovery;
@@ -166,6 +199,37 @@ void SelfContacts::begin_step(const StepMotion& step, double recovery, double ka
     c.active = c.linear_push(p) > 0;
     c.share = drag > 0 ? std::min(1.0, c.friction * c.push / drag) : 1;
   }
+}
+
+void SelfContacts::follow(const std::vector<MovingBody>& bodies) {
+  if (!any() || !surfaces_->any()) return;
+  surfaces_->follow(bodies);
+  is_proven_ = false;
+  const VecX& ends = surfaces_->with(ahead_.head(3 * cloth_particles()));
+  for (SelfContact& c : touching_) {
+    const Vec3 before = c.carried;
+    c.carried.setZero();
+    for (std::size_t k = 0; k < 4; ++k) c.carried += c.of_body[k] * ends.segment<3>(3 * c.who.v[k]);
+    c.now += c.carried - before;
+  }
+}
+
+double SelfContacts::push_bodies(std::vector<MovingBody>& bodies, const VecX& x_new) const {
+  double work = 0;
+  for (const SelfContact& c : touching_) {
+    if (c.body < 0) continue;
+    Vec3 start = Vec3::Zero();
+    double sum = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      start += c.of_body[k] * surfaces_->step().x.segment<3>(3 * c.who.v[k]);
+      sum += c.of_body[k];
+    }
+    const double h = surfaces_->step().h;
+    const Vec3 moved = (c.carried - start) / sum, impulse = sum * h * c.force_at(x_new);
+    work -= moved.dot(impulse) / h;
+    bodies[c.body].push(impulse, c.carried / sum, (c.over(surfaces_->step().v)).norm());
+  }
+  return work;
 }
 
 double SelfContacts::imbalance(double h, const VecX& x_new) const {
@@ -226,7 +290,7 @@ bool SelfContacts::react(const VecX& v, const VecX& r, const VecX& x_new, double
   return changed;
 }
 
-void SelfContacts::end_step(const StepMotion& step, const VecX& x_new) {
+void SelfContacts::end_step(const VecX& x_new) {
   if (!any()) return;
   pushing_ = 0;
   last_ = touching_;
@@ -237,8 +301,10 @@ void SelfContacts::end_step(const StepMotion& step, const VecX& x_new) {
     c.before = push;
     pushing_ += push > 0;
   }
-  encounters_->went(step.x, x_new);
-  if (crossing()) tangles_->end_step(x_new);
+  const VecX& ends = surfaces_->with(x_new);
+  encounters_->went(surfaces_->step().x, ends);
+  if (surfaces_->any()) on_bodies_->went(surfaces_->step().x, ends);
+  if (crossing()) tangles_->end_step(ends);
 }
 
 }  // namespace drape

@@ -17,6 +17,9 @@
 //   that of pins or of a body in it, so that cloth in motion is not held up: x_i + D + t_i (d_i - D). t_i is made less
 //   until no pair fails, and after a fixed number of rounds all stands still. It holds for every integrator.
 //   Where the cloth starts through itself, nothing near there pushes or is guarded until it is apart [tangles.h].
+//   Bodies that are meshes take part: their corners meet the triangles of the cloth, and their edges its edges
+//   [surfaces.h]. A zone that touches one goes with it. Where cloth cannot be kept both off a body and off cloth, the body
+//   yields.
 // x [m], v [m/s], f [N], k [N/m], h [s].
 #pragma once
 
@@ -27,6 +30,7 @@
 #include <vector>
 
 #include "constraints/contact.h"
+#include "constraints/moving_body.h"
 #include "constraints/step_motion.h"
 #include "mesh/distance/approach.h"
 
@@ -38,6 +42,7 @@ inline constexpr double implicit_kappa = 30, explicit_kappa = 0.2;
 namespace internal {
 class Encounters;
 struct Meeting;
+class Surfaces;
 class Tangles;
 }  // namespace internal
 
@@ -57,7 +62,11 @@ struct SelfFriction {
 
 struct SelfContact {
   Encounter who;
-  std::array<double, 4> weights;
+  int body = -1;                     // the body that one side is of, whose particles have numbers beyond those of the cloth
+  std::array<int, 4> particles;      // of the cloth; in place of those of a body any other
+  std::array<double, 4> weights;     // w_k of these, 0 in place of those of a body
+  std::array<double, 4> of_body;     // w_k of the particles of the body, else 0
+  Vec3 carried;                      // what the body adds to p at the end of the step [m]
   Vec3 normal;               // n: unit, towards the first side
   Vec3 place;                // p at the start of the step [m]
   Vec3 now;                  // p at the point that the contacts were made for last [m]
@@ -83,11 +92,23 @@ struct SelfContact {
     return hold - stiffness * (moved - normal.dot(moved) * normal);
   }
   Vec3 rub_at(const Vec3& p, double normal_force) const;  // t
+  // p when the step takes the cloth to x [m].
   template <class Vector>
   Vec3 at(const Vector& x) const {
-    Vec3 sum = weights[0] * x.template segment<3>(3 * who.v[0]);
-    for (std::size_t k = 1; k < 4; ++k) sum += weights[k] * x.template segment<3>(3 * who.v[k]);
+    Vec3 sum = weights[0] * x.template segment<3>(3 * particles[0]);
+    for (std::size_t k = 1; k < 4; ++k) sum += weights[k] * x.template segment<3>(3 * particles[k]);
+    return sum + carried;
+  }
+  // sum w_k x_k, with places or velocities of all particles, those of bodies included.
+  Vec3 over(const VecX& x) const {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t k = 0; k < 4; ++k) sum += (weights[k] + of_body[k]) * x.segment<3>(3 * who.v[k]);
     return sum;
+  }
+  // The force on the first side [N].
+  Vec3 force_at(const VecX& x) const {
+    const Vec3 p = at(x);
+    return push_at(p) * normal + rub_at(p, push_at(p));
   }
 };
 
@@ -111,7 +132,12 @@ class SelfContacts {
   // Finds what comes near along x -> x + h v. recovery: by how much the thickness of a contact that started nearer
   // than r grows in the step at most [m]. kappa: stiffness of the springs at least [m/h^2]; below 1, as
   // explicit methods bear it, it is no larger anywhere.
-  void begin_step(const StepMotion& step, double recovery, double kappa);
+  void begin_step(const StepMotion& step, const std::vector<MovingBody>& bodies, double recovery,
+                  double kappa);
+  void follow(const std::vector<MovingBody>& bodies);  // bodies that react have changed their motion
+  // Gives the bodies what the contacts push them with when the step takes the cloth to x_new; returns the work on the
+  // cloth [J].
+  double push_bodies(std::vector<MovingBody>& bodies, const VecX& x_new) const;
   // The norm of the impulses that are wrong in a solve that came to x_new [N s].
   double imbalance(double h, const VecX& x_new) const;
   // Changes the contacts to what a solve asks for that came to v and x_new with the reaction r [N s]; true when one
@@ -122,13 +148,13 @@ class SelfContacts {
   // The velocity of that point [m/s]; null before the first react() of a step.
   const VecX* accepted_velocity() const { return accepted_ ? &v_at_ : nullptr; }
   // Adds the pairs that would meet on the way to x_new and are no contacts yet; true when there are any.
-  bool meet(const StepMotion& step, const VecX& x_new);
+  bool meet(const VecX& x_new);
   // Shortens the ways to x_new so that nothing meets; returns how many particles it stopped. on_bodies: the contacts with
   // bodies. in_common: whether what is stopped goes on by a common way, which may lead into a body; without it, everything
   // stays on its own way.
-  int guard(const StepMotion& step, const std::vector<Contact>& on_bodies, bool in_common, VecX& x_new,
-            VecX& v_new);
-  void end_step(const StepMotion& step, const VecX& x_new);
+  int guard(const std::vector<MovingBody>& bodies, const std::vector<Contact>& on_bodies, bool in_common,
+            VecX& x_new, VecX& v_new);
+  void end_step(const VecX& x_new);
 
   void look_again() { look_again_ = true; }  // the particles were moved from outside
   const std::vector<SelfContact>& touching() const { return touching_; }  // sorted
@@ -136,23 +162,33 @@ class SelfContacts {
   // Whether the cloth passed through itself when the step began.
   bool crossing() const;
   int tangled() const;  // particles near triangles that pass through each other at the end of the last step
+  int pinched() const;  // particles that may pass a body, because it could not be kept out of there
 
  private:
-  void prepare(const StepMotion& step);
+  void prepare(const StepMotion& step, const std::vector<MovingBody>& bodies);
+  void set_particles(const StepMotion& step);
+  int cloth_particles() const;
   int zone_of(int particle);
+  void find_common(const StepMotion& step, const VecX& x_new, bool in_common);
+  Vec3 common_way(int particle, const StepMotion& step) const;
   void go_shares(const StepMotion& step, const VecX& x_new, bool in_common);
   void stop(const std::vector<internal::Meeting>& failing, const StepMotion& step, const VecX& x_new,
             bool by_shares, bool in_common);
+  bool let_bodies_yield(const std::vector<internal::Meeting>& failing);
   void stop_tangles(const std::vector<int>& tangles);
   void find_relief(const StepMotion& step, const std::vector<Contact>& on_bodies);
   int go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX& v_new);
   void shorten(const StepMotion& step, const VecX& x_new, bool in_common);
   double share_of_way(double slope, double curvature, const VecX& x_new) const;
+  bool is_on_body(const Encounter& e) const;
   bool exempt(const Encounter& e) const;
   bool has_contact(const Encounter& e) const;
   // The pairs that are not surely apart all the way from x to x_new, in order.
   std::vector<internal::Meeting>& meetings(const VecX& x, const VecX& x_new);
-  std::vector<internal::Meeting>& near_ones(const StepMotion& step, double thickest);
+  // Prepares both searches for this motion; false: so much is near that there is no list.
+  bool follow_all(const VecX& x, const VecX& x_new);
+  std::vector<internal::Meeting>& near_ones(const StepMotion& step, internal::Encounters& encounters,
+                                            double thickest);
   void look_at_ends(std::vector<internal::Meeting>::iterator begin,
                     std::vector<internal::Meeting>::iterator end) const;
   void find_contacts(const StepMotion& step);
@@ -166,31 +202,38 @@ class SelfContacts {
 
   std::vector<SelfFace> faces_;
   std::vector<SelfFriction> pairs_;
-  std::unique_ptr<internal::Encounters> encounters_;
+  std::unique_ptr<internal::Encounters> encounters_, on_bodies_;  // cloth with cloth, cloth with bodies
+  std::unique_ptr<internal::Surfaces> surfaces_;
   std::unique_ptr<internal::Tangles> tangles_;
   bool stale_ = true, look_again_ = true;
-  double kappa_ = 0, reach_ = 0;  // m/h^2; m, from which on pairs are looked at
+  double kappa_ = 0;                     // m/h^2
+  double reach_ = 0, body_reach_ = 0;    // m, from which on pairs are looked at
   double recovery_ = 0;           // m, by which tangles move in a step at most
   int touched_ = 0;  // not 0: a pair touched at the start of the step, and may have crossed in it
   int pushing_ = 0;
-  // By particle.
+  // By particle, those of bodies included.
   std::vector<double> thickness_, friction_;     // m, mu
   std::vector<int> piece_, sheet_;               // the connected piece, and the sheet, that it belongs to
   std::vector<char> pass_;                       // let_pass()
-  VecX rest_;                                    // places when the faces were added [m]
+  VecX rest_;                                    // places of the cloth when the faces were added [m]
   std::vector<char> tangled_;                    // whether it was in a tangle there
   std::vector<SelfContact> touching_, last_;     // of this step and of the last one, sorted
   std::vector<SelfContact> met_;                 // scratch
+  std::vector<internal::Meeting> found_;         // scratch
   std::vector<double> way_, shorter_, nearest_;  // scratch, by particle
   // Of the guard: in one zone are particles with the same root; the others are by root.
   std::vector<int> zone_;
   std::vector<Vec3> common_, kept_;
   std::vector<double> weight_;
+  std::vector<int> zone_body_;  // the body in the zone, or one of these
+  static constexpr int no_body = -1, several = -2;
+  const std::vector<MovingBody>* bodies_ = nullptr;  // of the guard under way
   enum class Held : char { no, by_body, yes };
   std::vector<Held> hold_, zone_hold_;  // of each particle; the firmest of its zone
   std::vector<char> still_;             // of a tangle that moves as a whole, but for its relief
+  double share_of(int particle) const { return still_[particle] != 0 ? 0 : way_[particle]; }
   VecX relief_, given_;                 // m, see Tangles; what the first guard of the step gave of it
-  VecX ahead_, v_at_, proven_;
+  VecX ahead_, wanted_, v_at_, proven_;
   bool accepted_ = false;   // whether v_at_ is of this step
   bool is_proven_ = false;  // whether nothing meets on the way to proven_ in this step
 };

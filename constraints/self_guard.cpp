@@ -6,6 +6,7 @@
 
 #include "constraints/encounters.h"
 #include "constraints/self_contact.h"
+#include "constraints/surfaces.h"
 #include "constraints/tangles.h"
 
 namespace drape {
@@ -28,22 +29,30 @@ double floor_of(const VecX& x, const VecX& x_new) {
 
 std::vector<Meeting>& SelfContacts::meetings(const VecX& x, const VecX& x_new) {
   const double floor = floor_of(x, x_new);
-  return encounters_->select(
-      x, x_new, floor,
-      [&](const Encounter& e, const FourPoints& start, const FourPoints& end, const Vec3& likely) {
-        if (exempt(e)) return Approach{};
-        const Approach found = approach_from_within(e.edges, start, end, floor, likely);
-        if (found.touching) std::atomic_ref(touched_).store(1, std::memory_order_relaxed);
-        return found;
-      });
+  const auto look = [&](const Encounter& e, const FourPoints& start, const FourPoints& end,
+                        const Vec3& likely) {
+    if (exempt(e)) return Approach{};
+    const Approach found = approach_from_within(e.edges, start, end, floor, likely);
+    if (found.touching && !is_on_body(e)) std::atomic_ref(touched_).store(1, std::memory_order_relaxed);
+    return found;
+  };
+  found_ = encounters_->select(x, x_new, floor, look);
+  if (surfaces_->any()) {
+    const std::vector<Meeting>& others = on_bodies_->select(x, x_new, floor, look);
+    found_.insert(found_.end(), others.begin(), others.end());
+  }
+  return found_;
 }
 
-bool SelfContacts::meet(const StepMotion& step, const VecX& x_new) {
-  if (!any() || !encounters_->follow(step.x, x_new, reach_)) return false;
+bool SelfContacts::meet(const VecX& of_cloth) {
+  if (!any()) return false;
+  const StepMotion& step = surfaces_->step();
+  const VecX& x_new = surfaces_->with(of_cloth);
+  if (!follow_all(step.x, x_new)) return false;
   const auto before = touching_.size();
   const std::vector<Meeting>& met = meetings(step.x, x_new);
   is_proven_ = met.empty();
-  if (is_proven_) proven_ = x_new;
+  if (is_proven_) proven_ = of_cloth;
   for (const Meeting& meeting : met) {
     if (has_contact(meeting.who)) continue;
     if (const auto contact = contact_of(step, meeting.who, meeting.approach.last)) met_.push_back(*contact);
@@ -67,11 +76,10 @@ int SelfContacts::zone_of(int particle) {
   return particle;
 }
 
-// Sets ahead_ to where the particles come that go the shares way_ of their ways. A zone has one way in common: that of its
-// particles that are held, if there are any and they go the same way (else it stands); or the mean way of those that touch
-// a body; or else of all by mass. A zone of the last kind keeps its mean, so no momentum is lost. A tangle that is still
-// has nothing but this way in common, and its relief.
-void SelfContacts::go_shares(const StepMotion& step, const VecX& x_new, bool in_common) {
+// The ways in common, by zone. A zone goes with the body that is in it; or with its particles that are held, if there are
+// any and they go the same way (else it stands, as between two bodies); or the mean way of those that touch a body; or else
+// of all by mass. A zone of the last kind keeps its mean, so no momentum is lost.
+void SelfContacts::find_common(const StepMotion& step, const VecX& x_new, bool in_common) {
   const int n = static_cast<int>(zone_.size());
   const auto way = [&](int i) { return Vec3(x_new.segment<3>(3 * i) - step.x.segment<3>(3 * i)); };
   const auto hold_on = [&](int i) { return step.is_held(i) ? Held::yes : hold_[i]; };
@@ -79,6 +87,11 @@ void SelfContacts::go_shares(const StepMotion& step, const VecX& x_new, bool in_
     const Held of_zone = zone_hold_[zone_of(i)];
     return hold_on(i) != of_zone ? 0.0 : of_zone == Held::no ? step.mass(i) : 1.0;
   };
+  zone_body_.assign(zone_.size(), no_body);
+  for (int i = cloth_particles(); i < n; ++i) {
+    int& body = zone_body_[zone_of(i)];
+    body = body == no_body || body == surfaces_->body_of(i) ? surfaces_->body_of(i) : several;
+  }
   common_.assign(zone_.size(), Vec3::Zero());
   weight_.assign(zone_.size(), 0);
   zone_hold_.assign(zone_.size(), Held::no);
@@ -94,18 +107,30 @@ void SelfContacts::go_shares(const StepMotion& step, const VecX& x_new, bool in_
     if (step.is_held(i)) common_[zone_of(i)] = way(i);
   for (int i = 0; i < n; ++i)
     if (!in_common || (step.is_held(i) && way(i) != common_[zone_of(i)])) common_[zone_of(i)].setZero();
-  const auto share = [&](int i) { return still_[i] != 0 ? 0 : way_[i]; };
   kept_ = common_;
   for (int i = 0; i < n; ++i) {
     const int zone = zone_of(i);
     if (in_common && zone_hold_[zone] == Held::no && weight_[zone] > 0)
-      kept_[zone] -= weight(i) / weight_[zone] * share(i) * (way(i) - common_[zone]);
+      kept_[zone] -= weight(i) / weight_[zone] * share_of(i) * (way(i) - common_[zone]);
   }
-  for (int i = 0; i < n; ++i)
-    if (way_[i] < 1 || still_[i] != 0)
-      ahead_.segment<3>(3 * i) = step.x.segment<3>(3 * i) + kept_[zone_of(i)] +
-                                 share(i) * (way(i) - common_[zone_of(i)]) +
-                                 way_[i] * relief_.segment<3>(3 * i);
+}
+
+// Sets ahead_ to where the particles come that go the shares way_ of their ways. A tangle that is still has nothing but the
+// way in common, and its relief.
+void SelfContacts::go_shares(const StepMotion& step, const VecX& x_new, bool in_common) {
+  find_common(step, x_new, in_common);
+  for (int i = 0; i < cloth_particles(); ++i) {
+    if (way_[i] == 1 && still_[i] == 0) continue;
+    const int zone = zone_of(i), body = zone_body_[zone];
+    Vec3 common = common_[zone], kept = kept_[zone];
+    if (body != no_body) {
+      const Vec3 place = step.place(i);
+      common = kept = in_common && body != several ? Vec3((*bodies_)[body].carried(place) - place) : Vec3(Vec3::Zero());
+    }
+    const Vec3 way = x_new.segment<3>(3 * i) - step.x.segment<3>(3 * i);
+    ahead_.segment<3>(3 * i) = step.x.segment<3>(3 * i) + kept + share_of(i) * (way - common) +
+                               way_[i] * relief_.segment<3>(3 * i);
+  }
 }
 
 // Joins the particles of the pairs to zones, and shortens the way of each against that of its zone.
@@ -115,16 +140,29 @@ void SelfContacts::stop(const std::vector<Meeting>& failing, const StepMotion& s
   for (const Meeting& meeting : failing)
     for (int v : meeting.who.v) {
       zone_[zone_of(v)] = zone_of(meeting.who.v[0]);
+      if (v >= cloth_particles()) continue;
       shorter_[v] = std::min(shorter_[v], by_shares ? 0.9 * meeting.approach.until * way_[v] : 0.0);
     }
   way_ = shorter_;
   go_shares(step, x_new, in_common);
 }
 
+// Lets the cloth pass the bodies where it fails; false when all that fails is between cloth and cloth.
+bool SelfContacts::let_bodies_yield(const std::vector<Meeting>& failing) {
+  bool yielded = false;
+  for (const Meeting& meeting : failing) {
+    if (!is_on_body(meeting.who)) continue;
+    for (int v : meeting.who.v)
+      if (v < cloth_particles()) surfaces_->pinch(v);
+    yielded = true;
+  }
+  return yielded;
+}
+
 // Joins the particles of each of these tangles to a zone, in which they move as a whole, but for their relief; and without
 // it where that did not help.
 void SelfContacts::stop_tangles(const std::vector<int>& tangles) {
-  for (int i = 0; i < static_cast<int>(zone_.size()); ++i) {
+  for (int i = 0; i < cloth_particles(); ++i) {
     if (!std::binary_search(tangles.begin(), tangles.end(), tangles_->tangle(i))) continue;
     if (still_[i] != 0) way_[i] = 0;
     still_[i] = 1;
@@ -145,10 +183,11 @@ void SelfContacts::find_relief(const StepMotion& step, const std::vector<Contact
 
 // Shortens the ways until nothing meets, and no more triangles cross than may; ahead_ is then where they end.
 void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_common) {
-  for (int round = 0; round <= most_rounds && encounters_->follow(step.x, ahead_, reach_); ++round) {
+  for (int round = 0; round <= most_rounds && follow_all(step.x, ahead_); ++round) {
     const bool together = in_common && round < rounds_in_common;
     const std::vector<Meeting>& failing = meetings(step.x, ahead_);
     if (!failing.empty()) {
+      if (round >= rounds_in_common && let_bodies_yield(failing)) continue;
       stop(failing, step, x_new, round < rounds_by_shares, together);
       continue;
     }
@@ -159,7 +198,7 @@ void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_co
     go_shares(step, x_new, together);
   }
   std::fill(way_.begin(), way_.end(), 0.0);
-  ahead_ = step.x;
+  ahead_.head(3 * cloth_particles()) = step.x.head(3 * cloth_particles());
 }
 
 // Takes the particles to ahead_, and from their velocity what they lose of their way; relief is none of it. Returns how many
@@ -167,7 +206,7 @@ void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_co
 int SelfContacts::go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX& v_new) {
   int stopped = 0;
   if (first) given_.setZero(x_new.size());
-  for (std::size_t i = 0; i < way_.size(); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(cloth_particles()); ++i) {
     const auto k = 3 * static_cast<Eigen::Index>(i);
     const Vec3 relief = way_[i] * relief_.segment<3>(k);
     if (way_[i] < 1 || still_[i] != 0) {
@@ -181,9 +220,11 @@ int SelfContacts::go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX
   return stopped;
 }
 
-int SelfContacts::guard(const StepMotion& step, const std::vector<Contact>& on_bodies, bool in_common,
-                        VecX& x_new, VecX& v_new) {
+int SelfContacts::guard(const std::vector<MovingBody>& bodies, const std::vector<Contact>& on_bodies,
+                        bool in_common, VecX& x_new, VecX& v_new) {
   if (!any() || (is_proven_ && !crossing() && x_new == proven_) || !x_new.allFinite()) return 0;
+  const StepMotion& step = surfaces_->step();
+  bodies_ = &bodies;
   hold_.assign(way_.size(), Held::no);
   for (const Contact& contact : on_bodies)
     if (contact.active()) hold_[contact.particle] = Held::by_body;
@@ -191,10 +232,11 @@ int SelfContacts::guard(const StepMotion& step, const std::vector<Contact>& on_b
   still_.assign(way_.size(), 0);
   zone_.resize(way_.size());
   std::iota(zone_.begin(), zone_.end(), 0);
-  relief_.setZero(x_new.size());
+  relief_.setZero(step.x.size());
   if (crossing() && in_common) find_relief(step, on_bodies);
-  ahead_ = x_new + relief_;
-  shorten(step, x_new, in_common);
+  wanted_ = surfaces_->with(x_new);
+  ahead_ = wanted_ + relief_;
+  shorten(step, wanted_, in_common);
   return go_ahead(step, in_common, x_new, v_new);
 }
 

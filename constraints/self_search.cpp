@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "constraints/encounters.h"
 #include "constraints/self_contact.h"
+#include "constraints/surfaces.h"
 
 namespace drape {
 
@@ -15,6 +17,10 @@ namespace {
 constexpr double likely_acceleration =
     10;                           // m/s^2: what a step may add to a motion before a contact is found late
 constexpr double same_way = 0.5;  // the cosine from which two normals belong to one contact
+
+double reach_about(double thickness, double h) {
+  return thickness + std::min(likely_acceleration * h * h, 0.5 * thickness);
+}
 
 Vec3 across(const Vec3& n, const Vec3& a) { return a - n.dot(a) * n; }
 
@@ -35,6 +41,7 @@ const SelfContact* find(const std::vector<SelfContact>& sorted, const Encounter&
 bool SelfContacts::has_contact(const Encounter& e) const { return find(touching_, e) != nullptr; }
 
 double SelfContacts::both_thicknesses(const Encounter& e) const {
+  if (is_on_body(e)) return std::max(0.0, thickness_[std::max(e.v[0], e.v[3])]);
   return 0.5 * (thickness_[e.v[0]] + thickness_[e.v[3]]);
 }
 
@@ -55,6 +62,7 @@ double SelfContacts::thickness_of(const Encounter& e) const {
 }
 
 double SelfContacts::friction_of(const Encounter& e) const {
+  if (is_on_body(e)) return friction_[std::max(e.v[0], e.v[3])];
   const auto between = std::minmax(sheet_[e.v[0]], sheet_[e.v[3]]);
   for (auto pair = pairs_.rbegin(); pair != pairs_.rend(); ++pair)
     if (std::minmax(pair->first, pair->second) == between) return pair->friction;
@@ -73,14 +81,28 @@ std::optional<SelfContact> SelfContacts::contact_of(const StepMotion& step, cons
   constexpr double least_share = 1e-3;
   if (!(inverse > 0) || !(free > least_share) || !(near.distance > 0)) return {};
   SelfContact contact{.who = who,
+                      .particles = who.v,
                       .weights = near.weights,
+                      .of_body = {},
+                      .carried = Vec3::Zero(),
                       .normal = near.normal,
                       .place = Vec3::Zero(),
                       .now = Vec3::Zero(),
                       .stiffness = kappa_ / (step.h * step.h * inverse),
                       .thickness = thickness_of(who),
                       .friction = friction_of(who)};
-  contact.place = contact.at(step.x);
+  if (is_on_body(who)) {
+    contact.body = surfaces_->body_of(std::max(who.v[0], who.v[3]));
+    const int own = *std::min_element(who.v.begin(), who.v.end());
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (who.v[k] < cloth_particles()) continue;
+      contact.particles[k] = own;
+      contact.of_body[k] = std::exchange(contact.weights[k], 0);
+      contact.carried +=
+          contact.of_body[k] * (step.place(who.v[k]) + step.h * step.velocity(who.v[k]));
+    }
+  }
+  contact.place = contact.over(step.x);
   // What starts nearer than r begins with the distance that it has.
   contact.thickness = std::min(contact.thickness, std::max(contact.normal.dot(contact.place), near.distance));
   if (!(contact.thickness > 0)) return {};
@@ -110,11 +132,17 @@ void SelfContacts::take_over(SelfContact& contact, double recovery) const {
       std::min(thickness_of(contact.who), std::max(contact.thickness, at->thickness + recovery));
 }
 
+bool SelfContacts::follow_all(const VecX& x, const VecX& x_new) {
+  if (!encounters_->follow(x, x_new, reach_)) return false;
+  return !surfaces_->any() || on_bodies_->follow(x, x_new, body_reach_);
+}
+
 // The pairs that come within the thickness, and a little more, on the way to ahead_.
-std::vector<Meeting>& SelfContacts::near_ones(const StepMotion& step, double thickest) {
-  const double reach = reach_, more = reach_ - thickest;
+std::vector<Meeting>& SelfContacts::near_ones(const StepMotion& step, Encounters& encounters,
+                                              double thickest) {
+  const double reach = reach_about(thickest, step.h), more = reach - thickest;
   const auto inside = [](double w) { return std::abs(w) > 1e-3 && std::abs(w) < 1 - 1e-3; };
-  return encounters_->select(
+  return encounters.select(
       step.x, ahead_, reach,
       [&](const Encounter& e, const FourPoints& start, const FourPoints& end, const Vec3& likely) {
         if (exempt(e) || std::all_of(e.v.begin(), e.v.end(), [&](int v) { return step.is_held(v); }))
@@ -144,10 +172,16 @@ void SelfContacts::look_at_ends(std::vector<Meeting>::iterator begin,
 // stay one as long as they are near: or a rim would drop and be lifted by turns.
 void SelfContacts::find_contacts(const StepMotion& step) {
   touching_.clear();
-  const double thickest = *std::max_element(thickness_.begin(), thickness_.end());
-  reach_ = thickest + std::min(likely_acceleration * step.h * step.h, 0.5 * thickest);
-  if (!encounters_->follow(step.x, ahead_, reach_)) return;
-  std::vector<Meeting>& found = near_ones(step, thickest);
+  const double thickest = *std::max_element(thickness_.begin(), thickness_.begin() + cloth_particles());
+  reach_ = reach_about(thickest, step.h);
+  body_reach_ = reach_about(surfaces_->thickest(), step.h);
+  if (!follow_all(step.x, ahead_)) return;
+  std::vector<Meeting>& found = found_;
+  found = near_ones(step, *encounters_, thickest);
+  if (surfaces_->any()) {
+    const std::vector<Meeting>& others = near_ones(step, *on_bodies_, surfaces_->thickest());
+    found.insert(found.end(), others.begin(), others.end());
+  }
   const auto add = [&](const Meeting& m) {
     if (const auto contact = contact_of(step, m.who, m.approach.last)) touching_.push_back(*contact);
   };

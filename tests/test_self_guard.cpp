@@ -31,8 +31,8 @@ struct Guarded {
   int guard() {
     step.v = (x_new - step.x) / step.h;
     VecX v_new = step.v;
-    contacts.begin_step(step, 1e-3, implicit_kappa);
-    return contacts.guard(step, on_bodies, true, x_new, v_new);
+    contacts.begin_step(step, {}, 1e-3, implicit_kappa);
+    return contacts.guard({}, on_bodies, true, x_new, v_new);
   }
 
   TriangleMesh sheet;

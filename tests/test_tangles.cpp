@@ -8,6 +8,7 @@
 #include "solver/assembly/assembly.h"
 #include "tests/folder.h"
 #include "tests/integrators.h"
+#include "tests/sheets.h"
 #include "tests/workshop.h"
 
 using namespace drape;
@@ -15,24 +16,6 @@ using namespace drape::test;
 using Catch::Contains;
 
 namespace {
-
-enum class Kind { squares, equilateral, irregular };
-
-// A sheet of 0.36 m, bent to y = height(x, z).
-TriangleMesh bent(int n, Kind kind, double size, const std::function<double(double, double)>& height) {
-  TriangleMesh mesh =
-      kind == Kind::equilateral ? equilateral_sheet(n, n, size / (n - 1)) : grid(n, n, size, size);
-  std::mt19937 random(static_cast<unsigned>(n));
-  std::uniform_real_distribution<double> off(-0.25 * size / (n - 1), 0.25 * size / (n - 1));
-  Vec3 middle = Vec3::Zero();
-  for (const Vec3& x : mesh.positions) middle += x / mesh.vertex_count();
-  for (Vec3& x : mesh.positions) {
-    x -= middle;
-    if (kind == Kind::irregular) x += Vec3(off(random), 0, off(random));
-    x[1] = height(x[0], x[2]);
-  }
-  return mesh;
-}
 
 struct Start {
   const char* name;
@@ -100,7 +83,7 @@ StepOptions usual() { return {.tolerance = 1e-7, .contact_tolerance = 1e-5}; }
 TEST_CASE("two sheets that pass through each other come apart, and stay so", "[self-contact]") {
   for (const Start& start : starts())
     for (int n : {11, 16, 23})
-      for (Kind kind : {Kind::squares, Kind::equilateral, Kind::irregular}) {
+      for (Kind kind : kinds) {
         INFO(start.name << ", " << n << " vertices a side, kind " << static_cast<int>(kind));
         Tangled two = two_sheets(start, n, kind);
         two.use("implicit-euler", "auto", usual());

@@ -65,6 +65,8 @@ void add_reports_of_steps(py::module_& m) {
                     "particles whose way was shortened so that no cloth passes through cloth")
       .def_readonly("tangled", &StepReport::tangled,
                     "particles where cloth passes through cloth, and is brought apart")
+      .def_readonly("pinched", &StepReport::pinched,
+                    "particles that a body may pass, because it could not be kept off them")
       .def_readonly("residual", &StepReport::residual,
                     "relative, the worst of the solves that the step ended with")
       .def_readonly("converged", &StepReport::converged,

@@ -125,6 +125,7 @@ std::string run_json(const RunRecord& record) {
       {"contact_residual", record.contact_residual},
       {"self_contacts", Json::Members{{"end", record.self_contacts}, {"max", record.self_contacts_max}}},
       {"self_guarded", record.self_guarded},
+      {"pinched", Json::Members{{"end", record.pinched}, {"max", record.pinched_max}}},
       {"crossings",
        Json::Members{
            {"start", record.crossings_at_start}, {"end", record.crossings}, {"max", record.crossings_max}}},

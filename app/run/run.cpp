@@ -192,6 +192,8 @@ void Run::record_step(const StepRow& row) {
   record_.self_contacts = report.self_contacts;
   record_.self_contacts_max = std::max(record_.self_contacts_max, report.self_contacts);
   record_.self_guarded += report.self_guarded;
+  record_.pinched = report.pinched;
+  record_.pinched_max = std::max(record_.pinched_max, report.pinched);
   record_.inner_steps.push_back(report.inner_steps);
   record_.inner_rejected += report.inner_rejected;
   record_.assemble_ms += report.assemble_ms;

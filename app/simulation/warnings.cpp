@@ -5,6 +5,7 @@
 
 #include "app/scene/fabric_words.h"
 #include "app/simulation/schedule.h"
+#include "mesh/distance/triangle_crossings.h"
 #include "solver/forces/choi_ko.h"
 
 namespace drape::app {
@@ -44,6 +45,34 @@ void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
           " m/s");
     }
   }
+}
+
+// Where a body that is a mesh comes through a cloth between its vertices. Of a cloth with vertices inside more is said already.
+void warn_of_crossed_bodies(const Scene& scene, Simulation& simulation) {
+  for (const Cloth& cloth : simulation.cloths)
+    for (const MovingBody& body : simulation.constraints->bodies()) {
+      const std::vector<Vec3> own = cloth.embedding.positions(simulation.state.x);
+      const bool inside =
+          std::any_of(own.begin(), own.end(), [&](const Vec3& x) { return body.distance(x) < 0; });
+      if (!body.surface() || inside) continue;
+      std::vector<Vec3> places = own;
+      std::vector<Triangle> triangles = cloth.mesh.triangles;
+      const TriangleMesh& mesh = body.surface()->mesh();
+      const int first = static_cast<int>(places.size()), count = static_cast<int>(triangles.size());
+      for (int v = 0; v < mesh.vertex_count(); ++v) places.push_back(body.vertex_at_end(v));
+      for (const Triangle& t : mesh.triangles)
+        triangles.push_back({first + t[0], first + t[1], first + t[2]});
+      const std::vector<CrossingContour> contours = contours_between(places, triangles, count);
+      if (contours.empty()) continue;
+      const Vec3& at = contours[0].place;
+      simulation.messages.push_back(
+          "warning: no vertex of " + cloth.name + " starts inside " +
+          body_name(body.obstacle(), scene.obstacles[body.number()].name) + ", but " +
+          counted(crossing_count(contours), "pair") + " of their triangles cross, as at (" +
+          rounded(at[0], 4) + ", " + rounded(at[1], 4) + ", " + rounded(at[2], 4) +
+          ") m: the body is not kept out of the cloth there before they are apart; move the cloth or "
+          "subdivide it");
+    }
 }
 
 // Woven and knitted cloth weighs 10 to 1000 g/m^2.
@@ -209,6 +238,7 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
     tell_of_self_contact(scene.cloths[k], simulation.cloths[k], simulation.messages);
   for (const SoftEntry& soft : scene.softs) tell_of_self_contact(soft, simulation.messages);
   warn_of_vertices_inside(scene, simulation);
+  warn_of_crossed_bodies(scene, simulation);
   warn_if_coarse(scene, simulation);
   warn_of_restitution(scene, simulation.messages);
   warn_of_time(scene.simulation, simulation.messages);

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Makes the meshes of this folder again: sheet-958.obj, tablecloth.obj, poncho.obj, flag.obj, net.obj, sheet-625.obj, dress.obj. Not run by the
+"""Makes the meshes of this folder again: sheet-958.obj, tablecloth.obj, poncho.obj, flag.obj, net.obj, sheet-625.obj, dress.obj, nails.obj. Not run by the
 build.
 
-    python3 make_meshes.py                       the seven generated meshes
+    python3 make_meshes.py                       the eight generated meshes
     python3 make_meshes.py BODY.obj TEE.obj      body.obj and tee.obj, too, from files in metres (see ../README.md)
 
 Needs numpy and scipy (Debian: python3-scipy). The seeds are fixed: it makes the same files every time.
@@ -165,6 +165,27 @@ def dress(around, rows, length):
     return points, faces
 
 
+def nails(places, radius, around, size, thickness):
+    """A square board, its top at y = 0, and a nail of each (x, z, height) on it."""
+    s, t = size / 2, thickness
+    points = [(x, y, z) for y in (-t, 0) for z in (-s, s) for x in (-s, s)]
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    for x, z, height in places:
+        first, turns = len(points), 2 * np.pi * np.arange(around) / around
+        points += [(x + radius * np.cos(a), 0.001, z + radius * np.sin(a)) for a in turns] + [(x, height, z), (x, 0.001, z)]
+        for k in range(around):
+            rim = (first + k, first + (k + 1) % around)
+            faces += [(rim[0], first + around, rim[1]), (rim[1], first + around + 1, rim[0])]
+    return np.array(points), faces
+
+
+def write_nails():
+    heights = [(-0.11, -0.1, 0.15), (0.1, -0.115, 0.11), (-0.09, 0.105, 0.13), (0.115, 0.09, 0.16), (0.01, -0.005, 0.2)]
+    points, faces = nails(heights, 0.006, 12, 0.34, 0.02)
+    write("nails.obj", ["A board of 34 cm with five nails, 11 to 20 cm long, the top of the board at y = 0.",
+                        "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
+
+
 def main():
     write_flat("sheet-958.obj", ["Square sheet, 1 m x 1 m, 958 vertices, irregular triangles."],
                *first_good(lambda rng: square(rng, 1.0, 28, 958)))
@@ -184,6 +205,7 @@ def main():
     points, faces = dress(80, 45, 0.95)
     write("dress.obj", ["A dress without straps, 95 cm long, 80 x 45 quads, standing, its hem at y = 0.",
                         "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
+    write_nails()
     if len(sys.argv) == 3:
         points, faces = read(sys.argv[1])
         write("body.obj", ["CC0 1.0. The base mesh hm08 of MakeHuman (makehumancommunity/makehuman, makehuman/data/3dobjs/base.obj), group",

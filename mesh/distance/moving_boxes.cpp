@@ -4,7 +4,8 @@
 #include <utility>
 
 namespace drape::internal {
-MovingBoxes::MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places, int most_faces)
+MovingBoxes::MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places, int most_faces,
+                         int first_kind)
     : most_faces_(most_faces) {
   std::vector<std::pair<Vec3, int>> middles;
   middles.reserve(faces.size());
@@ -15,6 +16,19 @@ MovingBoxes::MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>
   for (const auto& [middle, face] : middles) order_.push_back(face);
   constexpr int divided = 3;  // levels; some 200 parts
   divide(0, divided);
+  mark_kinds(first_kind);
+}
+
+void MovingBoxes::mark_kinds(int first_kind) {
+  const auto kind = [&](int face) { return first_kind == 0 ? 3u : face < first_kind ? 1u : 2u; };
+  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node)
+    for (int child = 0; child < 4; ++child) {
+      unsigned kinds = 0;
+      for (int k = 0; k < node->count[child]; ++k) kinds |= kind(order_[node->first[child] + k]);
+      if (node->count[child] < 0)
+        for (unsigned char below : nodes_[node->first[child]].kinds) kinds |= below;
+      node->kinds[child] = static_cast<unsigned char>(kinds);
+    }
 }
 
 // Lists the pairs below a node in parts.

@@ -21,8 +21,10 @@ namespace drape::internal {
 
 class MovingBoxes {
  public:
-  // Groups the faces by where they are when the vertices are at these places, up to `most_faces` in a box.
-  MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places, int most_faces = 4);
+  // Groups the faces by where they are when the vertices are at these places, up to `most_faces` in a box. Pairs are
+  // asked for between the first `first_kind` faces and the others alone; 0: between all.
+  MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places, int most_faces = 4,
+              int first_kind = 0);
 
   // Fits the boxes to a step. Allocates nothing.
   void refit(const std::vector<Face>& faces, const std::vector<Vec3>& start, const std::vector<Vec3>& end);
@@ -59,6 +61,7 @@ class MovingBoxes {
   struct Node {
     std::array<std::array<Four, 3>, 2> lower{}, upper{};  // at s = 0 and at s = 1; x, y and z
     std::array<int, 4> first{}, count{};                  // range of faces in order_; count -1: a node
+    std::array<unsigned char, 4> kinds{};                 // bits of the kinds of faces below
   };
   struct Waiting {
     int first, count;
@@ -72,6 +75,9 @@ class MovingBoxes {
   bool pairs_between(int node, int child, int other, unsigned others, float margin, const Ask& ask) const;
   unsigned near_children(int node, int child, int other, float margin) const;
   void divide(int node, int levels);
+  void mark_kinds(int first_kind);
+  // Whether faces of different kinds are below both.
+  static bool differ(unsigned char a, unsigned char b) { return (a & b >> 1 & 1u) != 0 || (a >> 1 & b & 1u) != 0; }
 
   int grow(std::vector<std::pair<Vec3, int>>& middles, int begin, int end);
   void fit_leaf(Node& node, int child, const std::vector<Face>& faces, const std::vector<Vec3>& start,
@@ -163,6 +169,7 @@ bool MovingBoxes::pairs_of(const Part& part, const Ask& ask, double margin) cons
 template <class Ask>
 bool MovingBoxes::pairs_within(int node, int child, float margin, const Ask& ask) const {
   const int first = nodes_[node].first[child], count = nodes_[node].count[child];
+  if (!differ(nodes_[node].kinds[child], nodes_[node].kinds[child])) return true;
   for (int i = first; i < first + count; ++i)
     for (int k = i + 1; k < first + count; ++k)
       if (!ask(order_[i], order_[k])) return false;
@@ -183,7 +190,7 @@ bool MovingBoxes::pairs_between(int node, int child, int other, unsigned others,
                                 const Ask& ask) const {
   const int first = nodes_[node].first[child], count = nodes_[node].count[child];
   for (int k = 0; k < 4; ++k) {
-    if ((others >> k & 1u) == 0) continue;
+    if ((others >> k & 1u) == 0 || !differ(nodes_[node].kinds[child], nodes_[other].kinds[k])) continue;
     const int second = nodes_[other].first[k], other_count = nodes_[other].count[k];
     if (count >= 0 && other_count >= 0) {
       for (int i = first; i < first + count; ++i)

@@ -335,9 +335,12 @@ Vec3 SurfaceDistance::place(const Anchor& anchor, double s) const {
 
 std::vector<Vec3> SurfaceDistance::vertices(double s) const {
   std::vector<Vec3> places = tree_->mesh.positions;
-  if (tree_->moving)
-    for (std::size_t i = 0; i < places.size(); ++i) places[i] = (1 - s) * tree_->start[i] + s * tree_->end[i];
+  for (std::size_t i = 0; i < places.size(); ++i) places[i] = vertex(static_cast<int>(i), s);
   return places;
+}
+
+Vec3 SurfaceDistance::vertex(int v, double s) const {
+  return tree_->moving ? Vec3((1 - s) * tree_->start[v] + s * tree_->end[v]) : tree_->mesh.positions[v];
 }
 
 bool SurfaceDistance::closed() const { return tree_->surface.closed; }

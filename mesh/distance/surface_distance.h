@@ -56,6 +56,7 @@ class SurfaceDistance {
   double largest_displacement() const { return motion().largest; }
 
   std::vector<Vec3> vertices(double s) const;  // positions of the mesh's vertices at s, m
+  Vec3 vertex(int v, double s) const;          // of one
 
   // All the functions below may be called from several threads at once.
   SurfacePoint closest(const Vec3& x, double s = 0) const;

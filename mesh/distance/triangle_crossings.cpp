@@ -130,28 +130,44 @@ std::vector<CrossingContour> Search::contours() {
   return contours;
 }
 
-}  // namespace
-
-std::vector<CrossingContour> crossing_contours(const std::vector<Vec3>& positions,
-                                               const std::vector<Triangle>& triangles) {
+// first_kind: as of MovingBoxes, in triangles.
+std::vector<CrossingContour> contours_of(const std::vector<Vec3>& positions,
+                                         const std::vector<Triangle>& triangles, int first_kind) {
   std::vector<Face> faces;
+  int faces_of_first = 0;
   std::vector<int> triangle_of;  // by face
   for (int k = 0; k < static_cast<int>(triangles.size()); ++k) {
     const Triangle& t = triangles[k];
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
     if (!std::all_of(t.begin(), t.end(), [&](int v) { return positions[v].allFinite(); })) continue;
     faces.push_back({t, {-1, -1, -1}});
+    faces_of_first += k < first_kind;
     triangle_of.push_back(k);
   }
   if (faces.empty()) return {};
-  MovingBoxes boxes(faces, positions);
+  constexpr int in_a_box = 4;
+  MovingBoxes boxes(faces, positions, in_a_box, faces_of_first);
   boxes.refit(faces, positions, positions);
   Search search(positions, triangles);
   boxes.pairs([&](int first, int second) {
-    search.look_at(triangle_of[first], triangle_of[second]);
+    const int a = triangle_of[first], b = triangle_of[second];
+    if (first_kind == 0 || (a < first_kind) != (b < first_kind)) search.look_at(a, b);
     return search.found() < most_crossing_pairs;
   });
   return search.contours();
+}
+
+}  // namespace
+
+std::vector<CrossingContour> crossing_contours(const std::vector<Vec3>& positions,
+                                               const std::vector<Triangle>& triangles) {
+  return contours_of(positions, triangles, 0);
+}
+
+std::vector<CrossingContour> contours_between(const std::vector<Vec3>& positions,
+                                              const std::vector<Triangle>& triangles, int count) {
+  if (count == 0) return {};
+  return contours_of(positions, triangles, count);
 }
 
 int crossing_count(const std::vector<CrossingContour>& contours) {

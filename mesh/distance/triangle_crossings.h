@@ -41,6 +41,9 @@ struct CrossingContour {
 constexpr int most_crossing_pairs = 1'000'000;
 std::vector<CrossingContour> crossing_contours(const std::vector<Vec3>& positions,
                                                const std::vector<Triangle>& triangles);
+// The same, of pairs of one of the first `count` triangles with one of the others, such as of cloth with a body.
+std::vector<CrossingContour> contours_between(const std::vector<Vec3>& positions,
+                                              const std::vector<Triangle>& triangles, int count);
 
 // How many pairs of triangles cross in all of the contours.
 int crossing_count(const std::vector<CrossingContour>& contours);

@@ -13,17 +13,21 @@ struct SelfLaw {
 
   static std::array<double, 4> weights(const Rest& c) { return c->weights; }
 
-  static double energy(const Common&, const Rest& c, const Vec3& p) {
+  // of_cloth: the part of p that is summed over particles of the cloth.
+  static double energy(const Common&, const Rest& c, const Vec3& of_cloth) {
+    const Vec3 p = of_cloth + c->carried;
     const double push = c->push_at(p), d = c->drag_at(p).norm(), most = c->friction * c->push;
     const double rub = d <= most ? 0.5 * d * d : most * d - 0.5 * most * most;
     return (0.5 * push * push + rub - 0.5 * c->hold.squaredNorm()) / c->stiffness;
   }
   static double dissipation(const Common&, const Rest&, const Vec3&, const auto&) { return 0; }
-  static Vec3 pull(const Common&, const Rest& c, const Vec3& p, const auto&) {
+  static Vec3 pull(const Common&, const Rest& c, const Vec3& of_cloth, const auto&) {
+    const Vec3 p = of_cloth + c->carried;
     return -c->push_at(p) * c->normal - c->rub_at(p, c->push);
   }
-  static VectorResponse linearised(const Common&, const Rest& contact, const Vec3& p, const auto&,
+  static VectorResponse linearised(const Common&, const Rest& contact, const Vec3& of_cloth, const auto&,
                                    const auto& shift, double c, Stiffness stiffness) {
+    const Vec3 p = of_cloth + contact->carried;
     const Vec3& n = contact->normal;
     const bool acts = stiffness == Stiffness::tangent ? contact->linear_push(p) > 0 : contact->active;
     if (!acts) return {};
@@ -44,7 +48,7 @@ class SelfContactForce final : public StencilForce<SelfLaw> {
           const bool were = !found.empty();
           found.clear();
           for (const SelfContact& contact : constraints.self().touching())
-            found.push_back({.particles = contact.who.v, .rest = &contact});
+            found.push_back({.particles = contact.particles, .rest = &contact});
           return were || !found.empty();
         }) {}
 

@@ -29,6 +29,7 @@ void end_step(ContactStep& contacts, VecX& x, VecX& v, StepReport& report) {
   report.self_contacts = contact.self_contacts;
   report.self_guarded += contact.self_guarded;
   report.tangled = contact.tangled;
+  report.pinched = contact.pinched;
   report.converged = report.converged && contact.converged;
   report.penetration = std::max(report.penetration, contact.deepest);
 }

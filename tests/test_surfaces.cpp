@@ -1,0 +1,203 @@
+// Bodies that are meshes and cloth that takes part in self_contact: nothing sharp comes through, whichever of them moves.
+#include "mesh/base/threads.h"
+#include "mesh/distance/triangle_crossings.h"
+#include "solver/assembly/assembly.h"
+#include "tests/integrators.h"
+#include "tests/same_bits.h"
+#include "tests/sheets.h"
+
+using namespace drape;
+using namespace drape::test;
+
+namespace {
+
+Shape mesh_body(const TriangleMesh& mesh) { return std::make_shared<const SurfaceDistance>(mesh); }
+
+// A cone along y whose tip is near the origin, but beside every vertex and edge of a sheet about it.
+TriangleMesh spike(double radius, double height) {
+  TriangleMesh mesh = turned({{0, -height}, {radius, -height}, {0, 0}}, 12);
+  for (Vec3& x : mesh.positions) x += Vec3(0.0031, 0, 0.0047);
+  return mesh;
+}
+
+TriangleMesh flat(int n, Kind kind, double size) {
+  return bent(n, kind, size, [](double, double) { return 0.0; });
+}
+
+struct Beside : Assembly {
+  using Assembly::Assembly;
+
+  void add_sheet(const TriangleMesh& mesh) {
+    add(ClothPart{.mesh = mesh,
+                  .fabric = {.area_density = 0.2, .stretch = 500, .bend = 1e-5, .damping = 0.002},
+                  .model = ClothModel::woven,
+                  .self_contact = SelfContactOptions{.thickness = 1e-3, .friction = 0.3}});
+  }
+  // Pairs of a triangle of the cloth and one of a body.
+  int crossings() const {
+    std::vector<Vec3> places = unstacked(state.x);
+    std::vector<Triangle> triangles = cloths[0].mesh.triangles;
+    const auto of_cloth = static_cast<int>(triangles.size());
+    for (const MovingBody& body : constraints->bodies()) {
+      const int first = static_cast<int>(places.size());
+      const TriangleMesh& mesh = body.surface()->mesh();
+      for (int v = 0; v < mesh.vertex_count(); ++v) places.push_back(body.vertex_at_end(v));
+      for (const Triangle& t : mesh.triangles)
+        triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    return crossing_count(contours_between(places, triangles, of_cloth));
+  }
+  Vec3 momentum() const {
+    Vec3 sum = Vec3::Zero();
+    for (int i = 0; i < state.particles(); ++i) sum += system->masses()[i] * state.v.segment<3>(3 * i);
+    return sum;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a sheet that falls on a spike is not pierced", "[surfaces]") {
+  for (const std::string name : {"implicit-euler", "bdf2", "symplectic-euler"})
+    for (int n : {12, 16, 22})
+      for (Kind kind : kinds) {
+        const bool implicit = name != "symplectic-euler";
+        if (!implicit && n > 12) continue;  // many short steps
+        INFO(name << ", " << n << " vertices along an edge, kind " << static_cast<int>(kind));
+        Beside all;
+        all.constraints->add(Obstacle{.shape = mesh_body(spike(0.03, 0.3))});
+        TriangleMesh sheet = flat(n, kind, 0.3);
+        for (Vec3& x : sheet.positions) x[1] += 0.02;
+        all.add_sheet(sheet);
+        all.use(name, "auto");
+        const double h = implicit ? 0.01 : 5e-5;
+        for (int k = 0; k * h < 0.4; ++k) {
+          INFO("step " << k);
+          REQUIRE(all.advance(h).done);
+          if (k % (implicit ? 1 : 200) == 0) REQUIRE(all.crossings() == 0);
+        }
+        CHECK(all.crossings() == 0);
+      }
+}
+
+TEST_CASE("a needle that is driven into a hung sheet pushes it ahead", "[surfaces]") {
+  for (double speed : {0.5, 5.0})
+    for (int n : {9, 15, 23})
+      for (Kind kind : kinds) {
+        INFO(speed << " m/s, " << n << " vertices along an edge, kind " << static_cast<int>(kind));
+        const double way = 0.06;
+        Beside all{Vec3::Zero()};
+        all.constraints->add(
+            Obstacle{.shape = mesh_body(spike(2e-3, 0.15)),
+                     .motion = Motion::keyframes({{.time = 0, .translate = {0, -0.02, 0}},
+                                                  {.time = way / speed, .translate = {0, way - 0.02, 0}}},
+                                                 Vec3::Zero())});
+        const TriangleMesh sheet = flat(n, kind, 0.3);
+        all.add_sheet(sheet);
+        for (int i = 0; i < sheet.vertex_count(); ++i)
+          if (std::abs(sheet.positions[i][0]) > 0.14) all.constraints->pin(i);
+        all.use("implicit-euler", "auto");
+        for (int k = 0; k * 0.01 < way / speed + 0.1; ++k) {
+          INFO("step " << k);
+          const StepReport report = all.advance(0.01);
+          REQUIRE(report.done);
+          CHECK(report.pinched == 0);
+          REQUIRE(all.crossings() == 0);
+        }
+        double highest = 0;
+        for (int i = 0; i < all.state.particles(); ++i) highest = std::max(highest, all.state.x[3 * i + 1]);
+        CHECK(highest > 0.6 * (way - 0.02));
+      }
+}
+
+TEST_CASE("a spiked body with mass that meets a free sheet keeps the momentum of both", "[surfaces]") {
+  for (int n : {9, 14})
+    for (Kind kind : kinds) {
+      INFO(n << " vertices along an edge, kind " << static_cast<int>(kind));
+      Beside all{Vec3::Zero()};
+      const Shape shape = mesh_body(spike(0.02, 0.1));
+      const double mass = 0.02;
+      const auto solid = uniform_solid(shape, mass);
+      REQUIRE(solid);
+      all.constraints->add(Obstacle{.shape = shape,
+                                    .rigid = RigidBody{.mass = mass,
+                                                       .inertia = solid->inertia,
+                                                       .centre = solid->centre,
+                                                       .velocity = {0, 1, 0},
+                                                       .gravity = Vec3::Zero()}});
+      TriangleMesh sheet = flat(n, kind, 0.2);
+      for (Vec3& x : sheet.positions) x[1] += 0.01;
+      all.add_sheet(sheet);
+      all.use("implicit-euler", "auto", {.tolerance = 1e-8});
+      for (int k = 0; k < 12; ++k) {
+        INFO("step " << k);
+        REQUIRE(all.advance(0.005).done);
+        REQUIRE(all.crossings() == 0);
+        const Vec3 body = all.constraints->bodies()[0].reacting()->momentum();
+        CHECK((body + all.momentum() - Vec3(0, mass, 0)).norm() < 1e-3 * mass);
+      }
+      CHECK(all.momentum()[1] > 0.05 * mass);
+    }
+}
+
+TEST_CASE("cloth that starts through a body comes out of it, and is then kept out", "[surfaces]") {
+  for (int n : {13, 18, 25}) {
+    INFO(n << " vertices along an edge");
+    Beside all;
+    all.constraints->add(Obstacle{.shape = mesh_body(sphere(3, 0.1)), .motion = {}});
+    TriangleMesh sheet = flat(n, Kind::squares, 0.3);
+    for (Vec3& x : sheet.positions) x[1] += 0.09;  // the ball's top is 1 cm above it
+    all.add_sheet(sheet);
+    all.use("implicit-euler", "auto");
+    CHECK(all.crossings() > 0);
+    int pinched = 0;
+    for (int k = 0; k < 60; ++k) {
+      const StepReport report = all.advance(0.01);
+      REQUIRE(report.done);
+      pinched = k == 0 ? report.pinched : std::min(pinched, report.pinched);
+      if (k == 0) CHECK(pinched > 0);
+    }
+    CHECK(pinched == 0);
+    CHECK(all.crossings() == 0);
+  }
+}
+
+TEST_CASE("a sheet goes round with a turning body that holds it by its spikes", "[surfaces]") {
+  TriangleMesh body = box({0.1, 0.1, 0.1});
+  for (double x : {-0.03, 0.031})
+    for (double z : {-0.029, 0.032}) {
+      TriangleMesh nail = spike(0.004, 0.06);
+      const int first = body.vertex_count();
+      for (const Vec3& p : nail.positions) body.positions.push_back(p + Vec3(x, 0.08, z));
+      for (const Triangle& t : nail.triangles)
+        body.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+  Beside all;
+  all.constraints->add(Obstacle{.shape = mesh_body(body),
+                                .friction = 1.0,
+                                .motion = Motion::constant(Vec3::Zero(), {0, 6, 0}, Vec3::Zero(), 0.5, 1.5)});
+  TriangleMesh sheet = flat(17, Kind::irregular, 0.25);
+  for (Vec3& x : sheet.positions) x[1] += 0.085;
+  all.add_sheet(sheet);
+  all.use("implicit-euler", "auto");
+  double strain = 0;
+  for (int k = 0; k < 150; ++k) {
+    INFO("step " << k);
+    REQUIRE(all.advance(0.01).done);
+    REQUIRE(all.crossings() == 0);
+    strain = std::max(strain, largest_strain(all.cloths, all.state.x));
+  }
+  CHECK(strain < 0.2);
+}
+
+TEST_CASE("cloth on the surface of a body has the same bits on any number of threads", "[surfaces]") {
+  check_same_bits([] {
+    Beside all;
+    all.constraints->add(Obstacle{.shape = mesh_body(spike(0.03, 0.3))});
+    TriangleMesh sheet = flat(40, Kind::irregular, 0.5);
+    for (Vec3& x : sheet.positions) x[1] += 0.005;
+    all.add_sheet(sheet);
+    all.use("implicit-euler", "auto");
+    for (int k = 0; k < 15; ++k) REQUIRE(all.advance(0.01).done);
+    return all.state;
+  });
+}
