@@ -77,6 +77,9 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
     }
   }
   self_.begin_step(step_, bodies_, options_.recovery_speed * h, kappa);
+  if (foresight != Foresight::none)
+    for (const Contact& contact : contacts_.touching())
+      if (contact.planes > 0) self_.pinch(contact, bodies_[contact.plane[0].obstacle]);
   return ContactStep(*this);
 }
 

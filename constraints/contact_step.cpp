@@ -36,8 +36,9 @@ void ContactStep::push(int body, int particle, const Vec3& v, const Vec3& body_v
                                    (body_velocity - step.velocity(particle)).norm());
 }
 
-void ContactStep::receive(const VecX& v, const VecX& r) {
+void ContactStep::receive(const VecX& v, const VecX& r, const VecX& x_end) {
   clear_impulses();
+  constraints_->step_.work += constraints_->self_.push_bodies(constraints_->bodies_, x_end);
   for (const Contact& c : touching()) {
     if (!c.active()) continue;
     Vec3 rest = r.segment<3>(3 * c.particle);
@@ -69,11 +70,10 @@ void ContactStep::receive_pin(const MovingPin& pin, const Vec3& impulse) {
 
 void ContactStep::receive_faces(const VecX& v) {
   FaceContacts& faces = constraints_->faces_;
-  if (faces.touching().empty() && constraints_->self_.touching().empty()) return;
+  if (faces.touching().empty()) return;
   const StepMotion& step = constraints_->step_;
   VecX& x_new = constraints_->x_new_;
   x_new = step.x + step.h * v + correction();
-  constraints_->step_.work += constraints_->self_.push_bodies(constraints_->bodies_, x_new);
   faces.take_impulse(step.h, x_new, v);
   for (const FaceContact& c : faces.touching()) {
     constraints_->step_.work += c.body_velocity.dot(c.impulse);
@@ -169,14 +169,14 @@ ContactReport ContactStep::finish(VecX& x_new, VecX& v_new) {
   if (!meets_anything()) return report;
   StepMotion& step = constraints_->step_;
   if (bodies()) constraints_->contacts_.guard(constraints_->bodies_, step, x_new, v_new, report);
-  report.self_guarded =
-      constraints_->self_.guard(constraints_->bodies_, constraints_->contacts_.touching(), true, x_new, v_new);
+  report.self_guarded = constraints_->self_.guard(constraints_->bodies_, constraints_->contacts_.touching(),
+                                                  true, x_new, v_new);
   if (bodies() && (report.self_guarded > 0 || constraints_->self_.crossing())) {
     const int before = report.guarded;
     constraints_->contacts_.guard(constraints_->bodies_, step, x_new, v_new, report);
     if (report.guarded > before)  // a common way led into a body
-      report.self_guarded +=
-          constraints_->self_.guard(constraints_->bodies_, constraints_->contacts_.touching(), false, x_new, v_new);
+      report.self_guarded += constraints_->self_.guard(
+          constraints_->bodies_, constraints_->contacts_.touching(), false, x_new, v_new);
   }
   constraints_->self_.end_step(x_new);
   report.self_contacts = constraints_->self_.pushing();

@@ -45,6 +45,8 @@ class ContactStep {
  public:
   bool bodies() const { return !constraints_->bodies_.empty(); }
   bool meets_anything() const { return bodies() || constraints_->self_.any(); }
+  // Whether springs between cloth and bodies depend on where the bodies go.
+  bool springs_on_bodies() const { return !touching_faces().empty() || constraints_->self_.touches_bodies(); }
   // Whether a solve may have to be answered by other contacts.
   bool touches_anything() const { return bodies() || !constraints_->self_.touching().empty(); }
   bool holds_anything() const { return meets_anything() || !moving_pins().empty(); }
@@ -55,13 +57,16 @@ class ContactStep {
   const VecX& correction() const;                // y [m] is added to the positions; empty without bodies
   const std::vector<Contact>& touching() const;  // contacts that were let go have no planes
   const std::vector<FaceContact>& touching_faces() const;
+  // Of cloth with cloth, and with the corners and edges of bodies.
+  const std::vector<SelfContact>& touching_cloth() const { return constraints_->self_.touching(); }
   const std::vector<MovingPin>& moving_pins() const { return constraints_->pins_.moving(); }
 
   // The momentum that a particle takes up for 1 m/s when it is pushed alone, its neighbours staying behind [kg]:
   // at least its mass, which is taken where this is not called.
   void set_inertia(int particle, double inertia) { constraints_->step_.inertia[particle] = inertia; }
-  // Gives the impulses of a solve to the bodies that react, and counts the work of bodies and pins.
-  void receive(const VecX& v, const VecX& r);
+  // Gives the impulses of a solve, which takes the particles to x_new, to the bodies that react, and counts the work of
+  // bodies and pins.
+  void receive(const VecX& v, const VecX& r, const VecX& x_new);
   // How far the contacts are from agreeing with the same v and r, and with the motion x_new that they make.
   ContactImbalance imbalance(const VecX& v, const VecX& r, const VecX& x_new);
   // Changes the contacts to what the v, r and x_new of the last call of imbalance() ask for. An impulse counts

@@ -92,6 +92,7 @@ void Encounters::set(const std::vector<Triangle>& triangles, int particle_count,
   std::map<std::pair<int, int>, int> owner;
   std::vector<std::vector<int>> around(particles), next(particles);
   double length = 0;
+  int edges = 0;  // of cloth
   for (std::size_t f = 0; f < faces_.size(); ++f)
     for (std::size_t k = 0; k < 3; ++k) {
       const int v = faces_[f].v[k], w = faces_[f].v[(k + 1) % 3];
@@ -102,9 +103,11 @@ void Encounters::set(const std::vector<Triangle>& triangles, int particle_count,
       owned_[f] |= static_cast<unsigned char>(8u << k);
       next[v].push_back(w);
       next[w].push_back(v);
+      if (of_cloth_ != 0 && static_cast<int>(f) >= of_cloth_) continue;
       length += (x.segment<3>(3 * v) - x.segment<3>(3 * w)).norm();
+      ++edges;
     }
-  mean_edge_ = length / static_cast<double>(owner.size());
+  mean_edge_ = length / edges;
   next_start_.assign(1, 0);
   next_.clear();
   for (const std::vector<int>& beside : next) {

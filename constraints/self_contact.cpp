@@ -85,7 +85,6 @@ void SelfContacts::let_pass(const std::vector<int>& particles) {
 void SelfContacts::set_particles(const StepMotion& step) {
   const auto n = static_cast<std::size_t>(step.x.size() / 3);
   const int cloth = cloth_particles();
-  pass_.resize(n, 0);
   if (rest_.size() != 3 * cloth) rest_ = step.x.head(3 * cloth);
   TriangleMesh mesh;
   mesh.positions.assign(n, Vec3::Zero());
@@ -115,12 +114,17 @@ void SelfContacts::set_particles(const StepMotion& step) {
 
 void SelfContacts::prepare(const StepMotion& step, const std::vector<MovingBody>& bodies) {
   if (stale_) set_particles(step);
+  pass_.resize(thickness_.size(), 0);
   look_again_ = look_again_ || stale_;
   stale_ = false;
   if (look_again_ || (touched_ != 0 && !crossing())) {
     std::vector<Triangle> triangles;
-    for (const SelfFace& face : faces_) triangles.push_back(face.particles);
-    tangles_->begin(std::move(triangles), pass_, step.x);
+    std::vector<std::optional<int>> layers;
+    for (const SelfFace& face : faces_) {
+      triangles.push_back(face.particles);
+      layers.push_back(face.layer);
+    }
+    tangles_->begin(std::move(triangles), std::move(layers), pass_, step.x);
   }
   const auto cloth = static_cast<std::size_t>(cloth_particles());
   if (tangled_.size() != cloth) {
@@ -132,11 +136,13 @@ void SelfContacts::prepare(const StepMotion& step, const std::vector<MovingBody>
     last_.clear();
     encounters_->forget();
     on_bodies_->forget();
-    surfaces_->look(bodies, faces_);
-  } else {
-    surfaces_->look_again(bodies, faces_);
   }
+  if (look_again_ || touched_body_ != 0)
+    surfaces_->look(bodies, faces_);
+  else
+    surfaces_->look_again(bodies, faces_);
   look_again_ = false;
+  touched_body_ = 0;
 }
 
 int SelfContacts::cloth_particles() const { return surfaces_->cloth(); }
@@ -184,6 +190,7 @@ void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<Movi
   const StepMotion& step = surfaces_->step();
   prepare(step, bodies);
   accepted_ = is_proven_ = false;
+  stopped_.assign(static_cast<std::size_t>(cloth_particles()), 0);
   kappa_ = kappa;
   recovery_ = recovery;
   ahead_ = step.x + step.h * step.v;
@@ -199,6 +206,12 @@ void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<Movi
     c.active = c.linear_push(p) > 0;
     c.share = drag > 0 ? std::min(1.0, c.friction * c.push / drag) : 1;
   }
+}
+
+void SelfContacts::pinch(const Contact& contact, const MovingBody& body) {
+  constexpr double deep = 1e-6;  // m
+  const double depth = -body.obstacle().margin - contact.plane[0].gap;
+  if (any() && body.surface() && depth > deep) surfaces_->pinch(contact.particle);
 }
 
 void SelfContacts::follow(const std::vector<MovingBody>& bodies) {

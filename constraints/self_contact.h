@@ -52,6 +52,9 @@ struct SelfFace {
   double thickness;  // m
   double friction;   // mu
   int sheet = 0;     // the cloth or soft body that it is of
+  // What is worn over what: of two layers that cross the higher one comes out on the side where the normal of the lower
+  // one points. Unset: no order is known.
+  std::optional<int> layer = {};
 };
 
 // How two sheets rub, or one on itself, instead of by the friction of both.
@@ -62,22 +65,22 @@ struct SelfFriction {
 
 struct SelfContact {
   Encounter who;
-  int body = -1;                     // the body that one side is of, whose particles have numbers beyond those of the cloth
-  std::array<int, 4> particles;      // of the cloth; in place of those of a body any other
-  std::array<double, 4> weights;     // w_k of these, 0 in place of those of a body
-  std::array<double, 4> of_body;     // w_k of the particles of the body, else 0
-  Vec3 carried;                      // what the body adds to p at the end of the step [m]
-  Vec3 normal;               // n: unit, towards the first side
-  Vec3 place;                // p at the start of the step [m]
-  Vec3 now;                  // p at the point that the contacts were made for last [m]
-  double stiffness;          // k [N/m]
-  double thickness;          // r [m]
-  double friction;           // mu
-  double before = 0;         // f at the end of the last step [N]
-  Vec3 hold = Vec3::Zero();  // t_0 [N]
-  bool active = false;       // whether it acts in the next solve
-  double push = 0;           // f of the last solve [N]
-  double share = 0;          // of the spring that friction is in the next solve, 0 to 1
+  int body = -1;  // the body that one side is of, whose particles have numbers beyond those of the cloth
+  std::array<int, 4> particles;   // of the cloth; in place of those of a body any other
+  std::array<double, 4> weights;  // w_k of these, 0 in place of those of a body
+  std::array<double, 4> of_body;  // w_k of the particles of the body, else 0
+  Vec3 carried;                   // what the body adds to p at the end of the step [m]
+  Vec3 normal;                    // n: unit, towards the first side
+  Vec3 place;                     // p at the start of the step [m]
+  Vec3 now;                       // p at the point that the contacts were made for last [m]
+  double stiffness;               // k [N/m]
+  double thickness;               // r [m]
+  double friction;                // mu
+  double before = 0;              // f at the end of the last step [N]
+  Vec3 hold = Vec3::Zero();       // t_0 [N]
+  bool active = false;            // whether it acts in the next solve
+  double push = 0;                // f of the last solve [N]
+  double share = 0;               // of the spring that friction is in the next solve, 0 to 1
 
   // The slope of the energy along a way of p [N]: of the law, and of the linear contact of the solve.
   Vec3 slope(const Vec3& p) const { return -push_at(p) * normal - rub_at(p, push); }
@@ -105,6 +108,9 @@ struct SelfContact {
     for (std::size_t k = 0; k < 4; ++k) sum += (weights[k] + of_body[k]) * x.segment<3>(3 * who.v[k]);
     return sum;
   }
+  bool is_sliding() const {
+    return hold.norm() > (1 - 1e-6) * friction * before;
+  }  // at the end of the last step
   // The force on the first side [N].
   Vec3 force_at(const VecX& x) const {
     const Vec3 p = at(x);
@@ -128,6 +134,9 @@ class SelfContacts {
   // These particles may pass each other and what is beside them, such as those that are being sewn together.
   void let_pass(const std::vector<int>& particles);
   bool any() const { return !faces_.empty(); }
+  bool touches_bodies() const {
+    return std::any_of(touching_.begin(), touching_.end(), [](const SelfContact& c) { return c.body >= 0; });
+  }
 
   // Finds what comes near along x -> x + h v. recovery: by how much the thickness of a contact that started nearer
   // than r grows in the step at most [m]. kappa: stiffness of the springs at least [m/h^2]; below 1, as
@@ -140,6 +149,7 @@ class SelfContacts {
   double push_bodies(std::vector<MovingBody>& bodies, const VecX& x_new) const;
   // The norm of the impulses that are wrong in a solve that came to x_new [N s].
   double imbalance(double h, const VecX& x_new) const;
+  void pinch(const Contact& contact, const MovingBody& body);  // where a particle is inside a body
   // Changes the contacts to what a solve asks for that came to v and x_new with the reaction r [N s]; true when one
   // changes. Where that would overshoot, they are made for a point on the way there from the last such point: the one
   // at which the energy of the contacts as they are, and of the motion, is least. curvature: d . A d of that way [J];
@@ -158,7 +168,12 @@ class SelfContacts {
 
   void look_again() { look_again_ = true; }  // the particles were moved from outside
   const std::vector<SelfContact>& touching() const { return touching_; }  // sorted
-  int pushing() const { return pushing_; }  // contacts that pushed at the end of the last step
+  const std::vector<SelfContact>& pushed() const {
+    return last_;
+  }                                         // of the last step; `before` says how hard
+  int pushing() const { return pushing_; }  // how many of them pushed at its end
+  // Whether the last step stopped the particle on its way.
+  bool is_stopped(int particle) const { return any() && !stopped_.empty() && stopped_[particle] != 0; }
   // Whether the cloth passed through itself when the step began.
   bool crossing() const;
   int tangled() const;  // particles near triangles that pass through each other at the end of the last step
@@ -170,7 +185,7 @@ class SelfContacts {
   int cloth_particles() const;
   int zone_of(int particle);
   void find_common(const StepMotion& step, const VecX& x_new, bool in_common);
-  Vec3 common_way(int particle, const StepMotion& step) const;
+  Vec3 way_with_body(int particle, const StepMotion& step);
   void go_shares(const StepMotion& step, const VecX& x_new, bool in_common);
   void stop(const std::vector<internal::Meeting>& failing, const StepMotion& step, const VecX& x_new,
             bool by_shares, bool in_common);
@@ -206,14 +221,16 @@ class SelfContacts {
   std::unique_ptr<internal::Surfaces> surfaces_;
   std::unique_ptr<internal::Tangles> tangles_;
   bool stale_ = true, look_again_ = true;
-  double kappa_ = 0;                     // m/h^2
-  double reach_ = 0, body_reach_ = 0;    // m, from which on pairs are looked at
-  double recovery_ = 0;           // m, by which tangles move in a step at most
+  double kappa_ = 0;                   // m/h^2
+  double reach_ = 0, body_reach_ = 0;  // m, from which on pairs are looked at
+  double recovery_ = 0;                // m, by which tangles move in a step at most
+  int touched_body_ = 0;               // not 0: the same of cloth and a body
   int touched_ = 0;  // not 0: a pair touched at the start of the step, and may have crossed in it
   int pushing_ = 0;
   // By particle, those of bodies included.
   std::vector<double> thickness_, friction_;     // m, mu
   std::vector<int> piece_, sheet_;               // the connected piece, and the sheet, that it belongs to
+  std::vector<char> stopped_;                    // is_stopped(), by particle of the cloth
   std::vector<char> pass_;                       // let_pass()
   VecX rest_;                                    // places of the cloth when the faces were added [m]
   std::vector<char> tangled_;                    // whether it was in a tangle there
@@ -226,13 +243,14 @@ class SelfContacts {
   std::vector<Vec3> common_, kept_;
   std::vector<double> weight_;
   std::vector<int> zone_body_;  // the body in the zone, or one of these
+  std::vector<Vec3> body_way_;  // the mean way of what it has in the zone [m]
   static constexpr int no_body = -1, several = -2;
   const std::vector<MovingBody>* bodies_ = nullptr;  // of the guard under way
   enum class Held : char { no, by_body, yes };
   std::vector<Held> hold_, zone_hold_;  // of each particle; the firmest of its zone
   std::vector<char> still_;             // of a tangle that moves as a whole, but for its relief
   double share_of(int particle) const { return still_[particle] != 0 ? 0 : way_[particle]; }
-  VecX relief_, given_;                 // m, see Tangles; what the first guard of the step gave of it
+  VecX relief_, given_;  // m, see Tangles; what the first guard of the step gave of it
   VecX ahead_, wanted_, v_at_, proven_;
   bool accepted_ = false;   // whether v_at_ is of this step
   bool is_proven_ = false;  // whether nothing meets on the way to proven_ in this step

@@ -33,7 +33,8 @@ std::vector<Meeting>& SelfContacts::meetings(const VecX& x, const VecX& x_new) {
                         const Vec3& likely) {
     if (exempt(e)) return Approach{};
     const Approach found = approach_from_within(e.edges, start, end, floor, likely);
-    if (found.touching && !is_on_body(e)) std::atomic_ref(touched_).store(1, std::memory_order_relaxed);
+    if (found.touching)
+      std::atomic_ref(is_on_body(e) ? touched_body_ : touched_).store(1, std::memory_order_relaxed);
     return found;
   };
   found_ = encounters_->select(x, x_new, floor, look);
@@ -76,9 +77,9 @@ int SelfContacts::zone_of(int particle) {
   return particle;
 }
 
-// The ways in common, by zone. A zone goes with the body that is in it; or with its particles that are held, if there are
-// any and they go the same way (else it stands, as between two bodies); or the mean way of those that touch a body; or else
-// of all by mass. A zone of the last kind keeps its mean, so no momentum is lost.
+// The ways in common, by zone. A zone goes with the body that is in it, or stands where several are, or particles that are
+// held otherwise; or with its particles that are held, if there are any and they go the same way (else it stands); or the
+// mean way of those that touch a body; or else of all by mass. A zone of the last kind keeps its mean, so no momentum is lost.
 void SelfContacts::find_common(const StepMotion& step, const VecX& x_new, bool in_common) {
   const int n = static_cast<int>(zone_.size());
   const auto way = [&](int i) { return Vec3(x_new.segment<3>(3 * i) - step.x.segment<3>(3 * i)); };
@@ -88,9 +89,22 @@ void SelfContacts::find_common(const StepMotion& step, const VecX& x_new, bool i
     return hold_on(i) != of_zone ? 0.0 : of_zone == Held::no ? step.mass(i) : 1.0;
   };
   zone_body_.assign(zone_.size(), no_body);
+  body_way_.assign(zone_.size(), Vec3::Zero());
+  weight_.assign(zone_.size(), 0);
   for (int i = cloth_particles(); i < n; ++i) {
-    int& body = zone_body_[zone_of(i)];
+    const int zone = zone_of(i);
+    int& body = zone_body_[zone];
     body = body == no_body || body == surfaces_->body_of(i) ? surfaces_->body_of(i) : several;
+    body_way_[zone] += way(i);
+    ++weight_[zone];
+  }
+  for (int i = 0; i < n; ++i)
+    if (weight_[i] > 0) body_way_[i] /= weight_[i];
+  for (int i = 0; i < cloth_particles(); ++i) {
+    const int zone = zone_of(i);
+    if (!step.is_held(i) || zone_body_[zone] == no_body) continue;
+    const double otherwise = (way(i) - way_with_body(i, step)).norm();
+    if (otherwise > 1e-9 + 1e-3 * way(i).norm()) zone_body_[zone] = several;
   }
   common_.assign(zone_.size(), Vec3::Zero());
   weight_.assign(zone_.size(), 0);
@@ -115,6 +129,16 @@ void SelfContacts::find_common(const StepMotion& step, const VecX& x_new, bool i
   }
 }
 
+// The way of a particle that goes with the body of its zone: as that turns, or, where it deforms, by the mean of what it has
+// there.
+Vec3 SelfContacts::way_with_body(int particle, const StepMotion& step) {
+  const int zone = zone_of(particle), body = zone_body_[zone];
+  if (body == several) return Vec3::Zero();
+  const MovingBody& moving = (*bodies_)[body];
+  const Vec3 place = step.place(particle);
+  return deforming(moving.obstacle().shape) ? body_way_[zone] : Vec3(moving.carried(place) - place);
+}
+
 // Sets ahead_ to where the particles come that go the shares way_ of their ways. A tangle that is still has nothing but the
 // way in common, and its relief.
 void SelfContacts::go_shares(const StepMotion& step, const VecX& x_new, bool in_common) {
@@ -123,13 +147,10 @@ void SelfContacts::go_shares(const StepMotion& step, const VecX& x_new, bool in_
     if (way_[i] == 1 && still_[i] == 0) continue;
     const int zone = zone_of(i), body = zone_body_[zone];
     Vec3 common = common_[zone], kept = kept_[zone];
-    if (body != no_body) {
-      const Vec3 place = step.place(i);
-      common = kept = in_common && body != several ? Vec3((*bodies_)[body].carried(place) - place) : Vec3(Vec3::Zero());
-    }
     const Vec3 way = x_new.segment<3>(3 * i) - step.x.segment<3>(3 * i);
-    ahead_.segment<3>(3 * i) = step.x.segment<3>(3 * i) + kept + share_of(i) * (way - common) +
-                               way_[i] * relief_.segment<3>(3 * i);
+    if (body != no_body) common = kept = step.is_held(i) ? way : way_with_body(i, step);
+    ahead_.segment<3>(3 * i) =
+        step.x.segment<3>(3 * i) + kept + share_of(i) * (way - common) + way_[i] * relief_.segment<3>(3 * i);
   }
 }
 
@@ -187,7 +208,10 @@ void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_co
     const bool together = in_common && round < rounds_in_common;
     const std::vector<Meeting>& failing = meetings(step.x, ahead_);
     if (!failing.empty()) {
-      if (round >= rounds_in_common && let_bodies_yield(failing)) continue;
+      if (round >= rounds_in_common && let_bodies_yield(failing)) {
+        --round;  // fewer particles can be pinched every time
+        continue;
+      }
       stop(failing, step, x_new, round < rounds_by_shares, together);
       continue;
     }
@@ -199,6 +223,7 @@ void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_co
   }
   std::fill(way_.begin(), way_.end(), 0.0);
   ahead_.head(3 * cloth_particles()) = step.x.head(3 * cloth_particles());
+  if (surfaces_->any() && follow_all(step.x, ahead_)) let_bodies_yield(meetings(step.x, ahead_));
 }
 
 // Takes the particles to ahead_, and from their velocity what they lose of their way; relief is none of it. Returns how many
@@ -213,6 +238,7 @@ int SelfContacts::go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX
       const Vec3 kept = x_new.segment<3>(k) - (still_[i] != 0 ? 1 : 1 - way_[i]) * given_.segment<3>(k);
       v_new.segment<3>(k) -= (kept + relief - ahead_.segment<3>(k)) / step.h;
       ++stopped;
+      stopped_[i] = 1;
     }
     if (first) given_.segment<3>(k) = relief;
     x_new.segment<3>(k) = ahead_.segment<3>(k);

@@ -98,8 +98,7 @@ std::optional<SelfContact> SelfContacts::contact_of(const StepMotion& step, cons
       if (who.v[k] < cloth_particles()) continue;
       contact.particles[k] = own;
       contact.of_body[k] = std::exchange(contact.weights[k], 0);
-      contact.carried +=
-          contact.of_body[k] * (step.place(who.v[k]) + step.h * step.velocity(who.v[k]));
+      contact.carried += contact.of_body[k] * (step.place(who.v[k]) + step.h * step.velocity(who.v[k]));
     }
   }
   contact.place = contact.over(step.x);
@@ -178,7 +177,8 @@ void SelfContacts::find_contacts(const StepMotion& step) {
   if (!follow_all(step.x, ahead_)) return;
   std::vector<Meeting>& found = found_;
   found = near_ones(step, *encounters_, thickest);
-  if (surfaces_->any()) {
+  // Other methods look at a contact within the step, when the body is not yet where its end takes it.
+  if (surfaces_->any() && step.foresight == Foresight::ahead) {
     const std::vector<Meeting>& others = near_ones(step, *on_bodies_, surfaces_->thickest());
     found.insert(found.end(), others.begin(), others.end());
   }
@@ -206,7 +206,9 @@ void SelfContacts::find_contacts(const StepMotion& step) {
     }
   }
   for (auto m = edges; m != found.end(); ++m) {
-    const auto farther = [&](int v) { return m->approach.last.distance < 0.7 * nearest_[v]; };
+    const auto farther = [&](int v) {
+      return (is_on_body(m->who) && v < cloth_particles()) || m->approach.last.distance < 0.7 * nearest_[v];
+    };
     if (find(last_, m->who) || std::all_of(m->who.v.begin(), m->who.v.end(), farther)) add(*m);
   }
 }

@@ -1,5 +1,6 @@
 #include "constraints/surfaces.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "mesh/base/parallel.h"
@@ -11,6 +12,9 @@ namespace {
 // Springs keep edges and corners off by this share of the margin, at which vertices rest: so what lies flat touches no
 // spring, and what lies over an edge that is not sharp is borne by the faces [face_contact.h].
 constexpr double share_of_margin = 0.25;
+constexpr double inside = 1e-9;  // m: less is rounding
+constexpr double least_margin =
+    1e-4;                          // m: nearer than that edges rest on edges, and would be stopped for ever
 constexpr int steps_between = 10;  // after which is looked again who is pinched
 
 }  // namespace
@@ -24,6 +28,7 @@ bool Surfaces::begin_step(const std::vector<MovingBody>& bodies, const StepMotio
   }
   const Eigen::Index own = cloth.x.size(), all = own + 3 * static_cast<Eigen::Index>(body_.size());
   step_.h = cloth.h;
+  step_.foresight = cloth.foresight;
   step_.x.resize(all);
   step_.v.resize(all);
   step_.x.head(own) = cloth.x;
@@ -45,7 +50,7 @@ void Surfaces::set(const std::vector<MovingBody>& bodies) {
   thickest_ = 0;
   for (const MovingBody& body : bodies) {
     const SurfaceDistance* const surface = body.surface();
-    if (!surface) continue;
+    if (!surface || body.obstacle().margin < least_margin) continue;
     const int first = cloth_ + static_cast<int>(body_.size());
     surfaces_.emplace_back(body.number(), first);
     body_.resize(body_.size() + surface->mesh().positions.size(), body.number());
@@ -112,14 +117,21 @@ void Surfaces::look_again(const std::vector<MovingBody>& bodies, const std::vect
   for_chunks(cloth_, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
       for (const auto& [number, first] : surfaces_)
-        if (pinched_[i] != 0 && bodies[number].near_start(places[i]).distance < 0) in[i] = 1;
+        if (pinched_[i] != 0 && bodies[number].near_start(places[i]).distance < -inside) in[i] = 1;
   });
   std::vector<Triangle> triangles;
   for (const SelfFace& face : cloth)
     if (std::any_of(face.particles.begin(), face.particles.end(), [&](int i) { return pinched_[i] != 0; }))
       triangles.push_back(face.particles);
   const int of_cloth = static_cast<int>(triangles.size());
-  for (const SelfFace& face : faces_) triangles.push_back(face.particles);
+  Eigen::AlignedBox3d box;
+  for (const Triangle& t : triangles)
+    for (int i : t) box.extend(places[i]);
+  for (const SelfFace& face : faces_) {
+    Eigen::AlignedBox3d own;
+    for (int i : face.particles) own.extend(places[i]);
+    if (box.intersects(own)) triangles.push_back(face.particles);
+  }
   for (const CrossingContour& contour : contours_between(places, triangles, of_cloth))
     for (const TrianglePair& pair : contour.pairs)
       for (int i : triangles[pair.first]) in[i] = 1;

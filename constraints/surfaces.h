@@ -24,11 +24,13 @@ class Surfaces {
   // Takes the ends of the ways anew, after bodies that react have changed their motion.
   void follow(const std::vector<MovingBody>& bodies);
 
-  int cloth() const { return cloth_; }  // particles of the cloth; those of the surfaces have the numbers from there on
+  int cloth() const {
+    return cloth_;
+  }  // particles of the cloth; those of the surfaces have the numbers from there on
   bool any() const { return !faces_.empty(); }
   const std::vector<SelfFace>& faces() const { return faces_; }
   int body_of(int particle) const { return body_[particle - cloth_]; }
-  double thickest() const { return thickest_; }  // of the faces [m]
+  double thickest() const { return thickest_; }     // of the faces [m]
   const StepMotion& step() const { return step_; }  // of all particles
   // The places of all particles at the end of a step that takes the cloth to x_new [m]. Good until the next call.
   const VecX& with(const VecX& x_new);
@@ -51,7 +53,7 @@ class Surfaces {
   std::vector<int> body_;  // by particle of the surfaces
   double thickest_ = 0;
   StepMotion step_;
-  VecX x_new_, ends_;  // m; ends_: of the surfaces
+  VecX x_new_, ends_;          // m; ends_: of the surfaces
   std::vector<char> pinched_;  // by particle of the cloth
   int count_ = 0, since_ = 0;  // since_: steps since it was looked at
 };

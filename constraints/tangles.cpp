@@ -77,8 +77,10 @@ struct Crossing {
 
 }  // namespace
 
-void Tangles::begin(std::vector<Triangle> triangles, const std::vector<char>& pass, const VecX& x) {
+void Tangles::begin(std::vector<Triangle> triangles, std::vector<std::optional<int>> layers,
+                    const std::vector<char>& pass, const VecX& x) {
   triangles_ = std::move(triangles);
+  layers_ = std::move(layers);
   passes_.clear();
   for (const Triangle& t : triangles_)
     passes_.push_back(std::any_of(t.begin(), t.end(), [&](int v) { return pass[v] != 0; }));
@@ -237,6 +239,15 @@ int Tangles::lightest_side(const CrossingContour& contour) const {
   return side;
 }
 
+// How the edge moves against the triangle, where the order of the two is known.
+std::optional<Vec3> Tangles::way_by_layers(const Passage& passage) const {
+  const std::optional<int>&of = layers_[passage.of], &through = layers_[passage.through];
+  if (!of || !through || *of == *through) return {};
+  const bool outer = *of > *through;
+  const Vec3 out = normal_of(places_, triangles_[outer ? passage.through : passage.of]).normalized();
+  return outer ? out : Vec3(-out);
+}
+
 // Adds to way_ what brings the sides of the contour apart; only its direction counts.
 void Tangles::add_ways(const CrossingContour& contour, const StepMotion& step) {
   const int side = lightest_side(contour);
@@ -249,7 +260,9 @@ void Tangles::add_ways(const CrossingContour& contour, const StepMotion& step) {
     const Crossing crossing(passage, places_, triangles_);
     if (!crossing.is_number()) continue;
     Vec3 way = crossing.shorter + side_[passage.of] * whole;
-    if (side != 2) {
+    if (const auto ordered = way_by_layers(passage); ordered && ordered->allFinite()) {
+      way = *ordered;
+    } else if (side != 2) {
       const int end = lighter_end(passage);
       if (end < 0 || side_[passage.of] != side) continue;
       way = end == passage.a ? crossing.ahead : Vec3(-crossing.ahead);

@@ -5,6 +5,8 @@
 //   The edges that cross something divide the cloth into regions. An edge between two regions moves against the triangle
 //   that it passes through, along the normal of that triangle, so that its end in the lighter region comes back:
 //     +-N, of the side of the contour that has the lightest region
+//   Where layers are given, the order says which end is to come back: the higher layer passes to the side where the normal N
+//   of the lower one points, whichever of the two the edge is of.
 //   Where a contour divides no region off, as between two borders, it is made shorter. An edge E then moves along
 //     G = sum_i (R_i - (R_i . E) / (E . N) N)                     [Volino & Magnenat-Thalmann 2006, section 3]
 //   R_i: the direction in which the contour goes on from the edge, one for each triangle at the edge that crosses; both
@@ -18,6 +20,7 @@
 // Internal to the library's constraints.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "constraints/step_motion.h"
@@ -28,8 +31,9 @@ namespace drape::internal {
 class Tangles {
  public:
   // Looks where the triangles cross. pass: for each particle whether what is near it may cross; two triangles that both
-  // have such a one make no tangle.
-  void begin(std::vector<Triangle> triangles, const std::vector<char>& pass, const VecX& x);
+  // have such a one make no tangle. layers: of the triangles, see SelfFace.
+  void begin(std::vector<Triangle> triangles, std::vector<std::optional<int>> layers,
+             const std::vector<char>& pass, const VecX& x);
   void end_step(const VecX& x);  // the step has ended at x
 
   bool any() const { return !contours_.empty(); }
@@ -49,6 +53,7 @@ class Tangles {
   int lighter_end(const Passage& passage) const;
   void sort_sides(const CrossingContour& contour);
   int lightest_side(const CrossingContour& contour) const;
+  std::optional<Vec3> way_by_layers(const Passage& passage) const;
   void gather(const CrossingContour& contour, int rings);
   void add_ways(const CrossingContour& contour, const StepMotion& step);
   void spread(const StepMotion& step);
@@ -57,6 +62,7 @@ class Tangles {
   void limit_relief(double most);
 
   std::vector<Triangle> triangles_;
+  std::vector<std::optional<int>> layers_;
   std::vector<char> passes_;  // by triangle
   std::vector<int> first_,
       around_;                // the triangles at particle i: around_[first_[i]] up to around_[first_[i + 1]]

@@ -268,7 +268,7 @@ TEST_CASE("check tells the crossings of a mesh, of a scene and of a run", "[cros
   const std::string steps = content(folder.path / "o/steps.csv");
   CHECK(steps.substr(0, steps.find('\n')).ends_with(",crossings,tangled,pinched"));
   CHECK(steps.substr(steps.find_last_of(',', steps.size() - 2)) == ",0\n");
-  CHECK(steps.find("," + at_end + ",0\n") != std::string::npos);
+  CHECK(steps.find("," + at_end + ",0,0\n") != std::string::npos);
   CHECK(crossings["max"] >= crossings["end"]);
 
   const Outcome refused = folder.drape("simulate scene.toml --set simulation.require_clean=true --out p");

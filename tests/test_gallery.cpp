@@ -41,6 +41,7 @@ const Part gallery[] = {
     {"layers", 0.5, 2},           // all three have come to each other
     {"ls-ball-0", 0.7, 10},       // slides over the ball and comes to the floor
     {"ls-ball-09", 0.9, 10},
+    {"nails", 0.5, 1},            // hangs over the nails
     {"net", 0.9, 1},              // the ball comes to it after 0.32 s
     {"noh-jung-100", 0.5, 1},
     {"noh-jung-200", 0.5, 1},

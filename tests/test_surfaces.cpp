@@ -47,6 +47,13 @@ struct Beside : Assembly {
     }
     return crossing_count(contours_between(places, triangles, of_cloth));
   }
+  Vec3 angular_momentum() const {  // of the cloth and of the first body, about the origin
+    const ReactingBody& body = *constraints->bodies()[0].reacting();
+    Vec3 sum = body.angular_momentum() + body.centre().cross(body.momentum());
+    for (int i = 0; i < state.particles(); ++i)
+      sum += system->masses()[i] * Vec3(state.x.segment<3>(3 * i)).cross(Vec3(state.v.segment<3>(3 * i)));
+    return sum;
+  }
   Vec3 momentum() const {
     Vec3 sum = Vec3::Zero();
     for (int i = 0; i < state.particles(); ++i) sum += system->masses()[i] * state.v.segment<3>(3 * i);
@@ -110,9 +117,12 @@ TEST_CASE("a needle that is driven into a hung sheet pushes it ahead", "[surface
 }
 
 TEST_CASE("a spiked body with mass that meets a free sheet keeps the momentum of both", "[surfaces]") {
-  for (int n : {9, 14})
+  for (const std::string name : {"implicit-euler", "bdf2"})
     for (Kind kind : kinds) {
-      INFO(n << " vertices along an edge, kind " << static_cast<int>(kind));
+      const int n = 12;
+      // bdf2 keeps the momentum of both to first order (docs/limits.md).
+      const double to = name == "bdf2" ? 0.1 : 1e-3, h = name == "bdf2" ? 1e-3 : 5e-3;
+      INFO(name << ", kind " << static_cast<int>(kind));
       Beside all{Vec3::Zero()};
       const Shape shape = mesh_body(spike(0.02, 0.1));
       const double mass = 0.02;
@@ -127,13 +137,16 @@ TEST_CASE("a spiked body with mass that meets a free sheet keeps the momentum of
       TriangleMesh sheet = flat(n, kind, 0.2);
       for (Vec3& x : sheet.positions) x[1] += 0.01;
       all.add_sheet(sheet);
-      all.use("implicit-euler", "auto", {.tolerance = 1e-8});
-      for (int k = 0; k < 12; ++k) {
+      all.use(name, "auto", {.tolerance = 1e-8});
+      const Vec3 turn = all.angular_momentum();
+      for (int k = 0; k * h < 0.06; ++k) {
         INFO("step " << k);
-        REQUIRE(all.advance(0.005).done);
+        REQUIRE(all.advance(h).done);
         REQUIRE(all.crossings() == 0);
         const Vec3 body = all.constraints->bodies()[0].reacting()->momentum();
-        CHECK((body + all.momentum() - Vec3(0, mass, 0)).norm() < 1e-3 * mass);
+        CHECK((body + all.momentum() - Vec3(0, mass, 0)).norm() < to * mass);
+        // An implicit step keeps it to first order; a push beside the point of contact would be off by 0.05.
+        CHECK((all.angular_momentum() - turn).norm() < std::max(to, 0.01) * mass * 0.1);
       }
       CHECK(all.momentum()[1] > 0.05 * mass);
     }
@@ -149,15 +162,14 @@ TEST_CASE("cloth that starts through a body comes out of it, and is then kept ou
     all.add_sheet(sheet);
     all.use("implicit-euler", "auto");
     CHECK(all.crossings() > 0);
-    int pinched = 0;
     for (int k = 0; k < 60; ++k) {
       const StepReport report = all.advance(0.01);
       REQUIRE(report.done);
-      pinched = k == 0 ? report.pinched : std::min(pinched, report.pinched);
-      if (k == 0) CHECK(pinched > 0);
+      if (k == 0) CHECK(report.pinched > 0);
+      if (k < 40) continue;
+      CHECK(report.pinched == 0);
+      REQUIRE(all.crossings() == 0);
     }
-    CHECK(pinched == 0);
-    CHECK(all.crossings() == 0);
   }
 }
 
@@ -187,17 +199,72 @@ TEST_CASE("a sheet goes round with a turning body that holds it by its spikes", 
     strain = std::max(strain, largest_strain(all.cloths, all.state.x));
   }
   CHECK(strain < 0.2);
+  // It has gone round by 6 rad, as the mean of where its vertices were says.
+  double sine = 0, cosine = 0;
+  const Cloth& cloth = all.cloths[0];
+  for (int i = 0; i < cloth.mesh.vertex_count(); ++i) {
+    const Vec3 &before = cloth.mesh.positions[i], after = all.state.x.segment<3>(3 * i);
+    cosine += before[0] * after[0] + before[2] * after[2];
+    sine += before[2] * after[0] - before[0] * after[2];
+  }
+  CHECK(std::abs(std::remainder(std::atan2(sine, cosine) - 6, 2 * 3.14159265358979)) < 0.3);
+}
+
+TEST_CASE("bodies that close on folded cloth do not press it through itself, and let it out again",
+          "[surfaces]") {
+  for (int n : {11, 17}) {
+    INFO(n << " vertices along an edge");
+    Beside all{Vec3::Zero()};
+    const auto add = [&](double side) {
+      all.constraints->add(
+          Obstacle{.shape = mesh_body(box({0.2, 0.06, 0.2})),
+                   .motion = Motion::keyframes({{.time = 0, .translate = {0, side * 0.045, 0}},
+                                                {.time = 0.2, .translate = {0, side * 0.0295, 0}},
+                                                {.time = 0.3, .translate = {0, side * 0.0295, 0}},
+                                                {.time = 0.5, .translate = {0, side * 0.045, 0}}},
+                                               Vec3::Zero())});
+    };
+    add(1);
+    add(-1);
+    // Two layers that are joined along a fold beside the bodies.
+    TriangleMesh sheet = flat(n, Kind::squares, 0.3);
+    for (Vec3& x : sheet.positions) {
+      const double s = x[0] + 0.15, bend = 3.14159265358979 * 0.004;
+      if (s < 0.14)
+        x = {s - 0.09, -0.004, x[2]};
+      else if (s < 0.14 + bend)
+        x = {0.05 + 0.004 * std::sin((s - 0.14) / 0.004), -0.004 * std::cos((s - 0.14) / 0.004), x[2]};
+      else
+        x = {0.05 - (s - 0.14 - bend), 0.004, x[2]};
+    }
+    all.add_sheet(sheet);
+    all.use("implicit-euler", "auto");
+    int most = 0;
+    for (int k = 0; k < 80; ++k) {
+      INFO("step " << k);
+      const StepReport report = all.advance(0.01);
+      REQUIRE(report.done);
+      most = std::max(most, report.pinched);
+      REQUIRE(crossing_count(crossing_contours(unstacked(all.state.x), sheet.triangles)) == 0);
+      if (k == 79) CHECK(report.pinched == 0);
+    }
+    CHECK(most > 0);  // 1 mm cannot hold two layers and their margins
+    CHECK(all.crossings() == 0);
+  }
 }
 
 TEST_CASE("cloth on the surface of a body has the same bits on any number of threads", "[surfaces]") {
   check_same_bits([] {
     Beside all;
-    all.constraints->add(Obstacle{.shape = mesh_body(spike(0.03, 0.3))});
-    TriangleMesh sheet = flat(40, Kind::irregular, 0.5);
-    for (Vec3& x : sheet.positions) x[1] += 0.005;
+    TriangleMesh nail = spike(0.01, 0.3);
+    for (Vec3& x : nail.positions) x += Vec3(0.06, 0.1, 0.06);
+    all.constraints->add(Obstacle{.shape = mesh_body(nail)});
+    all.constraints->add(Obstacle{.shape = mesh_body(sphere(5, 0.1)), .motion = {}});
+    TriangleMesh sheet = flat(60, Kind::irregular, 0.5);
+    for (Vec3& x : sheet.positions) x[1] += 0.102;
     all.add_sheet(sheet);
     all.use("implicit-euler", "auto");
-    for (int k = 0; k < 15; ++k) REQUIRE(all.advance(0.01).done);
+    for (int k = 0; k < 8; ++k) REQUIRE(all.advance(0.01).done);
     return all.state;
   });
 }

@@ -34,7 +34,10 @@ std::vector<Start> starts() {
 }
 
 struct Tangled : Assembly {
-  Tangled(const std::vector<TriangleMesh>& meshes, ClothModel model) : Assembly(Vec3::Zero()) {
+  Tangled(const std::vector<TriangleMesh>& meshes, ClothModel model,
+          std::vector<std::optional<int>> layers = {})
+      : Assembly(Vec3::Zero()) {
+    layers.resize(meshes.size());
     for (const TriangleMesh& mesh : meshes) {
       const int first = static_cast<int>(places_.size());
       for (const Triangle& t : mesh.triangles)
@@ -44,8 +47,14 @@ struct Tangled : Assembly {
                     .fabric = {.area_density = 0.2, .stretch = 200, .bend = 1e-5, .damping = 0.002},
                     .model = model,
                     .imperfection = 0,
-                    .self_contact = SelfContactOptions{.thickness = 1e-3, .friction = 0.3}});
+                    .self_contact = SelfContactOptions{
+                        .thickness = 1e-3, .friction = 0.3, .layer = layers[cloths.size()]}});
     }
+  }
+  double height_of(std::size_t k) const {  // mean, m
+    double sum = 0;
+    for (int i = cloths[k].first_particle; i < cloths[k].end_particle; ++i) sum += state.x[3 * i + 1];
+    return sum / (cloths[k].end_particle - cloths[k].first_particle);
   }
   int crossings(bool as_floats = false) const {
     std::vector<Vec3> places = unstacked(state.x);
@@ -105,6 +114,42 @@ TEST_CASE("two sheets that pass through each other come apart, and stay so", "[s
         CHECK(two.mean_velocity().norm() < 1e-3);
         CHECK((two.centre() - centre).norm() < 1e-3);
       }
+}
+
+// A small sheet lies above a large one, but for the larger part of it: by weight the smaller part would follow.
+TEST_CASE("of two layers that cross the higher one comes out above, whichever part is lighter",
+          "[self-contact]") {
+  for (int n : {10, 16, 23})
+    for (Kind kind : kinds)
+      for (int sign : {1, -1}) {
+        INFO(n << " vertices along an edge, kind " << static_cast<int>(kind) << ", slope " << sign);
+        const TriangleMesh lower = bent(n, kind, 0.4, [](double, double) { return 0.0; }),
+                           upper = bent(n, kind, 0.2, [&](double x, double z) {
+                             return sign * (0.2 * x + 0.03 * z) - 0.007 + 0.0003;
+                           });
+        Tangled two({lower, upper}, ClothModel::noh_jung, {1, 2});
+        REQUIRE(two.crossings() > 0);
+        two.use("implicit-euler", "auto", usual());
+        for (int k = 0; k < 600 && two.crossings() > 0; ++k)
+          REQUIRE(two.integrator->advance(two.state, 0.01).done);
+        CHECK(two.crossings() == 0);
+        CHECK(two.height_of(1) > two.height_of(0));
+      }
+}
+
+TEST_CASE("sheets at one and the same place come apart in the order of their layers", "[self-contact]") {
+  for (int n : {8, 13})
+    for (const auto& order : std::vector<std::vector<std::optional<int>>>{{0, 1, 2}, {5, 9, 7}}) {
+      const TriangleMesh sheet = bent(n, Kind::irregular, 0.2, [](double, double) { return 0.0; });
+      Tangled three({sheet, sheet, sheet}, ClothModel::woven, order);
+      three.use("implicit-euler", "auto", usual());
+      for (int k = 0; k < 100; ++k) REQUIRE(three.integrator->advance(three.state, 0.01).done);
+      CHECK(three.crossings() == 0);
+      CHECK(three.crossings(true) == 0);
+      for (std::size_t a : {0, 1, 2})
+        for (std::size_t b : {0, 1, 2})
+          if (order[a] > order[b]) CHECK(three.height_of(a) > three.height_of(b) + 0.8e-3);
+    }
 }
 
 TEST_CASE("tangles come apart with any integrator, and with the same bits on any number of threads",

@@ -77,7 +77,9 @@ class MovingBoxes {
   void divide(int node, int levels);
   void mark_kinds(int first_kind);
   // Whether faces of different kinds are below both.
-  static bool differ(unsigned char a, unsigned char b) { return (a & b >> 1 & 1u) != 0 || (a >> 1 & b & 1u) != 0; }
+  static bool differ(unsigned char a, unsigned char b) {
+    return (a & b >> 1 & 1u) != 0 || (a >> 1 & b & 1u) != 0;
+  }
 
   int grow(std::vector<std::pair<Vec3, int>>& middles, int begin, int end);
   void fit_leaf(Node& node, int child, const std::vector<Face>& faces, const std::vector<Vec3>& start,

@@ -10,6 +10,7 @@
 #include "mesh/lattice/solid.h"
 #include "mesh/obj/obj_groups.h"
 #include "mesh/triangles/extent.h"
+#include "mesh/triangles/normals.h"
 #include "mesh/triangles/topology.h"
 #include "solver/assembly/imperfection.h"
 #include "solver/forces/choi_ko.h"
@@ -99,38 +100,69 @@ double imperfection_of(const Cloth& cloth, const std::optional<double>& given) {
   return amplitude;
 }
 
-// The warp of each triangle: that of its group, else that of the cloth.
-std::vector<Vec3> warps_of(const ClothPart& part, const Cloth& cloth) {
-  if (cloth.model != ClothModel::woven) return {};
-  const auto count = static_cast<std::size_t>(cloth.mesh.triangle_count());
-  std::vector<Vec3> warps(count, part.warp.value_or(Vec3::Zero()));
-  std::vector<const std::string*> from(count, nullptr);
-  for (const GroupWarp& group : part.group_warps) {
-    const std::vector<int> triangles = internal::triangles_of_group(cloth.mesh, group.group);
+// Calls set(triangle, group) for the triangles of these groups of the mesh, none of which is in two.
+template <class Group, class Set>
+void by_group(const TriangleMesh& mesh, const std::string& key, const std::vector<Group>& groups,
+              const Set& set) {
+  std::vector<const std::string*> from(static_cast<std::size_t>(mesh.triangle_count()), nullptr);
+  for (const Group& group : groups) {
+    const std::vector<int> triangles = internal::triangles_of_group(mesh, group.group);
     if (triangles.empty()) {
       Names known;
-      for (const VertexGroup& one : cloth.mesh.groups) known.push_back(one.name);
-      throw InputError("warp: the mesh has no faces in a group '" + group.group + "'; " +
+      for (const VertexGroup& one : mesh.groups) known.push_back(one.name);
+      throw InputError(key + ": the mesh has no faces in a group '" + group.group + "'; " +
                        suggestion(group.group, known));
     }
     for (int t : triangles) {
       const auto k = static_cast<std::size_t>(t);
       if (from[k])
-        throw InputError("warp: triangle " + std::to_string(t + 1) + " is in the groups '" + *from[k] +
+        throw InputError(key + ": triangle " + std::to_string(t + 1) + " is in the groups '" + *from[k] +
                          "' and '" + group.group + "'; name one of them");
       from[k] = &group.group;
-      warps[k] = group.direction;
+      set(k, group);
     }
   }
+}
+
+// The warp of each triangle: that of its group, else that of the cloth.
+std::vector<Vec3> warps_of(const ClothPart& part, const Cloth& cloth) {
+  if (cloth.model != ClothModel::woven) return {};
+  std::vector<Vec3> warps(static_cast<std::size_t>(cloth.mesh.triangle_count()),
+                          part.warp.value_or(Vec3::Zero()));
+  by_group(cloth.mesh, "warp", part.group_warps,
+           [&](std::size_t t, const GroupWarp& group) { warps[t] = group.direction; });
   return warps;
 }
 
-// Where the cloth starts: off its mesh by its imperfection.
-std::vector<Vec3> start_of(const Cloth& cloth) {
+// The layer of each triangle in the same way; unset where none is given.
+using Layers = std::vector<std::optional<int>>;
+Layers layers_of(const std::optional<SelfContactOptions>& options, const TriangleMesh& mesh) {
+  Layers layers(static_cast<std::size_t>(mesh.triangle_count()));
+  if (!options) return layers;
+  std::fill(layers.begin(), layers.end(), options->layer);
+  by_group(mesh, "layer", options->group_layers,
+           [&](std::size_t t, const SelfContactOptions::Group& group) { layers[t] = group.layer; });
+  return layers;
+}
+
+// Where the cloth starts: off its mesh by its imperfection, and by its layers. A vertex of several layers belongs to the
+// lowest.
+std::vector<Vec3> start_of(const Cloth& cloth, const Layers& layers) {
   std::vector<Vec3> positions = cloth.mesh.positions;
-  if (cloth.imperfection == 0) return positions;
-  const std::vector<Vec3> moved = imperfection(cloth.mesh, cloth.rest, cloth.imperfection);
-  for (std::size_t v = 0; v < positions.size(); ++v) positions[v] += moved[v];
+  if (cloth.imperfection > 0) {
+    const std::vector<Vec3> moved = imperfection(cloth.mesh, cloth.rest, cloth.imperfection);
+    for (std::size_t v = 0; v < positions.size(); ++v) positions[v] += moved[v];
+  }
+  constexpr double apart = 5e-6;  // m
+  std::vector<std::optional<int>> lowest(positions.size());
+  for (std::size_t t = 0; t < layers.size(); ++t)
+    for (int v : cloth.mesh.triangles[t])
+      if (layers[t] && (!lowest[v] || *layers[t] < *lowest[v])) lowest[v] = layers[t];
+  if (std::none_of(lowest.begin(), lowest.end(), [](const auto& layer) { return layer.has_value(); }))
+    return positions;
+  const std::vector<Vec3> normals = vertex_normals(cloth.mesh);
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    if (lowest[v]) positions[v] += apart * *lowest[v] * normals[v];
   return positions;
 }
 
@@ -191,9 +223,10 @@ Cloth& Assembly::add(ClothPart part) {
   for (const Triangle& t : cloth.mesh.triangles)
     faces_.push_back({{first + t[0], first + t[1], first + t[2]},
                       cloth.fabric.stretch_spring.value_or(mean_stretch(cloth.fabric))});
+  const Layers layers = layers_of(part.self_contact, cloth.mesh);
   if (part.self_contact)
-    meet(cloth, *part.self_contact, cloth.mesh.triangles, [&](int vertex) { return first + vertex; });
-  const std::vector<Vec3> positions = start_of(cloth);
+    meet(cloth, *part.self_contact, cloth.mesh.triangles, layers, [&](int vertex) { return first + vertex; });
+  const std::vector<Vec3> positions = start_of(cloth, layers);
   return take(std::move(cloth), positions, masses);
 }
 
@@ -235,20 +268,26 @@ Cloth& Assembly::add(SoftPart part) {
     faces_.push_back({{particle(0), particle(1), particle(2)}, stiffness});
   }
   if (part.self_contact)
-    meet(cloth, *part.self_contact, surface.triangles, [&](int v) { return first + on_surface[v]; });
+    meet(cloth, *part.self_contact, surface.triangles,
+         Layers(surface.triangles.size(), part.self_contact->layer),
+         [&](int v) { return first + on_surface[v]; });
   return take(std::move(cloth), positions, masses);
 }
 
 // Lets the triangles of the next cloth take part in contact of cloth and cloth.
 template <class Particle>
 void Assembly::meet(const Cloth& cloth, const SelfContactOptions& options,
-                    const std::vector<Triangle>& triangles, const Particle& particle) {
+                    const std::vector<Triangle>& triangles, const std::vector<std::optional<int>>& layers,
+                    const Particle& particle) {
   check_self_contact(cloth, options);
-  for (const Triangle& t : triangles)
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    const Triangle& t = triangles[k];
     self_.push_back({{particle(t[0]), particle(t[1]), particle(t[2])},
                      options.thickness,
                      options.friction,
-                     static_cast<int>(cloths.size())});
+                     static_cast<int>(cloths.size()),
+                     layers[k]});
+  }
 }
 
 void Assembly::set_friction(std::size_t k, std::size_t l, double friction) {

@@ -68,7 +68,7 @@ struct Assembly {
 
   template <class Particle>
   void meet(const Cloth& cloth, const SelfContactOptions& options, const std::vector<Triangle>& triangles,
-            const Particle& particle);
+            const std::vector<std::optional<int>>& layers, const Particle& particle);
   Cloth& take(Cloth cloth, const std::vector<Vec3>& positions, const std::vector<double>& masses);
   // Adds the forces of a part, as far as it has been sewn, and notes its edges.
   void connect(Cloth& cloth, Forces& forces) const;

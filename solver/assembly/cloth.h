@@ -33,6 +33,14 @@ enum class ClothModel {
 struct SelfContactOptions {
   double thickness = 1e-3;  // m: two layers rest at the mean of their thicknesses
   double friction = 0.3;    // mu: between two cloths the root of the product of both
+  // What is worn over what, from the inside out (SelfFace::layer), of a cloth or of groups of its mesh. A layer starts
+  // 5 um farther out than the one below it, so that sheets at one place have an order, too.
+  std::optional<int> layer = {};
+  struct Group {
+    std::string group;
+    int layer;
+  };
+  std::vector<Group> group_layers = {};
 };
 
 struct ClothPart {

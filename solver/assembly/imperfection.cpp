@@ -29,24 +29,16 @@ double waves_at(const Vec3& q) {
 }  // namespace
 
 std::vector<Vec3> imperfection(const TriangleMesh& mesh, const TriangleMesh& rest, double amplitude) {
-  std::vector<Vec3> normals(mesh.positions.size(), Vec3::Zero()), at(mesh.positions.size(), Vec3::Zero());
+  const std::vector<Vec3> normals = vertex_normals(mesh);
+  std::vector<Vec3> at(mesh.positions.size(), Vec3::Zero());
   const Eigen::AlignedBox3d box = box_of(rest.positions, rest.triangles);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Triangle &corners = mesh.triangles[t], &of_rest = rest.triangles[t];
-    const auto place = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(corners[k])]; };
-    const Vec3 normal = twice_area_normal(place(0), place(1), place(2));
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto vertex = static_cast<std::size_t>(corners[k]);
-      normals[vertex] += normal;
-      at[vertex] = rest.positions[static_cast<std::size_t>(of_rest[k])];
-    }
-  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) at[mesh.triangles[t][k]] = rest.positions[rest.triangles[t][k]];
   std::vector<Vec3> moved(mesh.positions.size(), Vec3::Zero());
   const double L = box.isEmpty() ? 0 : box.diagonal().norm();
   if (!(L > 0) || amplitude == 0) return moved;
   for (std::size_t v = 0; v < moved.size(); ++v)
-    if (const double length = normals[v].norm(); length > 0)
-      moved[v] = amplitude * waves_at((at[v] - box.min()) / L) / length * normals[v];
+    moved[v] = amplitude * waves_at((at[v] - box.min()) / L) * normals[v];
   return moved;
 }
 

@@ -103,7 +103,7 @@ class Bdf::ContactSolve {
   }
 
   void bodies_moved() {
-    if (bdf_.k().order_2() || !contacts_.touching_faces().empty()) linearise();
+    if (bdf_.k().order_2() || contacts_.springs_on_bodies()) linearise();
   }
 
  private:

@@ -54,7 +54,7 @@ bool settle_contacts(ContactStep& contacts, const StepOptions& options, Attempt&
     if (!contacts.holds_anything()) return true;
     const Stopwatch watch(report.collide_ms);
     const ContactTrial trial = attempt.trial();
-    contacts.receive(trial.v, trial.r);
+    contacts.receive(trial.v, trial.r, trial.x);
     if (!contacts.meets_anything() || !attempt.worth_settling()) return true;
     attempt.release();
     const ContactImbalance found = contacts.imbalance(trial.v, trial.r, trial.x);

@@ -82,6 +82,9 @@ void StepHistory::mark_touching(const ContactStep& contacts) {
   for (const FaceContact& c : contacts.touching_faces())
     if (c.active)
       for (int i : c.particles) touched_[i] = 1;
+  for (const SelfContact& c : contacts.touching_cloth())
+    for (std::size_t k = 0; k < 4; ++k)
+      if (c.body >= 0 && c.active && c.weights[k] != 0) touched_[c.particles[k]] = 1;
 }
 
 }  // namespace drape
