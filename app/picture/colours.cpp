@@ -39,8 +39,8 @@ constexpr std::array<Pixel, 9> viridis = {{{68, 1, 84},
                                            {173, 220, 48},
                                            {253, 231, 37}}};
 
-constexpr std::array<Pixel, 3> touches = {
-    {{200, 200, 200}, {230, 159, 0}, {0, 114, 178}}};  // as Touch counts
+constexpr std::array<Pixel, touch_names.size()> touches = {
+    {{200, 200, 200}, {230, 159, 0}, {0, 114, 178}, {0, 158, 115}, {204, 121, 167}}};  // as Touch counts
 constexpr Pixel unknown = {170, 170, 170};
 
 template <std::size_t N>
@@ -86,7 +86,8 @@ std::optional<Field> field_named(const std::string& name) {
 
 Pixel colour_of(const Scale& scale, double value) {
   if (!std::isfinite(value)) return unknown;
-  if (scale.field == Field::contact) return touches[std::clamp(std::lround(value), 0L, 2L)];
+  if (scale.field == Field::contact)
+    return touches[std::clamp(std::lround(value), 0L, static_cast<long>(touches.size()) - 1)];
   const double share = (value - scale.low) / (scale.high - scale.low);
   return scale.field == Field::strain ? between(red_blue, share) : between(viridis, share);
 }

@@ -2,7 +2,7 @@
 //   cloths   Okabe & Ito 2008, colours that everybody can tell apart
 //   strain   from blue (compressed) over white to red (stretched), ColorBrewer's RdBu; symmetric about 0
 //   speed    viridis, from 0
-//   contact  free, slides, sticks: grey, orange, blue
+//   contact  free, slides, sticks on a body: grey, orange, blue; on cloth: green; stopped: pink
 #pragma once
 
 #include <Eigen/Core>

@@ -7,6 +7,7 @@
 
 #include "app/base/words.h"
 #include "app/picture/text.h"
+#include "app/recording/touch.h"
 
 namespace drape::app::drawing {
 namespace {
@@ -18,7 +19,7 @@ void fill(Image& image, int x0, int y0, int x1, int y1, const Pixel& colour) {
 }
 
 void draw_words(Image& image, const PixelBox& strip, const Scale& scale, int size) {
-  const std::vector<std::string> words = {"free", "slides", "sticks"};  // as Touch counts
+  const std::vector<std::string> words(touch_names.begin(), touch_names.end());
   const int gap = size / 2, after = 3 * size / 2;
   int width = -after;
   for (const std::string& word : words) width += size + gap + text_width(word, size) + after;

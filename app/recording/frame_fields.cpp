@@ -29,13 +29,26 @@ FrameFields::FrameFields(const std::filesystem::path& folder, const Cloth& cloth
       contact_(field_path(folder, cloth.name, "contact"), NpyWriter::Kind::byte,
                {cloth.mesh.vertex_count()}) {}
 
+void FrameFields::mark_touches(const Constraints& constraints, int particles) {
+  particle_contact_.assign(static_cast<std::size_t>(particles), 0);
+  const auto mark = [&](int particle, Touch touch) {
+    particle_contact_[particle] = static_cast<std::uint8_t>(touch);
+  };
+  for (const SelfContact& contact : constraints.self().pushed())
+    for (std::size_t k = 0; k < 4; ++k)
+      if (contact.before > 0 && contact.weights[k] != 0)
+        mark(contact.particles[k], contact.body < 0       ? Touch::cloth
+                                   : contact.is_sliding() ? Touch::slides
+                                                          : Touch::sticks);
+  for (const Contact& contact : constraints.contacts())
+    if (contact.active()) mark(contact.particle, contact.grip == Grip::stick ? Touch::sticks : Touch::slides);
+  for (int i = 0; i < particles; ++i)
+    if (constraints.self().is_stopped(i)) mark(i, Touch::stopped);
+}
+
 void FrameFields::add(const Cloth& cloth, const State& state, const Constraints& constraints) {
   particle_strains(cloth, state.x, particle_strain_);
-  particle_contact_.assign(static_cast<std::size_t>(state.particles()), 0);
-  for (const Contact& contact : constraints.contacts())
-    if (contact.active())
-      particle_contact_[contact.particle] =
-          static_cast<std::uint8_t>(contact.grip == Grip::stick ? Touch::sticks : Touch::slides);
+  mark_touches(constraints, state.particles());
 
   const int vertices = cloth.embedding.vertices();
   std::vector<float> velocity, strain;

@@ -2,7 +2,7 @@
 //   fields/NAME.velocity.npy   float32 (frames, n, 3)   m/s
 //   fields/NAME.strain.npy     float32 (frames, n)      what is stretched or compressed most at the vertex: of woven
 //                                                    cloth a principal strain of a triangle, else an edge's l / L - 1
-//   fields/NAME.contact.npy    uint8   (frames, n)      0 free, 1 slides, 2 sticks
+//   fields/NAME.contact.npy    uint8   (frames, n)      0 free, 1 slides, 2 sticks on a body, 3 on cloth, 4 stopped
 // A vertex that lies between several particles has the strain and the contact of the particle with the
 // largest weight.
 #pragma once
@@ -23,6 +23,8 @@ class FrameFields {
   void keep();
 
  private:
+  void mark_touches(const Constraints& constraints, int particles);
+
   NpyWriter velocity_, strain_, contact_;
   std::vector<double> particle_strain_;
   std::vector<std::uint8_t> particle_contact_;

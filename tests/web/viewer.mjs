@@ -117,7 +117,7 @@ test("scrubbing shows another moment", async () => {
 
 test("every colouring changes pixels and has its legend", async () => {
   await seek(20);
-  for (const [mode, legend] of [["strain", /Strain \[%\]/], ["speed", /Speed \[m\/s\]/], ["contact", /Contact\s+free\s*slides\s*sticks/]]) {
+  for (const [mode, legend] of [["strain", /Strain \[%\]/], ["speed", /Speed \[m\/s\]/], ["contact", /Contact\s+free\s*slides\s*sticks\s*on cloth\s*stopped/]]) {
     const changed = await differing(() => page.locator(`#colour-${mode} + span`).click());
     assert.ok(changed > 1000, `${mode}: ${changed} pixels`);
     assert.match(await page.locator("#legend").innerText(), legend);
@@ -205,7 +205,7 @@ test("a click takes a vertex, and it is where the PC2 file has it", async () => 
       assert.ok(Math.abs(shown[c] - x) <= step[c] / 2 + decimals + 1e-7, `frame ${k}: ${shown} for ${pc2.position(k, nearest.vertex)}`));
   }
   const values = await page.locator("#vertex-values").innerText();
-  for (const line of [/speed \[m\/s\]\s+[\d.e-]+/, /strain \[%\]\s+-?[\d.e-]+/, /contact\s+(free|slides|sticks)/]) assert.match(values, line);
+  for (const line of [/speed \[m\/s\]\s+[\d.e-]+/, /strain \[%\]\s+-?[\d.e-]+/, /contact\s+(free|slides|sticks|on cloth|stopped)/]) assert.match(values, line);
   await page.keyboard.press("Escape");
   assert.equal(await page.locator("#vertex-values").isVisible(), false);
 });

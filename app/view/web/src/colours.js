@@ -17,8 +17,8 @@ function table(colour_at) {
   return out;
 }
 
-const contact_names = ["free", "slides", "sticks"];
-const contact_colours = ["#b9bec6", "#e69f00", "#0072b2"]; // of Okabe and Ito: told apart by everyone
+const contact_names = ["free", "slides", "sticks", "on cloth", "stopped"];
+const contact_colours = ["#b9bec6", "#e69f00", "#0072b2", "#009e73", "#cc79a7"]; // of Okabe and Ito: told apart by everyone
 
 export const modes = {
   plain: { label: "Plain" },
