@@ -275,6 +275,13 @@ void add_untangle(CLI::App& app, int& exit_code) {
   option("--fabric", words->fabric, "NAME", "see 'drape list' (cotton-poplin), or a fabric file (.toml)");
   option("--thickness", words->thickness, "LENGTH", "how far apart layers come (the fabric's, else 1 mm)");
   option("--scale", words->scale, "X", "of the mesh, such as 0.01 for files in cm; it is written as it was");
+  command
+      ->add_option("--layers", words->layers,
+                   "groups of the mesh from the inside out, such as shirt,pocket: of two that cross the "
+                   "outer one comes out "
+                   "where the normals of the inner one point")
+      ->type_name("GROUP,...")
+      ->delimiter(',');
   option("--duration", words->duration, "TIME", "given up after so much simulated time (10 s)");
   command->add_flag("--quiet", words->quiet, "nothing but errors");
   command->footer(

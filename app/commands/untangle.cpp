@@ -31,6 +31,14 @@ Scene weightless(const UntangleWords& words) {
   cloth.members["rest_angle"] = text("mesh");
   cloth.members["imperfection"] = text("0 m");
   cloth.members["self_contact"] = parse_toml_value("true", label);
+  if (!words.layers.empty()) {
+    Node layers = Node::of_table(label);
+    for (std::size_t k = 0; k < words.layers.size(); ++k) {
+      const auto added = layers.members.emplace(words.layers[k], parse_toml_value(std::to_string(k), label));
+      if (!added.second) throw InputError("--layers: names '" + one_line(words.layers[k]) + "' twice");
+    }
+    cloth.members["layer"] = std::move(layers);
+  }
   if (!words.scale.empty()) cloth.members["scale"] = parse_toml_value(words.scale, "--scale");
   if (!words.thickness.empty()) cloth.members["thickness"] = parse_toml_value(words.thickness, "--thickness");
   root.members["simulation"] = std::move(simulation);

@@ -3,11 +3,14 @@
 
 #include <string>
 
+#include "mesh/base/words.h"
+
 namespace drape::app {
 
 struct UntangleWords {
   std::string mesh, out, fabric = "cotton-poplin";
   std::string scale, thickness, duration;  // as on the command line; empty when not given
+  Names layers;                            // groups of the mesh, from the inside out
   bool quiet = false;
 };
 

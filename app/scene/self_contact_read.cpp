@@ -17,9 +17,41 @@ void read_switch(Table& table, bool& self_contact, SelfContactOptions& self) {
       "product of both, unless [[pair]] says otherwise");
 }
 
+void read_layer(Table& table, SelfContactOptions& self) {
+  const Node* const node = table.take(
+      "layer", "a whole number ≥ 0, or a table of them by group",
+      {"with self_contact: what is worn over what, from the inside out. Of two layers that cross at the "
+       "start the higher one comes out on the side where the normals of the lower one point; by group: "
+       "{ shirt = 1, pocket = 2 }",
+       "no order: the lighter side gives way"});
+  if (!node) return;
+  const auto number = [](const Node& one) {
+    if (one.kind != Node::Kind::integer || one.integer < 0 || one.integer > 1000)
+      throw InputError("expected a whole number from 0 to 1000");
+    return static_cast<int>(one.integer);
+  };
+  if (node->kind != Node::Kind::table) {
+    try {
+      self.layer = number(*node);
+    } catch (const InputError& error) {
+      table.fail("layer", error.what());
+    }
+    return;
+  }
+  const Table groups = table.inner("layer");
+  if (node->members.empty()) table.fail("layer", "names no group; expected { pocket = 2 }");
+  for (const auto& [name, value] : node->members) {
+    try {
+      self.group_layers.push_back({name, number(value)});
+    } catch (const InputError& error) {
+      groups.fail(name, error.what());
+    }
+  }
+}
+
 void require_switch(const Table& table) {
   if (table.has("self_contact")) return;
-  for (const char* key : {"thickness", "friction"})
+  for (const char* key : {"thickness", "friction", "layer"})
     if (table.has(key)) table.fail(key, "goes with self_contact = true");
 }
 
@@ -27,6 +59,7 @@ void require_switch(const Table& table) {
 
 void read_self_contact(Table& table, ClothEntry& cloth) {
   read_switch(table, cloth.self_contact, cloth.self);
+  read_layer(table, cloth.self);
   cloth.self.thickness = cloth.fabric_record.thickness.value_or(cloth.self.thickness);
   require_switch(table);
 }

@@ -47,14 +47,16 @@ void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
   }
 }
 
-// Where a body that is a mesh comes through a cloth between its vertices. Of a cloth with vertices inside more is said already.
+// Where a body that is a mesh comes through a cloth between its vertices. Of a cloth with vertices inside that is told already.
 void warn_of_crossed_bodies(const Scene& scene, Simulation& simulation) {
   for (const Cloth& cloth : simulation.cloths)
     for (const MovingBody& body : simulation.constraints->bodies()) {
+      if (!body.surface()) continue;
+      constexpr double negligible = 1e-9;  // m
       const std::vector<Vec3> own = cloth.embedding.positions(simulation.state.x);
-      const bool inside =
-          std::any_of(own.begin(), own.end(), [&](const Vec3& x) { return body.distance(x) < 0; });
-      if (!body.surface() || inside) continue;
+      if (std::any_of(own.begin(), own.end(),
+                      [&](const Vec3& x) { return body.distance(x) < -negligible - cloth.imperfection; }))
+        continue;
       std::vector<Vec3> places = own;
       std::vector<Triangle> triangles = cloth.mesh.triangles;
       const TriangleMesh& mesh = body.surface()->mesh();
@@ -70,8 +72,7 @@ void warn_of_crossed_bodies(const Scene& scene, Simulation& simulation) {
           body_name(body.obstacle(), scene.obstacles[body.number()].name) + ", but " +
           counted(crossing_count(contours), "pair") + " of their triangles cross, as at (" +
           rounded(at[0], 4) + ", " + rounded(at[1], 4) + ", " + rounded(at[2], 4) +
-          ") m: the body is not kept out of the cloth there before they are apart; move the cloth or "
-          "subdivide it");
+          ") m: the body may pass through the cloth there; move the cloth, or subdivide it");
     }
 }
 
