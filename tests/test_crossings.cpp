@@ -9,6 +9,7 @@
 #include "mesh/base/predicates.h"
 #include "mesh/distance/triangle_crossings.h"
 #include "mesh/obj/obj.h"
+#include "mesh/obj/obj_groups.h"
 #include "mesh/triangles/generate.h"
 #include "tests/folder.h"
 #include "tests/shapes.h"
@@ -270,6 +271,31 @@ TEST_CASE("check tells the crossings of a mesh, of a scene and of a run", "[cros
   CHECK(steps.substr(steps.find_last_of(',', steps.size() - 2)) == ",0\n");
   CHECK(steps.find("," + at_end + ",0,0\n") != std::string::npos);
   CHECK(crossings["max"] >= crossings["end"]);
+
+  // What is marked is what crosses, and nothing else has changed.
+  const std::size_t marked_pairs = crossing(two.positions, two.triangles).size();
+  CHECK(marked_pairs > 10);
+  const Outcome marking = folder.drape("check two.obj --mark marked");
+  INFO(marking.out << marking.err);
+  CHECK(marking.exit_code == 0);
+  CHECK(marking.out.find("wrote marked/two.obj: ") != std::string::npos);
+  const TriangleMesh marked = read_obj(folder.path / "marked/two.obj");
+  CHECK(marked.positions == two.positions);
+  CHECK(marked.triangles == two.triangles);
+  std::set<int> crossed;
+  for (const TrianglePair& pair : crossing(two.positions, two.triangles))
+    crossed.insert({pair.first, pair.second});
+  CHECK(triangles_of_group(marked, "crossing") == std::vector<int>(crossed.begin(), crossed.end()));
+  CHECK(folder.drape("check two.obj --mark marked").err.find("--force replaces it") != std::string::npos);
+  CHECK(folder.drape("check two.obj --mark marked --force").exit_code == 0);
+  CHECK(folder.drape("check one.obj --mark none").exit_code == 0);
+  CHECK_FALSE(std::filesystem::exists(folder.path / "none"));
+  CHECK(folder.drape("check scene.toml --mark cloths").exit_code == 0);
+  for (const std::string name : {"upper", "lower"})
+    CHECK_FALSE(triangles_of_group(read_obj(folder.path / "cloths" / (name + ".obj")), "crossing").empty());
+  CHECK(folder.drape("check o --mark end").exit_code == 0);
+  CHECK_FALSE(triangles_of_group(read_obj(folder.path / "end/two.obj"), "crossing").empty());
+  CHECK(folder.drape("check o --mark o --force").exit_code == 2);
 
   const Outcome refused = folder.drape("simulate scene.toml --set simulation.require_clean=true --out p");
   INFO(refused.err);

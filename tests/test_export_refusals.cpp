@@ -138,7 +138,7 @@ TEST_CASE("exports refuse what they cannot do", "[export]") {
   folder.refused("none --to mdd", "none");
   folder.refused("run --to mdd --every 0", "--every");
   folder.write("file", "");
-  folder.refused("run --to mdd -o file", "file: is a file; -o names a folder");
+  folder.refused("run --to mdd -o file", "file: is a file; a folder is needed");
   folder.refused("run --to mdd -o file/below", "file/below: cannot be made: Not a directory");
   CHECK(folder.files().count("file") == 1);
 

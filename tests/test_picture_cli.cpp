@@ -109,6 +109,38 @@ TEST_CASE("colours come with a legend whose ends are those of the map", "[pictur
   CHECK(std::count(plain.pixels.begin(), plain.pixels.end(), ink) == 0);
 }
 
+TEST_CASE("triangles that cross are red, in a run and in a mesh", "[picture]") {
+  const ShortRun shop;
+  const Pixel red = colour_of({Field::crossing, 0, 1}, 1);
+  const auto reds = [&](const std::string& input) {
+    CHECK(shop.drape("picture " + input + " --color crossing --size 320x240 --force -o c.png").exit_code ==
+          0);
+    const Image image = shop.read("c.png");
+    long above = 0;  // the legend has the same colour
+    for (int y = 0; y < 180; ++y)
+      for (int x = 0; x < 320; ++x) {
+        const Pixel p = image.at(x, y);
+        above += p[0] > 90 && p[0] > 2.5 * p[1];
+      }
+    CHECK(std::count(image.pixels.begin() + 320 * 180, image.pixels.end(), red) > 3);
+    return above;
+  };
+  CHECK(reds("o") == 0);
+  CHECK(reds("sheet.obj") == 0);
+  TriangleMesh two = grid(13, 13, 1, 1);
+  const int vertices = two.vertex_count(), triangles = two.triangle_count();
+  for (int v = 0; v < vertices; ++v) {
+    const Vec3 x = two.positions[v];
+    two.positions.emplace_back(x.x() + 0.011, 0.4 * (x.z() + 0.013), x.z());
+  }
+  for (int t = 0; t < triangles; ++t) {
+    const Triangle c = two.triangles[t];
+    two.triangles.push_back({c[0] + vertices, c[1] + vertices, c[2] + vertices});
+  }
+  write_obj(shop.path / "two.obj", two, two.positions);
+  CHECK(reds("two.obj") > 50);
+}
+
 TEST_CASE("a mesh is drawn as a cloth, what comes with it as a body", "[picture]") {
   const Workshop shop;
   CHECK(shop.drape("picture sheet.obj --with ball.obj --view top --size 100x100").out == "wrote sheet.png\n");

@@ -68,6 +68,48 @@ TEST_CASE("the triangles of a group are those of its faces", "[obj][warp]") {
   CHECK(triangles_of_group(nested, "b") == std::vector<int>{0, 1});
 }
 
+TEST_CASE("faces that are put into a group stand there alone, and all else in the file stays", "[obj]") {
+  using namespace drape::internal;
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\n";
+  const std::vector<std::string> texts = {
+      two_squares, vertices + "f 1 2 4 3\nf 2 5 4\nf 5 6 4\n",
+      vertices + "o whole\ng a b\nf 1 2 4 3\nl 1 5\ng b\nusemtl red\nf 2 5 4\nf 5 6 4\nl 1 6\n",
+      vertices + "g a\nf 1 2 3\no one\nf 2 4 3\ng c\no two\n# between\nf 2 5 4\no three\nf 5 6 4\n"};
+  for (const std::string& text : texts) {
+    const TriangleMesh mesh = parse_obj(text, "m.obj");
+    const std::vector<std::size_t> faces = faces_of_triangles(mesh);
+    for (unsigned chosen = 0; chosen < 1U << mesh.document->face_count(); ++chosen) {
+      std::vector<int> in, out;  // triangles
+      for (int t = 0; t < mesh.triangle_count(); ++t) (chosen >> faces[t] & 1 ? in : out).push_back(t);
+      TriangleMesh marked = mesh;
+      marked.document = std::make_shared<ObjDocument>(with_group(mesh, in, "crossing"));
+      const TriangleMesh read = parse_obj(format_obj(marked, mesh.positions), "read.obj");
+      INFO(format_obj(marked, mesh.positions));
+      CHECK(read.triangles == mesh.triangles);
+      CHECK(read.document->corners == mesh.document->corners);
+      CHECK(triangles_of_group(read, "crossing") == in);
+      for (const VertexGroup& group : mesh.groups) {
+        const bool object = text.find("o " + group.name + "\n") != std::string::npos;
+        const std::vector<int> had = triangles_of_group(mesh, group.name);
+        std::vector<int> left;
+        std::set_difference(had.begin(), had.end(), in.begin(), in.end(), std::back_inserter(left));
+        CHECK(triangles_of_group(read, group.name) == (object ? had : left));
+      }
+      std::size_t next = 0;  // what stood in the file stands there still, in the same order
+      for (const ObjStatement& statement : read.document->statements)
+        if (next < mesh.document->statements.size() && statement == mesh.document->statements[next]) ++next;
+      CHECK(next == mesh.document->statements.size());
+    }
+    TriangleMesh plain = mesh;
+    plain.document.reset();
+    const std::vector<int> one = {1};
+    plain.document = std::make_shared<ObjDocument>(with_group(plain, one, "crossing"));
+    const TriangleMesh read = parse_obj(format_obj(plain, plain.positions), "plain.obj");
+    CHECK(read.triangles == mesh.triangles);
+    CHECK(triangles_of_group(read, "crossing") == one);
+  }
+}
+
 TEST_CASE("each group is as stiff as its own warp says", "[woven][warp]") {
   const TriangleMesh mesh = parse_obj(two_squares, "squares.obj");
   ClothPart along_x = part_of(mesh), along_y = part_of(mesh), both = part_of(mesh);

@@ -3,7 +3,6 @@
 #include <cstdio>
 
 #include "app/base/toml_file.h"
-#include "app/commands/crossings.h"
 #include "app/pattern/pattern_read.h"
 #include "app/scene/fabric_words.h"
 #include "app/scene/load_mesh.h"
@@ -40,7 +39,7 @@ void print_report(const std::string& name, const MeshReport& report) {
 namespace {
 
 // An OBJ file, or a drawing as it is cut with the default edge.
-void check_mesh(const std::filesystem::path& file) {
+void check_mesh(const std::filesystem::path& file, const MarkWords& mark) {
   Names messages;
   const bool drawing = is_pattern(file);
   const TriangleMesh mesh = drawing ? triangulate(read_pattern(file, messages), {}).mesh : read_obj(file);
@@ -50,7 +49,7 @@ void check_mesh(const std::filesystem::path& file) {
   for (const VertexGroup& group : mesh.groups)
     std::printf("  group %s: %s\n", group.name.c_str(),
                 counted(static_cast<long>(group.vertices.size()), "vertex").c_str());
-  print_crossings(file.stem().string(), mesh);
+  print_crossings(file.stem().string(), mesh, mark);
   for (const std::string& message : messages) std::printf("%s\n", one_line(message).c_str());
 }
 
@@ -136,7 +135,7 @@ void print_obstacle(const ObstacleEntry& entry, const Obstacle& o, const Body& b
     std::printf("  %s\n", one_line(described(o.motion, entry.source, middle_of(o.shape), duration)).c_str());
 }
 
-void check_scene(const std::filesystem::path& file) {
+void check_scene(const std::filesystem::path& file, const MarkWords& mark) {
   const Scene scene = read_scene(file, {});
   constexpr bool keep_level_sets = false;  // it changes nothing
   const Simulation simulation = make_simulation(scene, keep_level_sets);
@@ -156,7 +155,7 @@ void check_scene(const std::filesystem::path& file) {
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k)
     print_obstacle(scene.obstacles[k], simulation.constraints->bodies()[k].obstacle(), simulation.bodies[k],
                    s.duration);
-  print_crossings(simulation.cloths, simulation.state.x);
+  print_crossings(simulation.cloths, simulation.state.x, mark);
   for (const std::string& message : simulation.messages) std::printf("%s\n", one_line(message).c_str());
 }
 
@@ -175,31 +174,34 @@ void check_fabric(const std::filesystem::path& file) {
     if (!names->empty()) std::printf("  %s: %s\n", what, one_line(listed(*names)).c_str());
 }
 
-void check_folder(const std::filesystem::path& folder) {
+void check_folder(const std::filesystem::path& folder, const MarkWords& mark) {
   const Recording recording(folder);
   std::printf("%s: %s", folder.c_str(), counted(recording.frames(), "frame").c_str());
   for (const RecordedShape& shape : recording.shapes())
     if (!shape.body)
       std::printf(", %s of %s", shape.name.c_str(), counted(shape.mesh.triangle_count(), "triangle").c_str());
   std::printf("\n");
-  print_crossings(recording);
+  print_crossings(recording, mark);
   for (const std::string& missing : recording.missing()) std::printf("%s\n", one_line(missing).c_str());
 }
 
 }  // namespace
 
-int check_file(const std::filesystem::path& file) {
+int check_file(const std::filesystem::path& file, const MarkWords& mark) {
   if (std::filesystem::is_directory(file)) {
-    check_folder(file);
+    check_folder(file, mark);
     return 0;
   }
   const Node root = file.extension() == ".toml" ? read_toml(file) : Node();
-  if (root.members.contains("area_density"))
+  const bool fabric = root.members.contains("area_density");
+  if (fabric && !mark.folder.empty())
+    throw InputError(file.string() + ": a fabric has no triangles that could cross; leave --mark out");
+  if (fabric)
     check_fabric(file);
   else if (file.extension() == ".toml" && !root.members.contains("panel"))
-    check_scene(file);
+    check_scene(file, mark);
   else
-    check_mesh(file);
+    check_mesh(file, mark);
   return 0;
 }
 

@@ -318,7 +318,7 @@ void add_picture(CLI::App& app, int& exit_code) {
          "a frame of the run from 1, 'last', 'all', or several: 1,5,last (last)");
   option("--view", words->view, "SIDE",
          "front, back, left, right, side, top, or degrees round and above, such as 30,20 (30,20)");
-  option("--color", words->color, "WHAT", "what colours show: strain, speed or contact");
+  option("--color", words->color, "WHAT", "what colours show: strain, speed, contact or crossing");
   option("--size", words->size, "WxH", "of the picture in pixels (1280x960)");
   command->add_flag("--whole", words->whole,
                     "all of the bodies in the picture, not only what is near the cloth");
@@ -368,9 +368,15 @@ void add_check_and_list(CLI::App& app, int& exit_code) {
                                              "validates a scene or a fabric file, examines a mesh, or looks "
                                              "for crossings in a run; changes nothing");
   auto file = std::make_shared<std::string>();
+  auto mark = std::make_shared<MarkWords>();
   check->add_option("FILE", *file, "scene or fabric (.toml), mesh (.obj), or output folder of a run")
       ->required();
-  check->callback([=, &exit_code] { exit_code = check_file(*file); });
+  check
+      ->add_option("--mark", mark->folder,
+                   "writes what crosses into it as OBJ, its faces in the group 'crossing'")
+      ->type_name("FOLDER");
+  check->add_flag("--force", mark->force, "replace files that are there");
+  check->callback([=, &exit_code] { exit_code = check_file(*file, *mark); });
   CLI::App* const list =
       app.add_subcommand("list", "fabrics, shapes, forces, integrators and linear solvers of this build");
   auto which = std::make_shared<std::string>();

@@ -4,12 +4,23 @@
 #include <cstdio>
 
 #include "app/base/words.h"
+#include "app/export/files.h"
 #include "app/simulation/sheets.h"
+#include "mesh/base/errors.h"
+#include "mesh/obj/obj.h"
+#include "mesh/obj/obj_groups.h"
 
 namespace drape::app {
 namespace {
 
 constexpr std::size_t most_told = 5;  // contours that are described
+constexpr const char* group = "crossing";
+
+struct Sheet {
+  std::string name;
+  const TriangleMesh* mesh;
+  std::vector<Vec3> positions;  // m
+};
 
 std::string where(const Vec3& place) {
   return "(" + rounded(place[0], 4) + ", " + rounded(place[1], 4) + ", " + rounded(place[2], 4) + ") m";
@@ -47,6 +58,30 @@ void print(const Sheets& sheets, const char* title = "crossings") {
   print(sheets, contours);
 }
 
+// `parts` are those of `sheets`, in their order.
+void write_marked(const MarkWords& mark, const Sheets& sheets, const std::vector<Sheet>& parts,
+                  const std::filesystem::path& run = {}) {
+  const std::vector<std::vector<int>> crossing = sheets.crossing_triangles();
+  Names names;
+  for (std::size_t k = 0; k < parts.size(); ++k)
+    if (!crossing[k].empty()) names.push_back(parts[k].name + ".obj");
+  if (names.empty()) return;
+  ExportFiles files(mark.folder, names, mark.force, run);
+  std::size_t next = 0;
+  std::string told;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    if (crossing[k].empty()) continue;
+    TriangleMesh mesh = *parts[k].mesh;
+    mesh.document = std::make_shared<ObjDocument>(internal::with_group(mesh, crossing[k], group));
+    files.write(names[next], format_obj(mesh, parts[k].positions));
+    told += one_line("wrote " + (mark.folder / names[next++]).string() + ": " +
+                     counted(static_cast<long>(crossing[k].size()), "triangle") + " in the group " + group) +
+            "\n";
+  }
+  files.keep();
+  std::printf("%s", told.c_str());
+}
+
 // At the end the places are those of the OBJ files, which have all digits.
 Sheets sheets_of(const Recording& recording, int frame) {
   Sheets sheets;
@@ -59,15 +94,24 @@ Sheets sheets_of(const Recording& recording, int frame) {
 
 }  // namespace
 
-void print_crossings(const std::string& name, const TriangleMesh& mesh) {
+void print_crossings(const std::string& name, const TriangleMesh& mesh, const MarkWords& mark) {
   Sheets sheets;
   sheets.add(name, mesh.triangles, mesh.positions);
   print(sheets);
+  if (!mark.folder.empty()) write_marked(mark, sheets, {{name, &mesh, mesh.positions}});
 }
 
-void print_crossings(const std::vector<Cloth>& cloths, const VecX& x) { print(Sheets(cloths, x)); }
+void print_crossings(const std::vector<Cloth>& cloths, const VecX& x, const MarkWords& mark) {
+  const Sheets sheets(cloths, x);
+  print(sheets);
+  if (mark.folder.empty()) return;
+  std::vector<Sheet> parts;
+  parts.reserve(cloths.size());
+  for (const Cloth& cloth : cloths) parts.push_back({cloth.name, &cloth.mesh, cloth.embedding.positions(x)});
+  write_marked(mark, sheets, parts);
+}
 
-void print_crossings(const Recording& recording) {
+void print_crossings(const Recording& recording, const MarkWords& mark) {
   const int last = recording.frames() - 1;
   int most = 0, worst = 0;
   for (int frame = 0; frame < last; ++frame) {
@@ -80,7 +124,13 @@ void print_crossings(const Recording& recording) {
   if (most > 0)
     std::printf("crossings before the end: at most %d, in frame %d (%s s)\n", most, worst + 1,
                 rounded(recording.time(worst), 4).c_str());
-  print(sheets_of(recording, last), last > 0 ? "crossings at the end" : "crossings");
+  const Sheets sheets = sheets_of(recording, last);
+  print(sheets, last > 0 ? "crossings at the end" : "crossings");
+  if (mark.folder.empty()) return;
+  std::vector<Sheet> parts;
+  for (const RecordedShape& shape : recording.shapes())
+    if (!shape.body) parts.push_back({shape.name, &shape.mesh, shape.mesh.positions});
+  write_marked(mark, sheets, parts, recording.folder());
 }
 
 }  // namespace drape::app

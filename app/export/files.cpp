@@ -13,7 +13,7 @@ ExportFiles::ExportFiles(fs::path folder, const Names& names, bool force, const 
     : folder_(std::move(folder)), run_(run), force_(force) {
   std::error_code error;
   if (fs::exists(folder_, error) && !fs::is_directory(folder_, error))
-    throw InputError(folder_.string() + ": is a file; -o names a folder");
+    throw InputError(folder_.string() + ": is a file; a folder is needed");
   for (const std::string& name : names) {
     const fs::path path = folder_ / name;
     if (!names_.insert(name).second)

@@ -18,7 +18,7 @@ class ExportFiles {
  public:
   // `names` are all the files that will be written into the folder. The folder is made when it is not there.
   // Throws InputError "out/sheet.mdd: is there already; --force replaces it", or when two names are equal.
-  // `run` is the folder that is read: what the run itself wrote there is never replaced.
+  // `run` is the folder of a run that is read, if any: what the run itself wrote there is never replaced.
   ExportFiles(std::filesystem::path folder, const Names& names, bool force, const std::filesystem::path& run);
   // Leaves the folder as it was when keep() was not called.
   ~ExportFiles();

@@ -41,6 +41,8 @@ constexpr std::array<Pixel, 9> viridis = {{{68, 1, 84},
 
 constexpr std::array<Pixel, touch_names.size()> touches = {
     {{200, 200, 200}, {230, 159, 0}, {0, 114, 178}, {0, 158, 115}, {204, 121, 167}}};  // as Touch counts
+constexpr std::array crossing_names = {"crosses nothing", "crosses"};
+constexpr std::array<Pixel, crossing_names.size()> crossings = {{{200, 200, 200}, {214, 39, 40}}};
 constexpr Pixel unknown = {170, 170, 170};
 
 template <std::size_t N>
@@ -78,16 +80,23 @@ Pixel pixel(const Light& light) {
 Pixel cloth_colour(int cloth) { return cloths[static_cast<std::size_t>(cloth) % cloths.size()]; }
 
 std::optional<Field> field_named(const std::string& name) {
-  if (name == "strain") return Field::strain;
-  if (name == "speed") return Field::speed;
-  if (name == "contact") return Field::contact;
+  for (std::size_t k = 0; k < field_names.size(); ++k)
+    if (name == field_names[k]) return static_cast<Field>(k);
   return std::nullopt;
+}
+
+std::span<const char* const> words_of(Field field) {
+  if (field == Field::contact) return touch_names;
+  if (field == Field::crossing) return crossing_names;
+  return {};
 }
 
 Pixel colour_of(const Scale& scale, double value) {
   if (!std::isfinite(value)) return unknown;
-  if (scale.field == Field::contact)
-    return touches[std::clamp(std::lround(value), 0L, static_cast<long>(touches.size()) - 1)];
+  if (const std::size_t words = words_of(scale.field).size(); words > 0) {
+    const long word = std::clamp(std::lround(value), 0L, static_cast<long>(words) - 1);
+    return scale.field == Field::contact ? touches[word] : crossings[word];
+  }
   const double share = (value - scale.low) / (scale.high - scale.low);
   return scale.field == Field::strain ? between(red_blue, share) : between(viridis, share);
 }

@@ -3,10 +3,13 @@
 //   strain   from blue (compressed) over white to red (stretched), ColorBrewer's RdBu; symmetric about 0
 //   speed    viridis, from 0
 //   contact  free, slides, sticks on a body: grey, orange, blue; on cloth: green; stopped: pink
+//   crossing triangles that cross none, or another one: grey, red
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "app/picture/image.h"
@@ -23,8 +26,11 @@ inline constexpr Pixel body_colour = {208, 206, 202}, body_mark = {150, 148, 146
 
 Pixel cloth_colour(int cloth);  // cloth counts from 0; the colours repeat after seven
 
-enum class Field { strain, speed, contact };
+enum class Field { strain, speed, contact, crossing };
+inline constexpr std::array field_names = {"strain", "speed", "contact", "crossing"};
 std::optional<Field> field_named(const std::string& name);
+// What the values 0, 1, ... of a field mean; empty when it is measured, not counted.
+std::span<const char* const> words_of(Field field);
 
 // The values at the two ends of a colour map. For contact they are the numbers of Touch.
 struct Scale {

@@ -7,7 +7,6 @@
 
 #include "app/base/words.h"
 #include "app/picture/text.h"
-#include "app/recording/touch.h"
 
 namespace drape::app::drawing {
 namespace {
@@ -19,7 +18,8 @@ void fill(Image& image, int x0, int y0, int x1, int y1, const Pixel& colour) {
 }
 
 void draw_words(Image& image, const PixelBox& strip, const Scale& scale, int size) {
-  const std::vector<std::string> words(touch_names.begin(), touch_names.end());
+  const std::span<const char* const> names = words_of(scale.field);
+  const std::vector<std::string> words(names.begin(), names.end());
   const int gap = size / 2, after = 3 * size / 2;
   int width = -after;
   for (const std::string& word : words) width += size + gap + text_width(word, size) + after;
@@ -38,7 +38,7 @@ void draw_words(Image& image, const PixelBox& strip, const Scale& scale, int siz
 
 void draw_legend(Image& image, const PixelBox& strip, const Scale& scale, double least, double largest,
                  int size) {
-  if (scale.field == Field::contact) return draw_words(image, strip, scale, size);
+  if (!words_of(scale.field).empty()) return draw_words(image, strip, scale, size);
   const bool strain = scale.field == Field::strain;
   const double unit = strain ? 100 : 1;
   const std::string title = strain ? "strain, % (compressed to " + rounded(unit * least, 3) +

@@ -52,7 +52,7 @@ std::optional<Field> field_asked(const std::string& text) {
   if (text.empty()) return std::nullopt;
   if (const auto field = field_named(text)) return field;
   throw InputError("--color " + text + ": there is nothing of this name to colour by; " +
-                   suggestion(text, {"strain", "speed", "contact"}));
+                   suggestion(text, Names(field_names.begin(), field_names.end())));
 }
 
 std::vector<int> frames_named(const std::string& text, int count, int several, const std::string& where) {

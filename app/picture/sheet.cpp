@@ -6,7 +6,6 @@
 #include "app/picture/legend.h"
 #include "app/picture/render.h"
 #include "app/picture/text.h"
-#include "app/recording/touch.h"
 #include "mesh/base/errors.h"
 #include "mesh/triangles/extent.h"
 
@@ -40,7 +39,8 @@ void for_framed(const Still& still, bool whole, const F& f) {
 
 // The ends are round numbers; beyond them is at most one value of a hundred.
 Scale scale_of(Field field, std::vector<float>& values) {
-  if (field == Field::contact) return {field, 0, static_cast<double>(touch_names.size()) - 1};
+  if (const auto words = words_of(field); !words.empty())
+    return {field, 0, static_cast<double>(words.size()) - 1};
   const std::size_t rank = values.size() * 99 / 100;
   for (float& value : values) value = std::abs(value);
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank), values.end());

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "app/base/interrupt.h"
+#include "app/simulation/sheets.h"
 #include "mesh/obj/obj.h"
 #include "mesh/triangles/extent.h"
 
@@ -27,8 +28,19 @@ RecordedShape file_shape(const std::string& path, bool body) {
   return {std::filesystem::path(path).stem().string(), body, false, read_obj(path)};
 }
 
-const char* name_of(Field field) {
-  return field == Field::strain ? "strain" : field == Field::speed ? "speed" : "contact";
+// 1 at the corners of triangles that cross others, of all cloths.
+void mark_crossings(Still& still) {
+  Sheets sheets;
+  for (const StillPart& part : still.parts)
+    if (!part.body) sheets.add("", *part.triangles, part.positions);
+  std::size_t sheet = 0;
+  const std::vector<std::vector<int>> crossing = sheets.crossing_triangles();
+  for (StillPart& part : still.parts) {
+    if (part.body) continue;
+    part.values.assign(part.positions.size(), 0);
+    for (const int t : crossing[sheet++])
+      for (const int v : (*part.triangles)[t]) part.values[v] = 1;
+  }
 }
 
 }  // namespace
@@ -87,13 +99,15 @@ Still Subject::still(int frame, std::optional<Field> field) const {
     const RecordedShape& shape = recording_->shapes()[k];
     StillPart& part = add(shape, recording_->positions(k, frame));
     if (!sectors_[k].empty()) part.sectors = &sectors_[k];
-    if (field && !shape.body) part.values = values(k, frame, *field);
+    if (field && field != Field::crossing && !shape.body) part.values = values(k, frame, *field);
     coloured = coloured || !part.values.empty();
   }
   for (const RecordedShape& shape : meshes_) add(shape, shape.mesh.positions);
   if (recording_) still.planes = recording_->planes(frame);
-  if (field && !coloured) {
-    const std::string name = name_of(*field);
+  if (field == Field::crossing) {
+    mark_crossings(still);
+  } else if (field && !coloured) {
+    const std::string name = field_names[static_cast<std::size_t>(*field)];
     throw InputError(path_ + (recording_ ? ": frame " + std::to_string(frame + 1) + " has no " + name +
                                                " of its cloths; run it again to record that"
                                          : ": a mesh has no " + name +

@@ -52,6 +52,8 @@ Light Surface::colour(const Piece& piece, int triangle, const Vec3& weights, boo
     }
     return front ? piece.front : piece.back;
   }
+  if (look_.scale->field == Field::crossing)  // all corners of a triangle that crosses another are marked
+    return light(colour_of(*look_.scale, std::min({values[t[0]], values[t[1]], values[t[2]]})));
   if (look_.scale->field == Field::contact) {  // no vertex touches by half
     Eigen::Index nearest = 0;
     weights.maxCoeff(&nearest);

@@ -26,10 +26,27 @@ std::vector<CrossingContour> Sheets::contours() const {
   return crossing_contours(positions_, triangles);
 }
 
-const std::string& Sheets::name_of(int triangle) const {
+std::size_t Sheets::part_of(int triangle) const {
   const auto after = std::upper_bound(parts_.begin(), parts_.end(), triangle,
                                       [](int t, const Part& part) { return t < part.first_triangle; });
-  return std::prev(after)->name;
+  return static_cast<std::size_t>(after - parts_.begin()) - 1;
+}
+
+const std::string& Sheets::name_of(int triangle) const { return parts_[part_of(triangle)].name; }
+
+std::vector<std::vector<int>> Sheets::crossing_triangles() const {
+  std::vector<std::vector<int>> found(parts_.size());
+  for (const CrossingContour& contour : contours())
+    for (const TrianglePair& pair : contour.pairs)
+      for (const int t : {pair.first, pair.second}) {
+        const std::size_t part = part_of(t);
+        found[part].push_back(t - parts_[part].first_triangle);
+      }
+  for (std::vector<int>& triangles : found) {
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  }
+  return found;
 }
 
 }  // namespace drape::app

@@ -23,8 +23,12 @@ class Sheets {
   std::vector<CrossingContour> contours() const;
   int crossings() const { return crossing_count(contours()); }
   const std::string& name_of(int triangle) const;  // of the sheet that has it
+  // For each sheet, in the order in which they were added, its triangles that cross another, ascending.
+  std::vector<std::vector<int>> crossing_triangles() const;
 
  private:
+  std::size_t part_of(int triangle) const;
+
   struct Part {
     std::string name;
     int first_triangle;
