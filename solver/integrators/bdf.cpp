@@ -111,7 +111,12 @@ class Bdf::ContactSolve {
     const LinearReport& linear = bdf_.linear_;
     return linear.residual > 0 ? linear.residual_impulse / linear.residual : bdf_.merit_.weight_impulse();
   }
-  void linearise() { bdf_.linearise(state_, stiffness_, contacts_, report_); }
+  // The point stays where it was. So what the cloth adds is the same but for order 2, whose particles may start anew.
+  void linearise() {
+    if (bdf_.k().order_2()) return bdf_.linearise(state_, stiffness_, contacts_, report_, Assembly::all);
+    bdf_.linearise(state_, stiffness_, contacts_, report_, kept_ ? Assembly::changing : Assembly::keep);
+    kept_ = true;
+  }
 
   Bdf& bdf_;
   const State& state_;
@@ -120,6 +125,7 @@ class Bdf::ContactSolve {
   ContactStep& contacts_;
   StepReport& report_;
   double wanted_, tolerance_;
+  bool kept_ = false;  // what lasts was kept at this point
 };
 
 bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
@@ -127,7 +133,7 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
   for (NewtonLoop newton(options_); newton.next();) {
     if (newton.exhausted()) return fail(report, "no step lowers the energy");
     // A = M + c D + c^2 K,  b = M (v_bar - v) + c (f - K y)                            [BW98, eq. 6 and 18]
-    linearise(state, newton.stiffness(), contacts, report);
+    linearise(state, newton.stiffness(), contacts, report, Assembly::all);
     if (newton.may_stop() && residual(contacts) <= residual_wanted()) break;
     if (!newton.first()) dv_.setZero();
     // Solve S (A dv - b) = 0 within the contacts, until the contacts agree with dv.    [BW98, 5.1 to 5.3]
@@ -175,11 +181,16 @@ ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& repor
   return contacts;
 }
 
-void Bdf::linearise(const State& state, Stiffness stiffness, const ContactStep& contacts,
-                    StepReport& report) {
+void Bdf::linearise(const State& state, Stiffness stiffness, const ContactStep& contacts, StepReport& report,
+                    Assembly assembly) {
+  const Stopwatch watch(report.assemble_ms);
+  if (assembly == Assembly::changing) {
+    A_.assemble_changing({p_.x, p_.v, y_, k().c, stiffness}, b_);
+    merit_.measure(A_.matrix(), p_, k().c);
+    return;
+  }
   history_.update(system_, state, contacts);
   y_ = k().x_bar + k().c * p_.v - p_.x;
-  const Stopwatch watch(report.assemble_ms);
   for_chunks(system_.particles(), [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const auto particle = static_cast<std::size_t>(i);
@@ -187,7 +198,7 @@ void Bdf::linearise(const State& state, Stiffness stiffness, const ContactStep& 
                                                    k().fall[particle] * system_.gravity_acceleration());
     }
   });
-  A_.assemble({p_.x, p_.v, y_, k().c, stiffness}, k().mass, b_);
+  A_.assemble({p_.x, p_.v, y_, k().c, stiffness}, k().mass, b_, assembly == Assembly::keep);
   merit_.measure(A_.matrix(), p_, k().c);
 }
 

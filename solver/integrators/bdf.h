@@ -41,7 +41,10 @@ class Bdf final : public Integrator {
 
   bool attempt(State& state, const Piece& piece, StepReport& report);
   ContactStep begin(const State& state, const Piece& piece, StepReport& report);
-  void linearise(const State& state, Stiffness stiffness, const ContactStep& contacts, StepReport& report);
+  // Assembles all at (x, v); the same, and keeps what lasts; or only what comes and goes, after it was kept there.
+  enum class Assembly { all, keep, changing };
+  void linearise(const State& state, Stiffness stiffness, const ContactStep& contacts, StepReport& report,
+                 Assembly assembly);
   double residual(ContactStep& contacts);  // N s
   double residual_wanted() const;          // N s
   bool makes_energy(const State& start, const ContactStep& contacts, double h) const;

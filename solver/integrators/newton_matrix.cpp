@@ -17,10 +17,27 @@ bool NewtonMatrix::follow_system() {
   return true;
 }
 
-void NewtonMatrix::assemble(const Linearisation& at, const std::vector<double>& masses, VecX& b) {
+void NewtonMatrix::assemble(const Linearisation& at, const std::vector<double>& masses, VecX& b, bool keep) {
   A_->set_to_mass(masses);
+  add(at, false, b);
+  if (keep) {
+    A_->keep();
+    kept_b_ = b;
+  }
+  add(at, true, b);
+}
+
+void NewtonMatrix::assemble_changing(const Linearisation& at, VecX& b) {
+  A_->take_kept();
+  b = kept_b_;
+  add(at, true, b);
+}
+
+// Adds the forces whose stencils come and go, or the others.
+void NewtonMatrix::add(const Linearisation& at, bool changing, VecX& b) {
   for (const auto& force : system_.forces())
-    force->add_linearised(at.x, at.v, at.y, at.c, at.stiffness, *A_, b);
+    if (force->changes() == changing)
+      force->add_linearised(at.x, at.v, at.y, at.c, at.stiffness, *A_, b);
 }
 
 LinearReport NewtonMatrix::solve(const VecX& b, const Filter& filter, const LinearOptions& options,

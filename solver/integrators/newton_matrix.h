@@ -25,8 +25,11 @@ class NewtonMatrix {
 
   // True when the system has another pattern than before: what has its size must then be made anew.
   bool follow_system();
-  // Assembles A from these masses [kg], and adds c (f - K y) to b.
-  void assemble(const Linearisation& at, const std::vector<double>& masses, VecX& b);
+  // Assembles A from these masses [kg], and adds c (f - K y) to b. What lasts, of the forces whose stencils do not come
+  // and go, is kept when `keep` is true.
+  void assemble(const Linearisation& at, const std::vector<double>& masses, VecX& b, bool keep = false);
+  // The same at the point at which it was kept, anew for the forces whose stencils come and go alone. b is set.
+  void assemble_changing(const Linearisation& at, VecX& b);
   // Sets the blocks c D of what rubs on single particles, in place of those set before: particle(k) and
   // block(k) for every k < count.
   template <class Particle, class Block>
@@ -48,6 +51,7 @@ class NewtonMatrix {
   std::string stiffest_force(int particle, const Linearisation& at);
 
  private:
+  void add(const Linearisation& at, bool changing, VecX& b);
   int row(int particle) const { return A_->pattern().row_of()[particle]; }
 
   System& system_;
@@ -56,6 +60,7 @@ class NewtonMatrix {
   Filter filter_;                    // in row order
   std::vector<DiagonalBlock> rubs_;  // in row order
   VecX b_rows_, dv_rows_, r_rows_, d_rows_, Ad_rows_;
+  VecX kept_b_;  // in particle order
 };
 
 template <class Particle, class Block>

@@ -28,12 +28,31 @@ BlockMatrix::BlockMatrix(std::shared_ptr<const BlockPattern> pattern,
       overlay_(overlay ? std::move(overlay) : std::make_shared<const BlockOverlay>()),
       values_(9 * static_cast<std::size_t>(pattern_->blocks() + overlay_->blocks()) + 3, 0.0) {}
 
-void BlockMatrix::set_to_mass(const std::vector<double>& mass) {
+void BlockMatrix::clear_overlay() {
   fill_ = next_pattern_serial();
   const auto base = 9 * static_cast<std::size_t>(pattern_->blocks());
   values_.resize(base + 9 * static_cast<std::size_t>(overlay_->blocks()) + 3);
   std::fill(values_.begin() + static_cast<std::ptrdiff_t>(base), values_.end(), 0.0);
   assembled_.clear();
+}
+
+void BlockMatrix::keep() {
+  kept_.resize(9 * static_cast<std::size_t>(pattern_->blocks()));
+  for_chunks(pattern_->blocks(), [&](int begin, int end) {
+    std::copy(block(begin), block(end), kept_.data() + 9 * static_cast<std::size_t>(begin));
+  });
+}
+
+void BlockMatrix::take_kept() {
+  clear_overlay();
+  for_chunks(pattern_->blocks(), [&](int begin, int end) {
+    const auto first = 9 * static_cast<std::size_t>(begin), last = 9 * static_cast<std::size_t>(end);
+    std::copy(kept_.data() + first, kept_.data() + last, block(begin));
+  });
+}
+
+void BlockMatrix::set_to_mass(const std::vector<double>& mass) {
+  clear_overlay();
   const std::vector<int>& start = pattern_->row_start();
   for_chunks(rows(), [&](int begin, int end) {
     const auto first = 9 * static_cast<std::size_t>(start[begin]);

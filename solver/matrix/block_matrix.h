@@ -44,17 +44,22 @@ class BlockMatrix {
 
   // Sets all to zero but the diagonal blocks, which become the mass of the row's particle times the identity.
   void set_to_mass(const std::vector<double>& mass);
+  // Keeps the base as it is now, before anything is in the overlay or added to the diagonal; and takes it back as it was
+  // kept, with an empty overlay, in place of a set_to_mass() and of what was assembled since.
+  void keep();
+  void take_kept();
   // Sets what is added to the assembled diagonal, in place of the additions of the last call: a contact that
   // rubs in another way needs no new assembly. A row may occur once at most.
   void set_diagonal_additions(std::span<const DiagonalBlock> additions);
 
-  // Differs between any two calls of set_to_mass() in a process. What was assembled after the same call
+  // Differs between any two calls of set_to_mass() and take_kept() in a process. What was assembled after the same call
   // differs by the additions to the diagonal alone.
   std::uint64_t fill() const { return fill_; }
 
   void multiply(const VecX& x, VecX& y) const;  // y = A x, in row order
 
  private:
+  void clear_overlay();
   void multiply_base(const VecX& x, VecX& y) const;
   void add_overlay(const VecX& x, VecX& y) const;
 
@@ -62,6 +67,7 @@ class BlockMatrix {
   std::shared_ptr<const BlockOverlay> overlay_;
   std::uint64_t fill_ = 0;
   std::vector<double> values_;  // 9 a block, and 3 more, so that the last column can be read four wide
+  std::vector<double> kept_;    // the base
   // The slots of the diagonal blocks that have additions, and these blocks without them.
   std::vector<std::pair<int, Mat3>> assembled_;
 };
