@@ -3,7 +3,21 @@
 #include <Eigen/Geometry>
 #include <utility>
 
+#include "mesh/base/parallel.h"
+
 namespace drape::internal {
+namespace {
+
+struct Extent {
+  Eigen::AlignedBox3d box;
+  Extent& operator+=(const Extent& other) {
+    box.extend(other.box);
+    return *this;
+  }
+};
+
+}  // namespace
+
 MovingBoxes::MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places, int most_faces,
                          int first_kind)
     : most_faces_(most_faces) {
@@ -103,16 +117,22 @@ void MovingBoxes::fit_node(Node& node, int child) const {
 
 void MovingBoxes::refit(const std::vector<Face>& faces, const std::vector<Vec3>& start,
                         const std::vector<Vec3>& end) {
-  Eigen::AlignedBox3d box;
-  for (const Face& f : faces)
-    for (int v : f.v) box.extend(start[v]).extend(end[v]);
+  const Eigen::AlignedBox3d box = sum_chunks(static_cast<int>(faces.size()), [&](int begin, int after) {
+                                    Extent extent;
+                                    for (int f = begin; f < after; ++f)
+                                      for (int v : faces[f].v) extent.box.extend(start[v]).extend(end[v]);
+                                    return extent;
+                                  }).box;
   origin_ = box.center();
   slack_ = static_cast<float>(1e-6 * box.diagonal().norm()) + std::numeric_limits<float>::min();
-  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node)
-    for (int child = 0; child < 4; ++child) {
-      if (node->count[child] > 0) fit_leaf(*node, child, faces, start, end);
+  for_chunks(static_cast<int>(nodes_.size()), [&](int begin, int after) {
+    for (int n = begin; n < after; ++n)
+      for (int child = 0; child < 4; ++child)
+        if (nodes_[n].count[child] > 0) fit_leaf(nodes_[n], child, faces, start, end);
+  });
+  for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node)  // a node stands before those below it
+    for (int child = 0; child < 4; ++child)
       if (node->count[child] < 0) fit_node(*node, child);
-    }
 }
 
 // Which children of a node come within the margin of a child of another along all axes at a common s.

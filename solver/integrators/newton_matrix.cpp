@@ -36,8 +36,7 @@ void NewtonMatrix::assemble_changing(const Linearisation& at, VecX& b) {
 // Adds the forces whose stencils come and go, or the others.
 void NewtonMatrix::add(const Linearisation& at, bool changing, VecX& b) {
   for (const auto& force : system_.forces())
-    if (force->changes() == changing)
-      force->add_linearised(at.x, at.v, at.y, at.c, at.stiffness, *A_, b);
+    if (force->changes() == changing) force->add_linearised(at.x, at.v, at.y, at.c, at.stiffness, *A_, b);
 }
 
 LinearReport NewtonMatrix::solve(const VecX& b, const Filter& filter, const LinearOptions& options,
