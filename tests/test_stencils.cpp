@@ -9,6 +9,7 @@
 #include "solver/forces/linear_spring.h"
 #include "solver/forces/pair_force.h"
 #include "solver/forces/woven.h"
+#include "solver/integrators/newton_matrix.h"
 #include "tests/integrators.h"
 #include "tests/outside/forces.h"
 #include "tests/same_bits.h"
@@ -272,6 +273,47 @@ TEST_CASE("every linear solver solves with an overlay of far pairs, and analyses
         CHECK(r.norm() < 1e-9 * b.norm());
         CHECK(dv.segment<3>(9) == Vec3(0.1, 0, 0));
       }
+    }
+  }
+}
+
+TEST_CASE("what comes and goes is assembled anew beside what was kept, to the last bit", "[solvers]") {
+  for (const int side : {6, 60}) {  // by one thread and by several
+    const TriangleMesh mesh = grid(side, side, 1, 1);
+    const int n = mesh.vertex_count();
+    System system(lumped_mass(mesh, 0.2));
+    int shift = 0;
+    using Springs = StencilForce<AlongDistance<LinearSpring>>;
+    system.add(std::make_unique<Springs>([&](const StepStart&, std::vector<Springs::Element>& found) {
+      found.clear();
+      for (int i = 0; i < n / (1 + shift); i += 5) found.push_back({{i, (i + 7 + shift) % n}, {0.1, 200}});
+      return true;
+    }));
+    system.add(noh_jung(mesh, {}));
+    const VecX x = at_rest(mesh).x + random_vector(3 * n, 0.01, 2), v = random_vector(3 * n, 1, 3),
+               y = random_vector(3 * n, 0.01, 4), weight = random_vector(3 * n, 1, 5);
+    const Linearisation at{x, v, y, 0.01, Stiffness::tangent};
+    NewtonMatrix kept(system, nullptr), whole(system, nullptr);
+    kept.follow_system();
+    whole.follow_system();
+    system.begin_step({0, 0.01, x, v});
+    VecX b = weight;
+    kept.assemble(at, system.masses(), b, true);
+    for (shift = 0; shift < 4; ++shift) {
+      kept.rub(
+          n / 2, [](std::size_t k) { return 2 * static_cast<int>(k); },
+          [](std::size_t) { return Mat3(3 * Mat3::Identity()); });
+      system.begin_step({0, 0.01, x, v});
+      const std::uint64_t before = kept.matrix().fill();
+      VecX expected = weight;
+      kept.assemble_changing(at, b);
+      whole.assemble(at, system.masses(), expected);
+      INFO(side << ", " << shift);
+      CHECK(kept.matrix().fill() != before);
+      CHECK(b == expected);
+      const int blocks = kept.matrix().pattern().blocks() + kept.matrix().overlay().blocks();
+      CHECK(kept.matrix().overlay().blocks() > 0);
+      CHECK(std::equal(kept.matrix().block(0), kept.matrix().block(blocks), whole.matrix().block(0)));
     }
   }
 }

@@ -8,6 +8,8 @@
 // accurately as the contacts are settled.                    [Hintermueller, Ito & Kunisch 2002]
 #pragma once
 
+#include <optional>
+
 #include "constraints/contact_step.h"
 #include "mesh/base/stopwatch.h"
 #include "solver/integrators/integrator.h"
@@ -52,7 +54,11 @@ bool settle_contacts(ContactStep& contacts, const StepOptions& options, Attempt&
   for (int round = 0;; ++round) {
     if (!attempt.solve()) return false;
     if (!contacts.holds_anything()) return true;
-    const Stopwatch watch(report.collide_ms);
+    std::optional<Stopwatch> watch(std::in_place, report.collide_ms);
+    const auto change_to = [&](const ContactChange& change) {
+      watch.reset();  // what is made anew counts as what it is, such as assembly
+      attempt.changed(change);
+    };
     const ContactTrial trial = attempt.trial();
     contacts.receive(trial.v, trial.r, trial.x);
     if (!contacts.meets_anything() || !attempt.worth_settling()) return true;
@@ -64,7 +70,7 @@ bool settle_contacts(ContactStep& contacts, const StepOptions& options, Attempt&
               contacts.react(trial.v, trial.r, trial.x, trial.speed_noise, trial.curvature);
           change.any()) {
         attempt.refine(imbalance);
-        attempt.changed(change);
+        change_to(change);
         continue;
       }
     }
@@ -72,7 +78,7 @@ bool settle_contacts(ContactStep& contacts, const StepOptions& options, Attempt&
     if (meetings < max_meetings) {
       if (const ContactChange change = contacts.meet(trial.x); change.any()) {
         ++meetings;
-        attempt.changed(change);
+        change_to(change);
         continue;
       }
     }
@@ -81,6 +87,7 @@ bool settle_contacts(ContactStep& contacts, const StepOptions& options, Attempt&
       return true;
     }
     round = 0;
+    watch.reset();
     attempt.bodies_moved();
   }
 }
