@@ -6,6 +6,7 @@
 #include "app/simulation/simulation.h"
 #include "mesh/obj/obj.h"
 #include "mesh/obj/obj_groups.h"
+#include "mesh/obj/obj_mark.h"
 #include "solver/assembly/assembly.h"
 #include "tests/folder.h"
 
@@ -69,7 +70,8 @@ TEST_CASE("the triangles of a group are those of its faces", "[obj][warp]") {
 }
 
 TEST_CASE("faces that are put into a group stand there alone, and all else in the file stays", "[obj]") {
-  using namespace drape::internal;
+  using drape::internal::faces_of_triangles;
+  using drape::internal::triangles_of_group;
   const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\n";
   const std::vector<std::string> texts = {
       two_squares, vertices + "f 1 2 4 3\nf 2 5 4\nf 5 6 4\n",

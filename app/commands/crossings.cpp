@@ -8,7 +8,7 @@
 #include "app/simulation/sheets.h"
 #include "mesh/base/errors.h"
 #include "mesh/obj/obj.h"
-#include "mesh/obj/obj_groups.h"
+#include "mesh/obj/obj_mark.h"
 
 namespace drape::app {
 namespace {
@@ -72,7 +72,7 @@ void write_marked(const MarkWords& mark, const Sheets& sheets, const std::vector
   for (std::size_t k = 0; k < parts.size(); ++k) {
     if (crossing[k].empty()) continue;
     TriangleMesh mesh = *parts[k].mesh;
-    mesh.document = std::make_shared<ObjDocument>(internal::with_group(mesh, crossing[k], group));
+    mesh.document = std::make_shared<ObjDocument>(with_group(mesh, crossing[k], group));
     files.write(names[next], format_obj(mesh, parts[k].positions));
     told += one_line("wrote " + (mark.folder / names[next++]).string() + ": " +
                      counted(static_cast<long>(crossing[k].size()), "triangle") + " in the group " + group) +

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "mesh/obj/obj.h"
 #include "mesh/triangles/triangle_mesh.h"
 
 namespace drape::internal {
@@ -15,9 +14,5 @@ std::vector<std::size_t> faces_of_triangles(const TriangleMesh& mesh);
 // The triangles, ascending, whose faces stand under this name in the file ('g' or 'o'). A mesh without a document
 // has those whose corners are all in the group.
 std::vector<int> triangles_of_group(const TriangleMesh& mesh, const std::string& name);
-
-// The mesh's document, or for a mesh without one a document of its triangles, in which the faces of these triangles
-// stand under a 'g' line of this name, and no more under the one that they stood under. All else is as it was.
-ObjDocument with_group(const TriangleMesh& mesh, const std::vector<int>& triangles, const std::string& name);
 
 }  // namespace drape::internal
