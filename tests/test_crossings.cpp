@@ -286,16 +286,18 @@ TEST_CASE("check tells the crossings of a mesh, of a scene and of a run", "[cros
   for (const TrianglePair& pair : crossing(two.positions, two.triangles))
     crossed.insert({pair.first, pair.second});
   CHECK(triangles_of_group(marked, "crossing") == std::vector<int>(crossed.begin(), crossed.end()));
-  CHECK(folder.drape("check two.obj --mark marked").err.find("--force replaces it") != std::string::npos);
-  CHECK(folder.drape("check two.obj --mark marked --force").exit_code == 0);
-  CHECK(folder.drape("check one.obj --mark none").exit_code == 0);
+  for (const std::string taken : {"marked", ".", "o"}) {
+    const Outcome refused = folder.drape("check two.obj --mark " + taken);
+    CHECK(refused.exit_code == 2);
+    CHECK(refused.err.find("is there already and not empty") != std::string::npos);
+  }
+  CHECK(folder.drape("check one.obj --mark none").out.find("nothing crosses") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder.path / "none"));
   CHECK(folder.drape("check scene.toml --mark cloths").exit_code == 0);
   for (const std::string name : {"upper", "lower"})
     CHECK_FALSE(triangles_of_group(read_obj(folder.path / "cloths" / (name + ".obj")), "crossing").empty());
   CHECK(folder.drape("check o --mark end").exit_code == 0);
   CHECK_FALSE(triangles_of_group(read_obj(folder.path / "end/two.obj"), "crossing").empty());
-  CHECK(folder.drape("check o --mark o --force").exit_code == 2);
 
   const Outcome refused = folder.drape("simulate scene.toml --set simulation.require_clean=true --out p");
   INFO(refused.err);

@@ -76,6 +76,7 @@ TEST_CASE("faces that are put into a group stand there alone, and all else in th
   const std::vector<std::string> texts = {
       two_squares, vertices + "f 1 2 4 3\nf 2 5 4\nf 5 6 4\n",
       vertices + "o whole\ng a b\nf 1 2 4 3\nl 1 5\ng b\nusemtl red\nf 2 5 4\nf 5 6 4\nl 1 6\n",
+      vertices + "o hem\nf 1 2 3\nl 1 2\nf 2 4 3\ng off\nf 2 5 4\nl 2 5\n",
       vertices + "g a\nf 1 2 3\no one\nf 2 4 3\ng c\no two\n# between\nf 2 5 4\no three\nf 5 6 4\n"};
   for (const std::string& text : texts) {
     const TriangleMesh mesh = parse_obj(text, "m.obj");
@@ -97,6 +98,20 @@ TEST_CASE("faces that are put into a group stand there alone, and all else in th
         std::set_difference(had.begin(), had.end(), in.begin(), in.end(), std::back_inserter(left));
         CHECK(triangles_of_group(read, group.name) == (object ? had : left));
       }
+      // Nothing else is a group now, and lines keep their names.
+      for (const VertexGroup& group : read.groups)
+        CHECK((group.name == "crossing" ||
+               std::any_of(mesh.groups.begin(), mesh.groups.end(),
+                           [&](const VertexGroup& had) { return had.name == group.name; })));
+      const std::vector<Polyline> lines = polylines(read), had_lines = polylines(mesh);
+      REQUIRE(lines.size() == had_lines.size());
+      for (std::size_t k = 0; k < lines.size(); ++k) {
+        CHECK(lines[k].name == had_lines[k].name);
+        CHECK(lines[k].vertices == had_lines[k].vertices);
+      }
+      TriangleMesh again = read;  // what was marked before is not, unless it is again
+      again.document = std::make_shared<ObjDocument>(with_group(read, out, "crossing"));
+      CHECK(triangles_of_group(parse_obj(format_obj(again, mesh.positions), "again.obj"), "crossing") == out);
       std::size_t next = 0;  // what stood in the file stands there still, in the same order
       for (const ObjStatement& statement : read.document->statements)
         if (next < mesh.document->statements.size() && statement == mesh.document->statements[next]) ++next;

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "app/base/toml_file.h"
+#include "app/commands/crossings.h"
 #include "app/pattern/pattern_read.h"
 #include "app/scene/fabric_words.h"
 #include "app/scene/load_mesh.h"
@@ -39,7 +40,7 @@ void print_report(const std::string& name, const MeshReport& report) {
 namespace {
 
 // An OBJ file, or a drawing as it is cut with the default edge.
-void check_mesh(const std::filesystem::path& file, const MarkWords& mark) {
+void check_mesh(const std::filesystem::path& file, const std::filesystem::path& mark) {
   Names messages;
   const bool drawing = is_pattern(file);
   const TriangleMesh mesh = drawing ? triangulate(read_pattern(file, messages), {}).mesh : read_obj(file);
@@ -135,7 +136,7 @@ void print_obstacle(const ObstacleEntry& entry, const Obstacle& o, const Body& b
     std::printf("  %s\n", one_line(described(o.motion, entry.source, middle_of(o.shape), duration)).c_str());
 }
 
-void check_scene(const std::filesystem::path& file, const MarkWords& mark) {
+void check_scene(const std::filesystem::path& file, const std::filesystem::path& mark) {
   const Scene scene = read_scene(file, {});
   constexpr bool keep_level_sets = false;  // it changes nothing
   const Simulation simulation = make_simulation(scene, keep_level_sets);
@@ -174,7 +175,7 @@ void check_fabric(const std::filesystem::path& file) {
     if (!names->empty()) std::printf("  %s: %s\n", what, one_line(listed(*names)).c_str());
 }
 
-void check_folder(const std::filesystem::path& folder, const MarkWords& mark) {
+void check_folder(const std::filesystem::path& folder, const std::filesystem::path& mark) {
   const Recording recording(folder);
   std::printf("%s: %s", folder.c_str(), counted(recording.frames(), "frame").c_str());
   for (const RecordedShape& shape : recording.shapes())
@@ -187,14 +188,15 @@ void check_folder(const std::filesystem::path& folder, const MarkWords& mark) {
 
 }  // namespace
 
-int check_file(const std::filesystem::path& file, const MarkWords& mark) {
+int check_file(const std::filesystem::path& file, const std::filesystem::path& mark) {
+  if (!mark.empty()) require_new_folder(mark);
   if (std::filesystem::is_directory(file)) {
     check_folder(file, mark);
     return 0;
   }
   const Node root = file.extension() == ".toml" ? read_toml(file) : Node();
   const bool fabric = root.members.contains("area_density");
-  if (fabric && !mark.folder.empty())
+  if (fabric && !mark.empty())
     throw InputError(file.string() + ": a fabric has no triangles that could cross; leave --mark out");
   if (fabric)
     check_fabric(file);

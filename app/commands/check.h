@@ -4,14 +4,13 @@
 #include <filesystem>
 #include <string>
 
-#include "app/commands/crossings.h"
 #include "mesh/obj/examine.h"
 
 namespace drape::app {
 
-// Prints the description of a scene, a pattern or a mesh file, or of the folder of a run, and writes the sheets that cross as
-// `mark` says (crossings.h). Returns 0; throws InputError.
-int check_file(const std::filesystem::path& file, const MarkWords& mark);
+// Prints the description of a scene, a pattern or a mesh file, or of the folder of a run, and writes the sheets that cross
+// into the new folder `mark` unless that is empty (crossings.h). Returns 0; throws InputError.
+int check_file(const std::filesystem::path& file, const std::filesystem::path& mark);
 
 // Prints counts, size and defects of a mesh; `name` stands in front.
 void print_report(const std::string& name, const MeshReport& report);

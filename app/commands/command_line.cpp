@@ -366,16 +366,13 @@ void add_fit(CLI::App& app, int& exit_code) {
 void add_check_and_list(CLI::App& app, int& exit_code) {
   CLI::App* const check = app.add_subcommand("check",
                                              "validates a scene or a fabric file, examines a mesh, or looks "
-                                             "for crossings in a run; changes nothing");
+                                             "for crossings in a run; changes nothing that is there");
   auto file = std::make_shared<std::string>();
-  auto mark = std::make_shared<MarkWords>();
+  auto mark = std::make_shared<std::string>();
   check->add_option("FILE", *file, "scene or fabric (.toml), mesh (.obj), or output folder of a run")
       ->required();
-  check
-      ->add_option("--mark", mark->folder,
-                   "writes what crosses into it as OBJ, its faces in the group 'crossing'")
+  check->add_option("--mark", *mark, "writes what crosses into it as OBJ, its faces in the group 'crossing'")
       ->type_name("FOLDER");
-  check->add_flag("--force", mark->force, "replace files that are there");
   check->callback([=, &exit_code] { exit_code = check_file(*file, *mark); });
   CLI::App* const list =
       app.add_subcommand("list", "fabrics, shapes, forces, integrators and linear solvers of this build");

@@ -59,14 +59,18 @@ void print(const Sheets& sheets, const char* title = "crossings") {
 }
 
 // `parts` are those of `sheets`, in their order.
-void write_marked(const MarkWords& mark, const Sheets& sheets, const std::vector<Sheet>& parts,
-                  const std::filesystem::path& run = {}) {
+void write_marked(const std::filesystem::path& folder, const Sheets& sheets,
+                  const std::vector<Sheet>& parts) {
   const std::vector<std::vector<int>> crossing = sheets.crossing_triangles();
   Names names;
   for (std::size_t k = 0; k < parts.size(); ++k)
     if (!crossing[k].empty()) names.push_back(parts[k].name + ".obj");
-  if (names.empty()) return;
-  ExportFiles files(mark.folder, names, mark.force, run);
+  if (names.empty()) {
+    std::printf("nothing is written, for nothing crosses\n");
+    return;
+  }
+  require_new_folder(folder);
+  ExportFiles files(folder, names, false, {});
   std::size_t next = 0;
   std::string told;
   for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -74,8 +78,8 @@ void write_marked(const MarkWords& mark, const Sheets& sheets, const std::vector
     TriangleMesh mesh = *parts[k].mesh;
     mesh.document = std::make_shared<ObjDocument>(with_group(mesh, crossing[k], group));
     files.write(names[next], format_obj(mesh, parts[k].positions));
-    told += one_line("wrote " + (mark.folder / names[next++]).string() + ": " +
-                     counted(static_cast<long>(crossing[k].size()), "triangle") + " in the group " + group) +
+    told += one_line("wrote " + (folder / names[next++]).string() + ": the faces of " +
+                     counted(static_cast<long>(crossing[k].size()), "triangle") + " are the group " + group) +
             "\n";
   }
   files.keep();
@@ -94,24 +98,30 @@ Sheets sheets_of(const Recording& recording, int frame) {
 
 }  // namespace
 
-void print_crossings(const std::string& name, const TriangleMesh& mesh, const MarkWords& mark) {
+void require_new_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error))
+    throw InputError(folder.string() + ": is there already and not empty; give --mark a new folder");
+}
+
+void print_crossings(const std::string& name, const TriangleMesh& mesh, const std::filesystem::path& mark) {
   Sheets sheets;
   sheets.add(name, mesh.triangles, mesh.positions);
   print(sheets);
-  if (!mark.folder.empty()) write_marked(mark, sheets, {{name, &mesh, mesh.positions}});
+  if (!mark.empty()) write_marked(mark, sheets, {{name, &mesh, mesh.positions}});
 }
 
-void print_crossings(const std::vector<Cloth>& cloths, const VecX& x, const MarkWords& mark) {
+void print_crossings(const std::vector<Cloth>& cloths, const VecX& x, const std::filesystem::path& mark) {
   const Sheets sheets(cloths, x);
   print(sheets);
-  if (mark.folder.empty()) return;
+  if (mark.empty()) return;
   std::vector<Sheet> parts;
   parts.reserve(cloths.size());
   for (const Cloth& cloth : cloths) parts.push_back({cloth.name, &cloth.mesh, cloth.embedding.positions(x)});
   write_marked(mark, sheets, parts);
 }
 
-void print_crossings(const Recording& recording, const MarkWords& mark) {
+void print_crossings(const Recording& recording, const std::filesystem::path& mark) {
   const int last = recording.frames() - 1;
   int most = 0, worst = 0;
   for (int frame = 0; frame < last; ++frame) {
@@ -126,11 +136,11 @@ void print_crossings(const Recording& recording, const MarkWords& mark) {
                 rounded(recording.time(worst), 4).c_str());
   const Sheets sheets = sheets_of(recording, last);
   print(sheets, last > 0 ? "crossings at the end" : "crossings");
-  if (mark.folder.empty()) return;
+  if (mark.empty()) return;
   std::vector<Sheet> parts;
   for (const RecordedShape& shape : recording.shapes())
     if (!shape.body) parts.push_back({shape.name, &shape.mesh, shape.mesh.positions});
-  write_marked(mark, sheets, parts, recording.folder());
+  write_marked(mark, sheets, parts);
 }
 
 }  // namespace drape::app

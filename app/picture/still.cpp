@@ -28,7 +28,7 @@ RecordedShape file_shape(const std::string& path, bool body) {
   return {std::filesystem::path(path).stem().string(), body, false, read_obj(path)};
 }
 
-// 1 at the corners of triangles that cross others, of all cloths.
+// Finds which triangles of all cloths cross others.
 void mark_crossings(Still& still) {
   Sheets sheets;
   for (const StillPart& part : still.parts)
@@ -37,9 +37,8 @@ void mark_crossings(Still& still) {
   const std::vector<std::vector<int>> crossing = sheets.crossing_triangles();
   for (StillPart& part : still.parts) {
     if (part.body) continue;
-    part.values.assign(part.positions.size(), 0);
-    for (const int t : crossing[sheet++])
-      for (const int v : (*part.triangles)[t]) part.values[v] = 1;
+    part.crossing.assign(part.triangles->size(), 0);
+    for (const int t : crossing[sheet++]) part.crossing[t] = 1;
   }
 }
 
@@ -91,8 +90,13 @@ Still Subject::still(int frame, std::optional<Field> field) const {
   int cloths = 0;
   bool coloured = false;
   const auto add = [&](const RecordedShape& shape, std::vector<Vec3> positions) -> StillPart& {
-    still.parts.push_back(
-        {shape.body, shape.body ? 0 : cloths++, std::move(positions), &shape.mesh.triangles, nullptr, {}});
+    still.parts.push_back({shape.body,
+                           shape.body ? 0 : cloths++,
+                           std::move(positions),
+                           &shape.mesh.triangles,
+                           nullptr,
+                           {},
+                           {}});
     return still.parts.back();
   };
   for (std::size_t k = 0; recording_ && k < recording_->shapes().size(); ++k) {

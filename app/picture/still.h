@@ -19,6 +19,7 @@ struct StillPart {
   const std::vector<Triangle>* triangles = nullptr;  // owned by the Subject
   // For a ball, the positions [m] of its vertices relative to its middle in the first frame; else null.
   const std::vector<Vec3>* sectors = nullptr;
+  std::vector<char> crossing;  // by triangle, whether it crosses another; empty: it was not looked for
   std::vector<double> values;  // colours come from these values at the vertices; empty: the part's own colour
 };
 

@@ -43,6 +43,8 @@ Surface::Surface(const Still& still, const Look& look) : still_(still), look_(lo
 Light Surface::colour(const Piece& piece, int triangle, const Vec3& weights, bool front) const {
   const std::vector<double>& values = piece.part->values;
   const Triangle& t = (*piece.part->triangles)[triangle - piece.begin];
+  if (look_.scale && !piece.part->crossing.empty())
+    return light(colour_of(*look_.scale, piece.part->crossing[triangle - piece.begin]));
   if (values.empty() || !look_.scale) {
     if (piece.part->sectors) {
       const std::vector<Vec3>& x = *piece.part->sectors;
@@ -52,8 +54,6 @@ Light Surface::colour(const Piece& piece, int triangle, const Vec3& weights, boo
     }
     return front ? piece.front : piece.back;
   }
-  if (look_.scale->field == Field::crossing)  // all corners of a triangle that crosses another are marked
-    return light(colour_of(*look_.scale, std::min({values[t[0]], values[t[1]], values[t[2]]})));
   if (look_.scale->field == Field::contact) {  // no vertex touches by half
     Eigen::Index nearest = 0;
     weights.maxCoeff(&nearest);

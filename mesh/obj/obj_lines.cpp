@@ -2,6 +2,7 @@
 #include <charconv>
 
 #include "mesh/obj/obj.h"
+#include "mesh/obj/obj_notes.h"
 #include "mesh/obj/obj_scan.h"
 
 namespace drape {
@@ -18,7 +19,7 @@ std::vector<Polyline> polylines(const TriangleMesh& mesh) {
     if (keyword == "g" || keyword == "o") {
       rest = obj::trim(rest.substr(0, obj::comment_start(rest)));
       if (keyword == "o") object = rest;
-      group = keyword == "g" ? obj::next_word(rest) : std::string_view();
+      group = keyword == "g" && rest != obj::no_group ? obj::next_word(rest) : std::string_view();
     }
     if (keyword != "l") continue;
     Polyline line{group.empty() ? object : group, {}};

@@ -1,6 +1,7 @@
 #include "mesh/obj/obj_mark.h"
 
 #include "mesh/obj/obj_groups.h"
+#include "mesh/obj/obj_notes.h"
 #include "mesh/obj/obj_scan.h"
 
 namespace drape {
@@ -16,7 +17,7 @@ ObjDocument document_of_triangles(const TriangleMesh& mesh) {
   return document;
 }
 
-// The 'g' line that holds where faces are read in order. "default" is the format's own name for no group.
+// The 'g' line that holds where faces are read in order.
 class GroupLine {
  public:
   const std::string& text() const { return text_; }
@@ -28,15 +29,31 @@ class GroupLine {
       text_ = statement.text;
       since_ = statement.before_face;
     }
-    if (keyword == "o" && since_ != statement.before_face) text_ = none;
+    if (keyword == "o" && since_ != statement.before_face) text_ = none();
     return keyword == "o";
   }
+  static std::string none() { return "g " + std::string(internal::obj::no_group); }
 
  private:
-  static constexpr const char* none = "g default";
-  std::string text_ = none;
+  std::string text_ = none();
   std::size_t since_ = 0;  // the face before which it stands
 };
+
+// The statement without this name, if it is a 'g' line that has it.
+ObjStatement without(ObjStatement statement, const std::string& name) {
+  std::string_view rest = statement.text;
+  if (internal::obj::next_word(rest) != "g") return statement;
+  rest = rest.substr(0, internal::obj::comment_start(rest));
+  std::string others = "g";
+  bool has = false;
+  for (std::string_view word = internal::obj::next_word(rest); !word.empty();
+       word = internal::obj::next_word(rest)) {
+    has = has || word == name;
+    if (word != name) (others += ' ') += word;
+  }
+  if (has) statement.text = others == "g" ? GroupLine::none() : others;
+  return statement;
+}
 
 }  // namespace
 
@@ -49,20 +66,20 @@ ObjDocument with_group(const TriangleMesh& mesh, const std::vector<int>& triangl
   } else {
     for (const int t : triangles) in[t] = 1;
   }
-  const std::vector<ObjStatement> as_read = std::move(document.statements);
+  std::vector<ObjStatement> as_read = std::move(document.statements);
+  for (ObjStatement& statement : as_read) statement = without(std::move(statement), name);
   document.statements.clear();
   GroupLine outside;
   std::size_t next = 0;
   for (std::size_t f = 0; f < in.size(); ++f) {
     const bool was_in = f > 0 && in[f - 1];
-    if (was_in && !in[f]) document.statements.push_back({f, outside.text()});
-    bool other = !was_in;  // whether another line than ours holds before the face
+    const bool other = next < as_read.size() && as_read[next].before_face == f;
+    if (was_in && (other || !in[f])) document.statements.push_back({f, outside.text()});
     for (; next < as_read.size() && as_read[next].before_face == f; ++next) {
       document.statements.push_back(as_read[next]);
       if (outside.read(as_read[next]) && was_in) document.statements.push_back({f, outside.text()});
-      other = true;
     }
-    if (in[f] && other) document.statements.push_back({f, "g " + name});
+    if (in[f] && (other || !was_in)) document.statements.push_back({f, "g " + name});
   }
   return document;
 }

@@ -48,6 +48,7 @@ void Groups::read(std::string_view keyword, std::string_view names, std::size_t 
   } else {
     current_groups_.clear();
     faces_at_group_ = faces;
+    if (trim(names) == no_group) names = {};
     for (std::string_view name = next_word(names); !name.empty(); name = next_word(names))
       current_groups_.push_back(number(name));
   }

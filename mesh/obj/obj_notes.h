@@ -1,6 +1,6 @@
 // What the OBJ reader notes while it reads: warnings, one of each kind, and which faces are in which group.
 //   Groups: a face belongs to the names of the last 'g' (several are allowed) and of the last 'o'. An 'o'
-//   ends the groups of the object before it, unless no face has come since the 'g'.
+//   ends the groups of the object before it, unless no face has come since the 'g'. 'g off' ends them, too.
 #pragma once
 
 #include <map>
@@ -30,6 +30,8 @@ class Warnings {
   static std::string format(const Warning& warning, const std::string& file);
   std::map<std::string, Warning> warnings_;  // by kind
 };
+
+inline constexpr std::string_view no_group = "off";  // as Blender writes it
 
 class Groups {
  public:

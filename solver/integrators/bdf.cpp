@@ -98,7 +98,10 @@ class Bdf::ContactSolve {
 
   void changed(const ContactChange& change) {
     if (change.caught || change.faces) bdf_.history_.restart_touching(contacts_);
-    if (change.met) bdf_.system_.find_contacts({state_.time, bdf_.k().h, state_.x, state_.v, bdf_.k().h});
+    if (change.met) {
+      const Stopwatch watch(report_.collide_ms);
+      bdf_.system_.find_contacts({state_.time, bdf_.k().h, state_.x, state_.v, bdf_.k().h});
+    }
     if (change.faces || change.met || (change.caught && bdf_.k().order_2())) linearise();
   }
 

@@ -141,7 +141,10 @@ class NewtonKinsol::ContactSolve {
   void release() {}
   bool refine(double) { return false; }  // every solve is to the tolerance already
   void changed(const ContactChange& change) {
-    if (change.met) kinsol_.system_.find_contacts({state_.time, kinsol_.h_, state_.x, state_.v, kinsol_.h_});
+    if (change.met) {
+      const Stopwatch watch(kinsol_.report_.collide_ms);
+      kinsol_.system_.find_contacts({state_.time, kinsol_.h_, state_.x, state_.v, kinsol_.h_});
+    }
   }
   void bodies_moved() {}
 

@@ -14,6 +14,8 @@ bool NewtonMatrix::follow_system() {
   for (VecX* vector : {&b_rows_, &dv_rows_, &r_rows_, &d_rows_, &Ad_rows_}) vector->setZero(n);
   filter_.reserve(static_cast<std::size_t>(system_.particles()));
   rubs_.reserve(static_cast<std::size_t>(system_.particles()));
+  A_->keep();  // so that no step allocates
+  kept_b_.setZero(n);
   return true;
 }
 
@@ -33,10 +35,12 @@ void NewtonMatrix::assemble_changing(const Linearisation& at, VecX& b) {
   add(at, true, b);
 }
 
-// Adds the forces whose stencils come and go, or the others.
+// Adds the forces that differ between the solves of a step, which are those of contact and those whose stencils come and
+// go, or all others.
 void NewtonMatrix::add(const Linearisation& at, bool changing, VecX& b) {
   for (const auto& force : system_.forces())
-    if (force->changes() == changing) force->add_linearised(at.x, at.v, at.y, at.c, at.stiffness, *A_, b);
+    if ((force->changes() || force->from_contact()) == changing)
+      force->add_linearised(at.x, at.v, at.y, at.c, at.stiffness, *A_, b);
 }
 
 LinearReport NewtonMatrix::solve(const VecX& b, const Filter& filter, const LinearOptions& options,

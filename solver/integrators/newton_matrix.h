@@ -25,10 +25,10 @@ class NewtonMatrix {
 
   // True when the system has another pattern than before: what has its size must then be made anew.
   bool follow_system();
-  // Assembles A from these masses [kg], and adds c (f - K y) to b. What lasts, of the forces whose stencils do not come
-  // and go, is kept when `keep` is true.
+  // Assembles A from these masses [kg], and adds c (f - K y) to b. What lasts, of all forces but those of
+  // contact and those whose stencils come and go, is kept when `keep` is true.
   void assemble(const Linearisation& at, const std::vector<double>& masses, VecX& b, bool keep = false);
-  // The same at the point at which it was kept, anew for the forces whose stencils come and go alone. b is set.
+  // The same at the point at which it was kept, anew for those forces alone. b is set.
   void assemble_changing(const Linearisation& at, VecX& b);
   // Sets the blocks c D of what rubs on single particles, in place of those set before: particle(k) and
   // block(k) for every k < count.
