@@ -289,7 +289,7 @@ TEST_CASE("check tells the crossings of a mesh, of a scene and of a run", "[cros
   for (const std::string taken : {"marked", ".", "o"}) {
     const Outcome refused = folder.drape("check two.obj --mark " + taken);
     CHECK(refused.exit_code == 2);
-    CHECK(refused.err.find("is there already and not empty") != std::string::npos);
+    CHECK(refused.err.find("is there already and is no empty folder") != std::string::npos);
   }
   CHECK(folder.drape("check one.obj --mark none").out.find("nothing crosses") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder.path / "none"));

@@ -100,8 +100,9 @@ Sheets sheets_of(const Recording& recording, int frame) {
 
 void require_new_folder(const std::filesystem::path& folder) {
   std::error_code error;
-  if (std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error))
-    throw InputError(folder.string() + ": is there already and not empty; give --mark a new folder");
+  if (!std::filesystem::exists(folder, error)) return;
+  if (!std::filesystem::is_directory(folder, error) || !std::filesystem::is_empty(folder, error))
+    throw InputError(folder.string() + ": is there already and is no empty folder; give --mark a new one");
 }
 
 void print_crossings(const std::string& name, const TriangleMesh& mesh, const std::filesystem::path& mark) {
