@@ -249,7 +249,8 @@ TEST_CASE("a dropped fabric has its warp down the cloth, and the run says where 
     CHECK_THAT(same.err, !Contains("no direction of the warp"));
     CHECK(shop.json("o/run.json")["state_hash"] == shop.json("p/run.json")["state_hash"]);
     for (const char* others :
-         {" --fabric cotton-poplin", " --fabric polyester-twill --set cloth.0.model=noh-jung"})
+         {" --fabric cotton-poplin --set cloth.0.stretch=500 --set cloth.0.compression=1",
+          " --fabric polyester-twill --set cloth.0.model=noh-jung"})
       CHECK_THAT(shop.drape(words + "q" + others).err, !Contains("no direction of the warp"));
     CHECK((shop.json("q/run.json")["cloths"][0]["fabric"]["model"] == "noh-jung"));
   }

@@ -43,6 +43,41 @@ TEST_CASE("a fabric file is found beside its scene, and from the folder in which
              StartsWith("error: --fabric: fabric = \"none.toml\": there is no file none.toml"));
 }
 
+TEST_CASE("a fabric wrinkles finer than its mesh, unless its file or the scene says otherwise", "[scene]") {
+  const Workshop shop;
+  shop.write("plain.toml", plain);
+  shop.write("stiff.toml", plain + "compression = 1\n");
+  const auto compression = [&](const std::string& words) {
+    const Outcome run = shop.drape("drop sheet.obj --duration 0.02 --out o --quiet " + words);
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    return shop.json("o/run.json")["cloths"][0]["fabric"]["weave"]["compression"].get<double>();
+  };
+  CHECK(compression("--fabric cotton-broad") == app::usual_compression);
+  CHECK(compression("--fabric plain.toml") == app::usual_compression);
+  CHECK(compression("--fabric stiff.toml") == 1);
+  CHECK(compression("--fabric plain.toml --set cloth.0.compression=0.4") == Approx(0.4));
+}
+
+TEST_CASE("edges too long for the folds of a fabric are told, with what helps", "[scene]") {
+  const Workshop shop;
+  const auto warning = [&](double edge,
+                           const std::string& words) {  // edge in bending lengths of polyester-plain
+    const TriangleMesh sheet = grid(13, 13, 12 * edge * 7.38e-3, 12 * edge * 7.38e-3);
+    shop.write("s.obj", format_obj(sheet, sheet.positions));
+    const Outcome run = shop.drape("drop s.obj --fabric polyester-plain --duration 0.02 --out o " + words);
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    return run.err;
+  };
+  const std::string all = "--set cloth.0.compression=1", advice = "set compression = 0.1";
+  CHECK_THAT(warning(0.95, all), !Contains("folds come out too stiff"));
+  CHECK_THAT(warning(1.05, all), Contains("longer than the bending length") && Contains(advice));
+  CHECK_THAT(warning(1.45, ""), !Contains("folds come out too stiff"));
+  CHECK_THAT(warning(1.55, ""), Contains("one and a half times the bending length") &&
+                                    Contains("subdivide the mesh") && !Contains(advice));
+}
+
 TEST_CASE("$DRAPE_DATA adds fabrics to the built-in ones, and its own go before", "[scene]") {
   const Workshop shop;
   std::filesystem::create_directories(shop.path / "more/fabrics");

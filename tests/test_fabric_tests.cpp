@@ -1,4 +1,5 @@
 // The virtual tests of a laboratory: their specimens, what they measure with, and the fabrics they are given.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -6,6 +7,7 @@
 
 #include "app/scene/laboratory.h"
 #include "app/textile/elastica.h"
+#include "app/textile/shadow.h"
 #include "app/textile/virtual_tests.h"
 #include "mesh/triangles/topology.h"
 #include "tests/folder.h"
@@ -145,6 +147,30 @@ TEST_CASE("a stiff disc on the plate sags as a clamped annular plate does", "[fa
       const double expected = K * 0.15 * standard_gravity * std::pow(0.15, 4) / 1e-2;
       CHECK(sum / rim == Approx(expected).epsilon(0.03));
     }
+}
+
+TEST_CASE("the red circle of a shadow's picture has the area of the shadow that was measured",
+          "[fabric-tests]") {
+  constexpr double plate = 0.09, specimen = 0.15, reach = 1.05 * specimen;
+  const auto red = [](const drawing::Pixel& p) { return p[0] > p[1] + 50; };
+  const drawing::Image none = Shadow(plate, reach).picture(specimen);
+  CHECK(std::none_of(none.pixels.begin(), none.pixels.end(), red));
+  for (double coefficient : {0.0, 0.25, 0.83}) {
+    const drawing::Image image = Shadow(plate, reach).picture(specimen, coefficient);
+    double mean = 0;
+    int count = 0;
+    for (int i = 0; i < image.width; ++i)
+      for (int j = 0; j < image.height; ++j)
+        if (red(image.at(i, j))) {
+          const double cell = 2 * reach / image.width;  // m
+          mean += cell * std::hypot(i + 0.5 - 0.5 * image.width, j + 0.5 - 0.5 * image.height);
+          ++count;
+        }
+    REQUIRE(count > 0);
+    mean /= count;
+    const double share = (mean * mean - plate * plate) / (specimen * specimen - plate * plate);
+    CHECK(share == Approx(coefficient).margin(0.01));
+  }
 }
 
 TEST_CASE("a drape coefficient depends on the ratio of rigidity to weight, not on the size of things",

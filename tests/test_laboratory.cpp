@@ -179,8 +179,8 @@ TEST_CASE("the built-in fabrics have the numbers of their sources", "[scene]") {
     const char* name;
     double density, warp, weft, shear, drape;  // kg/m^2, N m, N m, N/m, -
   };
-  const Row rows[] = {{"cotton-broad", 0.1238, 1.15718e-05, 0, 0, 0.829},
-                      {"polyester-tropical", 0.1165, 7.55112e-06, 0, 0, 0.507},
+  const Row rows[] = {{"cotton-broad", 0.1238, 1.15718e-05, 0, 50, 0.829},
+                      {"polyester-tropical", 0.1165, 7.55112e-06, 0, 50, 0.507},
                       {"polyester-twill", 0.13517, 1.95e-06, 6.1e-07, 41, 0.223},
                       {"polyester-plain", 0.08366, 8.5e-07, 3.3e-07, 46, 0.228},
                       {"wool-polyester-twill", 0.1787, 2.14e-06, 2e-06, 50, 0.349},
@@ -246,7 +246,8 @@ TEST_CASE("a run with hysteresis says so, and keeps its numbers", "[cli]") {
   CHECK(springs.exit_code == 2);
   CHECK_THAT(springs.err, Contains("--hysteresis") && Contains("--model woven"));
   CHECK_THAT(shop.drape("test-fabric cotton-broad --lowering 5cm").err, Contains("--lowering 5cm: "));
-  CHECK_THAT(shop.drape("test-fabric polyester-plain --hysteresis").err, Contains("2HB") && Contains("none"));
+  shop.write("limp.toml", "area_density = 0.1\nbend = \"1 uN.m\"\n");
+  CHECK_THAT(shop.drape("test-fabric limp.toml --hysteresis").err, Contains("2HB") && Contains("none"));
 }
 
 TEST_CASE("check, run.json and the notes say what was given and what a model leaves out", "[cli]") {

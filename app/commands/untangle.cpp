@@ -17,7 +17,8 @@ namespace {
 constexpr double rests_for = 0.3;     // s, after the last crossing: layers come apart up to their thickness
 constexpr double gives_up_after = 2;  // s, without fewer crossings
 
-// The mesh in weightless air: nothing moves it but its stiffness, and what brings it apart.
+// The mesh in weightless air: nothing moves it but its stiffness, and what brings it apart. It resists compression
+// with all of its stiffness: cloth that may wrinkle finer than its mesh stays folded where it was crossed.
 Scene weightless(const UntangleWords& words) {
   const std::string label = "drape untangle " + words.mesh;
   const auto text = [&](const std::string& value) { return Node::of_text(value, label); };
@@ -44,7 +45,9 @@ Scene weightless(const UntangleWords& words) {
   root.members["simulation"] = std::move(simulation);
   root.members["air"] = Node::of_table(label);
   root.members["cloth"] = Node::of_list({std::move(cloth)}, label);
-  return read_scene(root, {}, {}, label);
+  Scene scene = read_scene(root, {}, {}, label);
+  scene.cloths.front().fabric.weave.compression = 1;
+  return scene;
 }
 
 // The state with the fewest crossings so far, and how it came about.

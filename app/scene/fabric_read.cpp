@@ -116,8 +116,9 @@ void read_fabric(Table& table, Fabric& fabric, FabricRecord& record) {
              "forces at a vertex times the largest number of neighbours over its own: Noh & Jung, eq. 1-3");
   table.read(
       "compression", fabric.weave.compression, dimension::number, Range::not_negative,
-      "of model = \"woven\": the share of the resistance to compression that stays; below 1 the fabric "
-      "wrinkles finer than the mesh; from 0 to 1");
+      {"of model = \"woven\": the share of the resistance to compression that stays; below 1 the fabric "
+       "wrinkles finer than the mesh; from 0 to 1",
+       "0.1 with a fabric by name or file, else 1"});
   if (table.has("compression") && fabric.weave.compression > 1)
     table.fail("compression", "the share of the resistance to compression is from 0 to 1");
   read_viscosity(table, fabric.weave);

@@ -109,6 +109,7 @@ NamedFabric read_fabric_file(const Node& root, const std::string& name, KeyNotes
   table.read("assumed", named.assumed, "keys whose values nobody measured");
   named.tests = read_measured(table);
   table.require("area_density");
+  named.fabric.weave.compression = usual_compression;
   read_fabric(table, named.fabric, named.record);
   table.finish();
   check_marks(table, root, named);

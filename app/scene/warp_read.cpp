@@ -40,7 +40,7 @@ void read_groups(const Table& table, const Node& node, ClothEntry& cloth) {
 
 }  // namespace
 
-// Where the scene does not say which model it wants, it need not say where the warp runs.
+// A scene that names a fabric need not say where the warp runs, nor one that leaves the model to the program.
 void read_warp(Table& table, ClothEntry& cloth) {
   if (cloth.rest_is_flat) cloth.warp = Vec3(0, 1, 0);
   const Node* const node =
@@ -52,9 +52,9 @@ void read_warp(Table& table, ClothEntry& cloth) {
                   "counts from v of the texture coordinates, counterclockwise; by group: { front = \"30 "
                   "deg\", yoke = [1, 0, 0] }",
                   "v of the texture coordinates, with rest = \"uv\": the grain of each panel of a pattern; "
-                  "\"down\" where "
-                  "`model` is not given"});
-  const bool down = node ? is_down(*node) : !table.has("model") && !cloth.warp;
+                  "\"down\" with `fabric` or without `model`"});
+  const bool chosen = !table.has("model") || !cloth.fabric_name.empty();
+  const bool down = node ? is_down(*node) : chosen && !cloth.warp;
   cloth.warp_is_down = down && cloth.model == "woven";
   if (!node || down) return;
   refuse_with_springs(table, cloth, "warp");

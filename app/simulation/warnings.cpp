@@ -113,23 +113,20 @@ void tell_of_directions(const ClothEntry& entry, Names& messages) {
                      (rest.empty() ? "" : ", and leaves out " + rest));
 }
 
-// Folds are some three bending lengths wide. An edge as long as one bending length cannot follow them: measured with
-// `drape test-fabric` on meshes of one bending length and of half of it.
+// Folds are some three bending lengths wide. An edge as long as one bending length cannot follow them, and one of one
+// and a half not even where the fabric wrinkles finer than the mesh: measured with `drape test-fabric` on meshes of
+// half a bending length to two.
 void warn_if_coarse_for_folds(const Cloth& cloth, Names& messages) {
   const Fabric& fabric = cloth.fabric;
   const double bend = std::min(fabric.bend, fabric.weave.bend_weft.value_or(fabric.bend)),
-               c = std::cbrt(bend / (9.81 * fabric.area_density));
-  constexpr double wrinkles =
-      0.1;  // share of compression at which wrinkles finer than the mesh are allowed for
-  if (cloth.model != ClothModel::woven || cloth.report.median_edge <= c ||
-      fabric.weave.compression <= wrinkles)
-    return;
+               c = std::cbrt(bend / (9.81 * fabric.area_density));  // m
+  const bool wrinkles = fabric.weave.compression <= 0.1;
+  if (cloth.model != ClothModel::woven || cloth.report.median_edge <= (wrinkles ? 1.5 * c : c)) return;
   messages.push_back("warning: cloth " + cloth.name + ": its edges (median " +
-                     rounded(1000 * cloth.report.median_edge, 2) +
-                     " mm) are longer than the bending length of the fabric, " + rounded(1000 * c, 2) +
-                     " mm: folds come out too stiff; subdivide the mesh, or set compression = 0.1, so that "
-                     "it wrinkles finer "
-                     "than the mesh");
+                     rounded(1000 * cloth.report.median_edge, 2) + " mm) are longer than " +
+                     (wrinkles ? "one and a half times " : "") + "the bending length of the fabric, " +
+                     rounded(1000 * c, 2) + " mm: folds come out too stiff; subdivide the mesh" +
+                     (wrinkles ? "" : ", or set compression = 0.1, so that it wrinkles finer than the mesh"));
 }
 
 // What contact of cloth with cloth takes for granted.

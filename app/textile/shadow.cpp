@@ -71,7 +71,10 @@ std::vector<double> Shadow::outline() const {
   return radii;
 }
 
-drawing::Image Shadow::picture(double specimen_radius) const {
+drawing::Image Shadow::picture(double specimen_radius, std::optional<double> measured) const {
+  const double plate = plate_radius_ * plate_radius_;
+  const double as_measured =
+      std::sqrt(plate + measured.value_or(0) * (specimen_radius * specimen_radius - plate));
   constexpr int size = 480, sample = kCells / size;
   drawing::Image image(size, size, {255, 255, 255});
   const double cell = sample * cell_;
@@ -87,6 +90,7 @@ drawing::Image Shadow::picture(double specimen_radius) const {
       auto grey = static_cast<std::uint8_t>(std::lround(255 - dark * (255 - shade)));
       if (std::abs(radius - specimen_radius) < 0.6 * cell) grey = 0;  // the specimen before it was draped
       image.at(i, j) = {grey, grey, grey};
+      if (measured && std::abs(radius - as_measured) < cell) image.at(i, j) = {200, 30, 30};
     }
   return image;
 }

@@ -2,6 +2,7 @@
 //   drape coefficient = (shadow - plate) / (specimen - plate), of areas counted on one raster
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "app/picture/image.h"
@@ -18,7 +19,9 @@ class Shadow {
 
   double area() const;                  // m^2
   std::vector<double> outline() const;  // m, the largest radius in the shadow, in 720 directions
-  drawing::Image picture(double specimen_radius) const;
+  // With a black circle round the specimen before it was draped, and, where a drape coefficient was measured, a red one
+  // whose area is the shadow that was measured.
+  drawing::Image picture(double specimen_radius, std::optional<double> measured_coefficient = {}) const;
 
  private:
   int cells_;  // along a side
