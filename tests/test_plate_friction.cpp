@@ -21,6 +21,7 @@ constexpr double B = 1e-5, H = 4e-4;  // N m, N
 Fabric rubbing(double stretch = 500) {
   Fabric fabric{.area_density = 0.15, .stretch = stretch, .bend = B};
   fabric.weave.bend_friction = H;
+  fabric.weave.bend_friction_onset = 0.1 * H / B;
   return fabric;
 }
 
@@ -47,6 +48,7 @@ double moment(const System& system, const VecX& x, double width) {
 
 struct Loop {
   double width, slope;  // N at +100 and -100 1/m, the mean; N m between 50 and 150 1/m
+  double gentle;        // N, the moment at 20 1/m of the strip that was flat
 };
 
 // As KES-FB2 measures it: bent to 250 1/m, to -250 1/m and to 250 1/m again.
@@ -63,11 +65,11 @@ Loop loop_of(const Strip& s, const Fabric& fabric, const Vec3& warp) {
     system.end_step(x);
     return M;
   };
-  std::map<int, double> up, down;
-  for (int k = 0; k <= 250; k += 10) bend_to(k);
+  std::map<int, double> first, up, down;
+  for (int k = 0; k <= 250; k += 10) first[k] = bend_to(k);
   for (int k = 240; k >= -250; k -= 10) down[k] = bend_to(k);
   for (int k = -240; k <= 250; k += 10) up[k] = bend_to(k);
-  return {0.5 * (up[100] - down[100] + up[-100] - down[-100]), (up[150] - up[50]) / 100};
+  return {0.5 * (up[100] - down[100] + up[-100] - down[-100]), (up[150] - up[50]) / 100, first[20]};
 }
 
 Eigen::MatrixXd dense(const BlockMatrix& A) {  // in particle order
@@ -120,22 +122,26 @@ constexpr std::array three_meshes = {StripMesh::square, StripMesh::hexagonal, St
 
 TEST_CASE("a strip bent to and fro shows the loop of KES-FB2: 2HB wide, with the slope B",
           "[woven][friction]") {
-  Fabric directed = rubbing(0);
-  directed.weave.bend_weft = 0.4 * B;
-  directed.weave.bend_friction_weft = 0.3 * H;
   for (StripMesh kind : strip_meshes)
-    for (int cells : {12, 18, 24}) {
-      const Strip s = strip(kind, cells, cells / 2, 0.012);
-      INFO(name(kind) << ", " << cells << " cells");
-      const Loop warp = loop_of(s, directed, Vec3::UnitX()), weft = loop_of(s, directed, Vec3::UnitZ()),
-                 bias = loop_of(s, rubbing(0), Vec3(1, 0, 1));
-      CHECK(warp.width == Approx(2 * H).epsilon(0.02));
-      CHECK(warp.slope == Approx(B).epsilon(0.02));
-      CHECK(weft.width == Approx(0.6 * H).epsilon(0.02));
-      CHECK(weft.slope == Approx(0.4 * B).epsilon(0.02));
-      CHECK(bias.width == Approx(2 * H).epsilon(0.02));
-      CHECK(bias.slope == Approx(B).epsilon(0.02));
-    }
+    for (int cells : {12, 18, 24})
+      for (double onset : {5.0, Weave().bend_friction_onset}) {
+        const Strip s = strip(kind, cells, cells / 2, 0.012);
+        INFO(name(kind) << ", " << cells << " cells, onset " << onset << " 1/m");
+        Fabric even = rubbing(0);
+        even.weave.bend_friction_onset = onset;
+        Fabric directed = even;
+        directed.weave.bend_weft = 0.4 * B;
+        directed.weave.bend_friction_weft = 0.5 * H;
+        const Loop warp = loop_of(s, directed, Vec3::UnitX()), weft = loop_of(s, directed, Vec3::UnitZ()),
+                   bias = loop_of(s, even, Vec3(1, 0, 1));
+        CHECK(warp.width == Approx(2 * H).epsilon(0.02));
+        CHECK(warp.slope == Approx(B).epsilon(0.02));
+        CHECK(weft.width == Approx(H).epsilon(0.02));
+        CHECK(weft.slope == Approx(0.4 * B).epsilon(0.02));
+        CHECK(bias.width == Approx(2 * H).epsilon(0.02));
+        CHECK(bias.slope == Approx(B).epsilon(0.02));
+        CHECK(bias.gentle == Approx(20 * B + H * std::min(1.0, 20 / onset)).epsilon(0.03));
+      }
 }
 
 TEST_CASE("a rolled strip left alone stays rolled by H / B, and one without friction opens",
@@ -194,6 +200,7 @@ TEST_CASE("a cantilever that sags comes to rest higher than one that was pulled 
     const Strip s = strip(kind, 20, 4, L);
     Fabric fabric{.area_density = 0.15, .stretch = 500, .bend = bend};
     fabric.weave.bend_friction = holds;
+    fabric.weave.bend_friction_onset = 0.1 * holds / bend;
     fabric.weave.bend_time = 0.05;
     const auto end = [&](double pull) {
       System system(masses(s.mesh, fabric));
@@ -420,6 +427,7 @@ TEST_CASE("numbers that make no friction are refused by name", "[woven][friction
   refused([](Fabric& f) { f.weave.bend_friction_weft = 0; }, "bend_friction_weft = 0 N");
   refused([](Fabric& f) { f.weave.bend_friction = 0, f.weave.bend_friction_weft = 1e-4; },
           "bend_friction = 0 N");
+  refused([](Fabric& f) { f.weave.bend_friction_onset = 0; }, "bend_friction_onset = 0 1/m");
   refused([](Fabric& f) { f.bend = 0; }, "bend = 0 N.m");
   Fabric fabric = rubbing();
   fabric.weave.bend_friction_weft = 2e-4;

@@ -30,7 +30,7 @@ Fabric made(double area_density, double stretch, double bend, Given stretch_spri
             Given buckling_clamp, double damping, const std::string& kind, bool neighbour_weighting,
             Given stretch_weft, Given shear, double poisson, double compression, Given bend_weft,
             Given bend_bias, double bend_poisson, double stretch_time, double shear_time, double bend_time,
-            double rest_angle, double bend_friction, Given bend_friction_weft) {
+            double rest_angle, double bend_friction, Given bend_friction_weft, double bend_friction_onset) {
   Fabric fabric{area_density,       stretch,        bend,    stretch_spring,
                 bend_spring,        buckling_clamp, damping, damping_kind(kind),
                 neighbour_weighting};
@@ -43,6 +43,7 @@ Fabric made(double area_density, double stretch, double bend, Given stretch_spri
                   .bend_poisson = bend_poisson,
                   .bend_friction = bend_friction,
                   .bend_friction_weft = bend_friction_weft,
+                  .bend_friction_onset = bend_friction_onset,
                   .stretch_time = stretch_time,
                   .shear_time = shear_time,
                   .bend_time = bend_time,
@@ -78,6 +79,7 @@ std::string text(const Fabric& fabric) {
   other("bend_time", w.bend_time, 0, " s");
   other("bend_friction", w.bend_friction, 0, " N");
   given("bend_friction_weft", w.bend_friction_weft, " N");
+  other("bend_friction_onset", w.bend_friction_onset, usual.bend_friction_onset, " 1/m");
   return all + ")";
 }
 
@@ -94,14 +96,15 @@ void add_fabric(py::module_& m) {
       "bend_poisson; stretch_time, shear_time, bend_time [s], viscosity over stiffness; rest_angle, the\n"
       "share of the mesh's folds with which it rests; bend_friction, bend_friction_weft [N], the moment of "
       "dry\n"
-      "friction per width against bending, half of the width 2HB of KES-FB2's loop. [Kawabata 1980]")
+      "friction per width against bending, half of the width 2HB of KES-FB2's loop [Kawabata 1980], and\n"
+      "bend_friction_onset [1/m], the change of curvature within which it sets in.")
       .def(py::init(&made), py::kw_only(), "area_density"_a = 0.15, "stretch"_a = 500.0, "bend"_a = 1e-5,
            "stretch_spring"_a = py::none(), "bend_spring"_a = py::none(), "buckling_clamp"_a = py::none(),
            "damping"_a = 0.0, "damping_kind"_a = "relative", "neighbour_weighting"_a = false,
            "stretch_weft"_a = py::none(), "shear"_a = py::none(), "poisson"_a = 0.3, "compression"_a = 1.0,
            "bend_weft"_a = py::none(), "bend_bias"_a = py::none(), "bend_poisson"_a = 0.0,
            "stretch_time"_a = 0.0, "shear_time"_a = 0.0, "bend_time"_a = 0.0, "rest_angle"_a = 0.0,
-           "bend_friction"_a = 0.0, "bend_friction_weft"_a = py::none(),
+           "bend_friction"_a = 0.0, "bend_friction_weft"_a = py::none(), "bend_friction_onset"_a = 50.0,
            "ValueError names a value that is negative, not finite, or zero where it may not be.")
       .def_readwrite("area_density", &Fabric::area_density, "kg/m^2")
       .def_readwrite("stretch", &Fabric::stretch, "N/m, membrane stiffness per width")
@@ -165,6 +168,10 @@ void add_fabric(py::module_& m) {
           "bend_friction_weft", [](const Fabric& fabric) { return fabric.weave.bend_friction_weft; },
           [](Fabric& fabric, Given value) { fabric.weave.bend_friction_weft = value; },
           "N, along the weft; None: as along the warp")
+      .def_property(
+          "bend_friction_onset", [](const Fabric& fabric) { return fabric.weave.bend_friction_onset; },
+          [](Fabric& fabric, double value) { fabric.weave.bend_friction_onset = value; },
+          "1/m, the change of curvature within which the friction sets in")
       .def(
           "copy", [](const Fabric& fabric) { return Fabric(fabric); },
           "Another fabric with the same numbers.")

@@ -170,6 +170,7 @@ Json weave_json(const ClothEntry& entry, const std::optional<Vec3>& direction) {
                         {"bend_time", weave.bend_time},
                         {"bend_friction_warp", friction.warp},
                         {"bend_friction_weft", friction.weft},
+                        {"bend_friction_onset", friction.onset},
                         {"rest_angle", weave.rest_angle}};
   if (!groups.empty()) members.emplace_back("group_warps", std::move(groups));
   return members;

@@ -30,6 +30,8 @@ void check(const Weave& w) {
     require(w.bend_friction > 0, "bend_friction", w.bend_friction, "N",
             "with a frictional moment along the weft it is greater than zero");
   }
+  require(w.bend_friction_onset > 0, "bend_friction_onset", w.bend_friction_onset, "1/m",
+          "a change of curvature is greater than zero");
   for (const auto& [field, value] :
        {std::pair{"stretch_time", w.stretch_time}, std::pair{"shear_time", w.shear_time},
         std::pair{"bend_time", w.bend_time}})

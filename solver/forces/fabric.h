@@ -24,6 +24,8 @@ struct Weave {
   // half of the width 2HB of the loop of KES-FB2. 0: there is none.
   double bend_friction = 0;
   std::optional<double> bend_friction_weft = {};
+  // 1/m, the change of curvature within which that moment sets in. KES-FB2 reads B from 50 1/m on, where it has.
+  double bend_friction_onset = 50;
   double stretch_time = 0, shear_time = 0, bend_time = 0;  // s, viscosity over stiffness
   // The share of the curvature of the mesh, as the cloth starts, with which it rests: 0 is flat, 1 the mesh.
   double rest_angle = 0;

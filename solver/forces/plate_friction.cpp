@@ -9,17 +9,9 @@ namespace drape {
 
 using internal::TriangleFrame;
 
-namespace {
-
-// The spring over the plate: stiff against H / B, the curvature that friction can hold, and soft enough that the
-// matrix is conditioned as that of a plate of ten times the rigidity.
-constexpr double steep = 10;
-
-}  // namespace
-
 Vec3 PlateFrictionLaw::moments() const { return {warp, weft, std::sqrt(0.5 * warp * weft)}; }
 
-double PlateFrictionLaw::e_0() const { return warp * weft / (steep * std::sqrt(bend_warp * bend_weft)); }
+double PlateFrictionLaw::e_0() const { return onset * std::sqrt(warp * weft); }
 
 // `e` is meaningless where the frame does not stand, and the triangle then gives no force.
 struct PlateFriction::Bent {

@@ -4,8 +4,10 @@
 // strained beyond what friction holds. With e_k = H_k kappa_k - rest_k [N/m], per area,
 //   psi = |e|^2 / (2 e_0)  where |e| <= e_0: it sticks;   psi = |e| - e_0 / 2  beyond: it slides         [J/m^2]
 //   m_k = H_k e_k / max(e_0, |e|),   so that (m_uu / H_warp)^2 + (m_vv / H_weft)^2 + (m_uv / H_twist)^2 <= 1
-// H_twist^2 = H_warp H_weft / 2: a fabric of one H has it in every direction in which it is bent. The spring is ten
-// times as stiff as the plate, so that friction holds in full after a change of curvature of H / (10 B).
+// H_twist^2 = H_warp H_weft / 2: a fabric of one H has it in every direction in which it is bent. Threads begin to slide
+// one after the other, so friction holds in full only after a change of curvature, the onset: e_0 = onset sqrt(H_warp
+// H_weft). A gentler bend is resisted as by a rigidity of B + H / onset. Where H differs along warp and weft, this is
+// the mean of the two: it is onset sqrt(H_weft / H_warp) along the warp, and the inverse share along the weft.
 // Where the spring rests, rest_k, stays during a step and follows the slide at its end. psi is convex in the
 // curvature, and psi of the spring that has followed is never more: so friction takes energy and makes none. n turns
 // with the triangle, and so does the moment.
@@ -32,8 +34,8 @@ struct BendMemory {
 };
 
 struct PlateFrictionLaw {
-  double warp, weft;            // H [N]
-  double bend_warp, bend_weft;  // B [N m]
+  double warp, weft;  // H [N]
+  double onset;       // 1/m
 
   Vec3 moments() const;  // H_warp, H_weft and H_twist [N]
   double e_0() const;    // J/m^2

@@ -51,8 +51,7 @@ PlateFrictionLaw plate_friction_of(const Fabric& fabric) {
   const Weave& weave = fabric.weave;
   return {.warp = weave.bend_friction,
           .weft = weave.bend_friction_weft.value_or(weave.bend_friction),
-          .bend_warp = fabric.bend,
-          .bend_weft = weave.bend_weft.value_or(fabric.bend)};
+          .onset = weave.bend_friction_onset};
 }
 
 bool has_directions(const Fabric& fabric) {

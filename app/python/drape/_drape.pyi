@@ -82,6 +82,7 @@ class Fabric(metaclass=_Class):
     rest_angle: float
     bend_friction: float
     bend_friction_weft: Optional[float]
+    bend_friction_onset: float
     def __init__(
         self,
         *,
@@ -107,6 +108,7 @@ class Fabric(metaclass=_Class):
         rest_angle: float = ...,
         bend_friction: float = ...,
         bend_friction_weft: Optional[float] = ...,
+        bend_friction_onset: float = ...,
     ) -> None: ...
     def copy(self) -> Fabric: ...
     def __copy__(self) -> Fabric: ...
