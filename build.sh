@@ -19,6 +19,7 @@ usage: ./build.sh WORD
                   checked out, from the one before), from REVISION, or all
   format          format the sources in place; format --check only looks
   sanitize        build with the address and undefined-behaviour sanitizers and run the tests, but for the slow ones
+  soak            look for a way through cloth in 1,000,000 motions and 1,000 drops of garments: an hour
   debug           build with assertions, for a debugger, and run the quick tests
   clang           build with clang and run the quick tests
   odr             build as for debug and check, when linking, that no two source files mean different things by one name
@@ -227,6 +228,12 @@ sanitize() {
   configure sanitize -DDRAPE_TESTS=ON -DDRAPE_PYTHON=ON
   compile sanitize
   run_tests sanitize --label-exclude slow
+}
+
+soak() {
+  with_quick_tests release
+  say "looking for a way through cloth"
+  build/release/tests/drape_tests "[soak]"
 }
 
 # with_quick_tests PRESET: the program and the tests
@@ -446,7 +453,7 @@ tidy() {
 word=${1:-}
 [[ $# -eq 0 ]] || shift
 case "$word" in
-  demo | build | docs | pictures | compare | sanitize | debug | clang | odr)
+  demo | build | docs | pictures | compare | sanitize | soak | debug | clang | odr)
     [[ $# -eq 0 ]] || { warn "'$word' takes nothing more, but got: $*"; exit 2; }
     "$word"
     ;;
