@@ -3,7 +3,10 @@
 #include <catch2/catch.hpp>
 
 #include "mesh/base/threads.h"
+#include "solver/linear/aggregation.h"
+#include "solver/linear/galerkin.h"
 #include "solver/linear/preconditioner.h"
+#include "solver/linear/row_sum.h"
 #include "solver/linear/smoother.h"
 #include "tests/allocations.h"
 #include "tests/falling_sheet.h"
@@ -26,6 +29,65 @@ std::vector<int> iterations_of(const FallingSheet& sheet, double tolerance) {
     iterations.push_back(report.iterations);
   }
   return iterations;
+}
+
+// The finest level of a sheet in which some particles are held.
+struct ProjectedSheet {
+  Filter filter;
+  std::vector<int> entry_of_row;
+  ProjectedBlocks blocks;
+  Smoother smoother;
+
+  ProjectedSheet(const FallingSheet& sheet, Filter held)
+      : filter(std::move(held)), blocks(sheet.stepper.matrix(), filter, entry_of_row) {
+    const BlockMatrix& A = sheet.stepper.matrix();
+    const Mirror below = below_diagonal(A.pattern());
+    smoother.build(ProjectedRows(A, blocks, below));
+  }
+};
+
+// What is made of it for the next level.
+struct Coarser {
+  Aggregation aggregation;
+  BlockRows P, R;
+  Galerkin galerkin;
+  const SymmetricRows* coarse = nullptr;  // of the Galerkin
+  int columns = 0;
+
+  void make(const ProjectedSheet& fine) {
+    columns = aggregation.make_prolongation(fine.smoother, 0.02, &fine.blocks, P);
+    transpose(P, columns, R);
+    coarse = &galerkin.coarse(fine.smoother, P, R);
+  }
+  Eigen::MatrixXd matrix() const {
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(3 * columns, 3 * columns);
+    for (int r = 0; r < columns; ++r)
+      coarse->each(r, [&](int c, const float* block, bool turned) {
+        const Eigen::Map<const Eigen::Matrix3f> b(block);
+        A.block<3, 3>(3 * r, 3 * c) =
+            (turned ? Eigen::Matrix3f(b.transpose()) : Eigen::Matrix3f(b)).cast<double>();
+      });
+    return A;
+  }
+};
+
+Eigen::MatrixXd dense(const BlockRows& rows, int columns) {
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(3 * rows.rows(), 3 * columns);
+  for (int r = 0; r < rows.rows(); ++r)
+    for (int k = 0; k < rows[r].count; ++k)
+      A.block<3, 3>(3 * r, 3 * rows[r].column[k]) =
+          Eigen::Map<const Eigen::Matrix3f>(rows[r][k]).cast<double>();
+  return A;
+}
+Eigen::MatrixXd dense(const Smoother& rows) {
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(3 * rows.rows(), 3 * rows.rows());
+  for (int r = 0; r < rows.rows(); ++r)
+    rows.each(r, [&](int c, const auto* block) {
+      using Scalar = std::remove_cvref_t<decltype(*block)>;
+      A.block<3, 3>(3 * r, 3 * c) =
+          Eigen::Map<const Eigen::Matrix<Scalar, 3, 3>>(block).template cast<double>();
+    });
+  return A;
 }
 
 }  // namespace
@@ -63,7 +125,9 @@ TEST_CASE("what floats lose of a row's sum stands in the smoother's diagonal", "
   double worst = 0, lost = 0;
   for (int r = 0; r < A.rows(); ++r) {
     Mat3 exact = Mat3::Zero(), kept = exact, floats = exact;
-    rows.each(r, [&](int c, const Mat3& block) {
+    rows.each(r, [&](int c, const double* stored, bool turned) {
+      const Eigen::Map<const Mat3> as_stored(stored);
+      const Mat3 block = turned ? Mat3(as_stored.transpose()) : Mat3(as_stored);
       exact += block;
       floats += c == r ? block : Mat3(block.cast<float>().cast<double>());
     });
@@ -77,6 +141,80 @@ TEST_CASE("what floats lose of a row's sum stands in the smoother's diagonal", "
   }
   CHECK(worst < 1e-14);
   CHECK(lost > 1e-9);  // there is something to lose
+}
+
+TEST_CASE(
+    "the smoother holds the projected matrix, turned blocks of sliding particles too, and no zero block",
+    "[solvers]") {
+  const FallingSheet sheet(17, 15);
+  const ProjectedSheet projected(sheet, sheet.held({20, 21, 22, 37, 38, 39, 150, 151, 152}));
+  Eigen::MatrixXd S = Eigen::MatrixXd::Identity(sheet.b.size(), sheet.b.size());
+  for (const FilterEntry& e : projected.filter.entries()) S.block<3, 3>(3 * e.particle, 3 * e.particle) = e.S;
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(S.rows(), S.cols());
+  const BlockMatrix& matrix = sheet.stepper.matrix();
+  int zero = 0, blocks = 0;
+  for (int r = 0; r < matrix.rows(); ++r)
+    matrix.each(r, [&](int c, int slot) {
+      A.block<3, 3>(3 * r, 3 * c) = matrix.at(slot);
+      A.block<3, 3>(3 * c, 3 * r) = matrix.at(slot).transpose();
+    });
+  const Eigen::MatrixXd expected = S * A * S + Eigen::MatrixXd::Identity(S.rows(), S.cols()) - S;
+  const Eigen::MatrixXd held = dense(projected.smoother);
+  CHECK((held - expected).norm() < 1e-6 * expected.norm());
+  CHECK((held - held.transpose()).norm() < 1e-15 * held.norm());
+  for (int r = 0; r < matrix.rows(); ++r)
+    projected.smoother.each_other(r, [&](int, const float* block) {
+      ++blocks;
+      zero += Eigen::Map<const Eigen::Matrix3f>(block).isZero(0);
+    });
+  CHECK(zero == 0);
+  CHECK(blocks < 2 * (matrix.pattern().blocks() - matrix.rows()));  // there are slack springs
+}
+
+TEST_CASE("the next coarser matrix is P^T A P, symmetric to the last bit", "[solvers]") {
+  const FallingSheet sheet(33, 15);
+  const ProjectedSheet fine(sheet, sheet.held({0, 32, 300, 301, 302, 555}));
+  Coarser coarser;
+  coarser.make(fine);
+  const Eigen::MatrixXd P = dense(coarser.P, coarser.columns), R = dense(coarser.R, fine.smoother.rows());
+  CHECK(R == P.transpose());
+  const Eigen::MatrixXd A = coarser.matrix(), expected = R * dense(fine.smoother) * P;
+  CHECK(A == A.transpose());
+  CHECK((A - expected).norm() < 1e-6 * expected.norm());
+  CHECK(coarser.columns < fine.smoother.rows() / 3);
+}
+
+TEST_CASE("what makes levels gives the same bits after larger and smaller sheets as when it is new",
+          "[solvers]") {
+  const FallingSheet small(17, 15), large(40, 12);
+  Coarser kept;
+  for (const FallingSheet* sheet : {&small, &large, &small, &large}) {
+    const ProjectedSheet fine(*sheet, sheet->held({3, 50, 99}));
+    Coarser fresh;
+    fresh.make(fine);
+    kept.make(fine);
+    CHECK(kept.columns == fresh.columns);
+    CHECK(dense(kept.P, kept.columns) == dense(fresh.P, fresh.columns));
+    CHECK(kept.matrix() == fresh.matrix());
+  }
+}
+
+TEST_CASE("a sum of a row that was left in the middle leaves nothing to the next", "[solvers]") {
+  const std::vector<float> one(10, 1);
+  for (int time = 0; time < 2; ++time) {
+    RowSum sum(1000);
+    for (const int column : {7, 999, 7, 3}) sum.at(column).add(one.data());
+    for (int column = 100; column < 180; ++column) sum.at(column).add(one.data());
+    if (time == 0) continue;  // never taken
+    std::vector<int> columns;
+    sum.take([&](int column, const WideBlock& block) {
+      columns.push_back(column);
+      CHECK(block.column[2][2] == (column == 7 ? 2 : 1));
+    });
+    CHECK(columns.size() == 83);
+    CHECK(std::vector<int>(columns.begin(), columns.begin() + 3) == std::vector<int>{7, 999, 3});
+    sum.take([&](int, const WideBlock&) { FAIL("the row is empty"); });
+  }
 }
 
 TEST_CASE("a kept hierarchy knows what is held now", "[solvers]") {

@@ -11,7 +11,18 @@
 
 namespace drape::internal {
 
-// Makes P and returns how many columns it has. projected: has the S_i; null: all of them are the identity.
-int smoothed_aggregation(const Smoother& A, double theta, const ProjectedBlocks* projected, BlockRows& P);
+class Aggregation {
+ public:
+  // Makes P and returns how many columns it has. projected: has the S_i; null: all of them are the identity.
+  int make_prolongation(const Smoother& A, double theta, const ProjectedBlocks* projected, BlockRows& P);
+
+ private:
+  void find_strong(const Smoother& A, double theta, const ProjectedBlocks* projected);
+  int aggregate();
+
+  SparseRows<1> strong_;         // the strong neighbours of every vertex, and how strongly they are coupled
+  std::vector<float> least_;     // theta |A_ii|
+  std::vector<int> of_, begun_;  // vertex -> aggregate, in the end and before the aggregates grew
+};
 
 }  // namespace drape::internal

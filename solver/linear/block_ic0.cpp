@@ -32,9 +32,6 @@ Mat3 narrow(const WideBlock& wide) {
   return b;
 }
 
-typedef float FourFloats __attribute__((vector_size(16), aligned(4)));
-
-FourFloats floats(const float* p) { return *reinterpret_cast<const FourFloats*>(p); }
 FourFloats times(const float* block, const FourFloats& x) {
   return floats(block) * x[0] + floats(block + 3) * x[1] + floats(block + 6) * x[2];
 }

@@ -13,10 +13,7 @@ void transpose(const BlockRows& P, int columns, BlockRows& R) {
   });
   const int average = static_cast<int>(by_column.row.size()) / std::max(columns, 1) + 1;
   R.build(columns, average, [&](int row, BlockRows::Chunk& chunk) {
-    by_column.in_column(row, [&](int r, int k) {
-      float* block = chunk.add(r);
-      for (int e = 0; e < 9; ++e) block[e] = P[r][k][e / 3 + 3 * (e % 3)];
-    });
+    by_column.in_column(row, [&](int r, int k) { FloatBlock(P[r][k]).transpose().store(chunk.add(r)); });
   });
 }
 
@@ -37,7 +34,6 @@ const SymmetricRows& Galerkin::coarse(const Smoother& A, const BlockRows& P, con
       sum.take([&](int column, const WideBlock& block) { block.store(chunk.add(column)); });
       chunk.end_row();
     }
-    chunk.close();
   });
   coarse_.upper_.resize(columns);
   for_chunks(columns, [&](int begin, int end) {
@@ -61,7 +57,6 @@ const SymmetricRows& Galerkin::coarse(const Smoother& A, const BlockRows& P, con
       });
       chunk.end_row();
     }
-    chunk.close();
   });
   coarse_.bandwidth_ = 0;
   coarse_.below_.build(columns, columns, [&](int r, const auto& f) {

@@ -16,17 +16,16 @@ class SymmetricRows {
   int rows() const { return upper_.rows(); }
   int bandwidth() const { return bandwidth_; }
 
-  template <class F>  // f(column, block)
+  // Calls f(column, block, turned). Where `turned` the entry of the matrix is the transpose of the block.
+  template <class F>
   void each(int row, const F& f) const {
-    below_.in_column(row, [&](int c, int k) { f(c, block(c, k).transpose()); });
-    for (int k = 0; k < upper_[row].count; ++k) f(upper_[row].column[k], block(row, k));
+    below_.in_column(row, [&](int c, int k) { f(c, upper_[c][k], true); });
+    const BlockRows::Row blocks = upper_[row];
+    for (int k = 0; k < blocks.count; ++k) f(blocks.column[k], blocks[k], false);
   }
 
  private:
   friend class Galerkin;
-  Eigen::Map<const Eigen::Matrix3f> block(int row, int k) const {
-    return Eigen::Map<const Eigen::Matrix3f>(upper_[row][k]);
-  }
 
   BlockRows upper_;
   Mirror below_;

@@ -32,6 +32,7 @@ constexpr int most_iterations = 1000;
 
 struct Level {
   Smoother smoother;
+  Aggregation aggregation;
   BlockRows prolongation, restriction;  // to the next coarser level
   VecX x, r, residual;                  // x and r belong to the system of a coarser level
 
@@ -103,8 +104,8 @@ class Multigrid final : public Preconditioner {
     add_level(A);
     while (last().smoother.rows() > coarsest_rows && count_ < most_levels) {
       Level& fine = last();
-      const int columns = smoothed_aggregation(fine.smoother, strength, count_ == 1 ? &projected : nullptr,
-                                               fine.prolongation);
+      const int columns = fine.aggregation.make_prolongation(
+          fine.smoother, strength, count_ == 1 ? &projected : nullptr, fine.prolongation);
       if (columns == 0 || 10 * columns > 9 * fine.smoother.rows()) break;  // coarser gains nothing
       transpose(fine.prolongation, columns, fine.restriction);
       add_level(galerkin_.coarse(fine.smoother, fine.prolongation, fine.restriction));

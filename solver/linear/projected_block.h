@@ -68,21 +68,33 @@ inline Mirror below_diagonal(const BlockMatrix& A) {
 class ProjectedRows {
  public:
   ProjectedRows(const BlockMatrix& A, const ProjectedBlocks& projected, const Mirror& below)
-      : pattern_(A.pattern()), projected_(projected), below_(below) {}
+      : A_(A), pattern_(A.pattern()), projected_(projected), below_(below) {}
 
   int rows() const { return pattern_.rows(); }
   int bandwidth() const { return pattern_.bandwidth(); }
 
-  template <class F>  // f(column, block), columns ascending
+  // Calls f(column, block, turned), columns ascending. Where `turned` the entry of the matrix is the transpose of the
+  // block. One number behind the block can be read.
+  template <class F>
   void each(int row, const F& f) const {
-    below_.in_column(row, [&](int c, int slot) { f(c, Mat3(projected_.block(slot, c, row).transpose())); });
+    double held[10];
+    held[9] = 0;
+    below_.in_column(row, [&](int c, int slot) { f(c, block(slot, c, row, held), true); });
     for (int s = pattern_.diagonal(row); s < pattern_.row_start()[row + 1]; ++s) {
       const int c = pattern_.column()[s];
-      f(c, projected_.block(s, row, c));
+      f(c, block(s, row, c, held), false);
     }
   }
 
  private:
+  // That of the matrix itself, or a projected one in `held`.
+  const double* block(int slot, int row, int column, double* held) const {
+    if (projected_.free(row) && projected_.free(column)) return A_.block(slot);
+    Eigen::Map<Mat3>{held} = projected_.block(slot, row, column);
+    return held;
+  }
+
+  const BlockMatrix& A_;
   const BlockPattern& pattern_;
   const ProjectedBlocks& projected_;
   const Mirror& below_;

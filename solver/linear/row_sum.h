@@ -3,42 +3,28 @@
 
 #include <vector>
 
-#include "solver/linear/sparse_rows.h"
+#include "solver/linear/wide_block.h"
 
 namespace drape::internal {
 
-struct WideBlock {  // three of the four lanes count
-  Four column[3] = {};
-
-  template <class Scalar>
-  void add(const Scalar* b) {
-    for (int k = 0; k < 3; ++k) column[k] += load(b + 3 * k);
-  }
-  template <class A, class B>
-  void add_product(const A* a, const B* b) {
-    const Four a0 = load(a), a1 = load(a + 3), a2 = load(a + 6);
-    for (int k = 0; k < 3; ++k) {
-      const Four bk = load(b + 3 * k);
-      column[k] += a0 * bk[0] + a1 * bk[1] + a2 * bk[2];
-    }
-  }
-  template <class Scalar>
-  void store(Scalar* to) const {
-    for (int k = 0; k < 3; ++k)
-      for (int r = 0; r < 3; ++r) to[3 * k + r] = static_cast<Scalar>(column[k][r]);
-  }
-};
-
 class RowSum {
  public:
-  explicit RowSum(int columns) : place_(static_cast<std::size_t>(columns), -1) {}
+  // There may be one at a time in each thread, because they share what they write into.
+  explicit RowSum(int columns) : scratch_(of_thread()) {
+    if (scratch_.place.size() < static_cast<std::size_t>(columns)) scratch_.place.resize(columns, -1);
+    place_ = scratch_.place.data();
+    look();
+  }
+  ~RowSum() { clear(); }
+  RowSum(const RowSum&) = delete;
+  RowSum& operator=(const RowSum&) = delete;
 
   WideBlock& at(int column) {
-    int& place = place_[column];
+    int place = place_[column];
     if (place < 0) {
-      place = static_cast<int>(column_.size());
-      column_.push_back(column);
-      sum_.emplace_back();
+      if (count_ == room_) grow();
+      place = place_[column] = count_;
+      column_[count_++] = column;
     }
     return sum_[place];
   }
@@ -46,17 +32,43 @@ class RowSum {
   // Calls f(column, sum) in the order in which the columns came; then the row is empty again.
   template <class F>
   void take(const F& f) {
-    for (std::size_t k = 0; k < column_.size(); ++k) {
-      f(column_[k], sum_[k]);
+    for (int k = 0; k < count_; ++k) f(column_[k], sum_[k]);
+    clear();
+  }
+
+  void clear() {
+    for (int k = 0; k < count_; ++k) {
       place_[column_[k]] = -1;
+      for (Four& c : sum_[k].column) c = Four{0, 0, 0, 0};
     }
-    column_.clear();
-    sum_.clear();
+    count_ = 0;
   }
 
  private:
-  std::vector<int> place_, column_;
-  std::vector<WideBlock> sum_;
+  struct Scratch {
+    std::vector<int> place, column;  // column -> place in the sum, -1: none; and back
+    std::vector<WideBlock> sum;      // zero where no column is
+  };
+  static Scratch& of_thread() {
+    thread_local Scratch scratch;
+    return scratch;
+  }
+  [[gnu::noinline]] void grow() {
+    scratch_.column.resize(2 * scratch_.sum.size() + 16);
+    look();  // even if the next line throws
+    scratch_.sum.resize(scratch_.column.size());
+    look();
+  }
+  void look() {
+    column_ = scratch_.column.data();
+    sum_ = scratch_.sum.data();
+    room_ = static_cast<int>(scratch_.sum.size());
+  }
+
+  Scratch& scratch_;
+  int *place_, *column_;
+  WideBlock* sum_;
+  int count_ = 0, room_;
 };
 
 }  // namespace drape::internal

@@ -16,12 +16,15 @@
 
 #include "solver/linear/projected_block.h"
 #include "solver/linear/sparse_rows.h"
+#include "solver/linear/wide_block.h"
 
 namespace drape::internal {
 
 class Smoother {
  public:
-  template <class Rows>  // Rows has rows(), bandwidth() and each(row, f(column, block)) with both halves
+  // Rows has rows(), bandwidth() and each(row, f(column, block, turned)) with both halves. Where `turned` the entry of
+  // the matrix is the transpose of the block.
+  template <class Rows>
   void build(const Rows& A);
 
   int rows() const { return rows_; }
@@ -64,25 +67,27 @@ void Smoother::build(const Rows& A) {
     BlockRows::Chunk &lower = lower_.open(begin, 8 * chunk_size), &upper = upper_.open(begin, 8 * chunk_size);
     for (int r = begin; r < end; ++r) {
       const int chunk = r / chunk_rows_, first = chunk * chunk_rows_, last = first + chunk_rows_;
-      Mat3 own = Mat3::Zero(), lost = Mat3::Zero();
-      A.each(r, [&](int c, const auto& block) {
-        const Mat3& exact = block.template cast<double>();
-        if (c == r) return own = exact, void();
-        if (exact.isZero(0)) return;  // a slack spring
-        const bool before = first <= c && c < last ? c < r : chunk % 2 == 1;
-        Eigen::Map<Eigen::Matrix3f> kept((before ? lower : upper).add(c));
-        kept = exact.template cast<float>();
-        lost += exact - kept.template cast<double>();
+      const bool odd = chunk % 2 == 1;
+      WideBlock own, lost;
+      A.each(r, [&](int c, const auto* block, bool turned) {
+        if (c == r) return own.add(block);
+        const FloatBlock kept(block);
+        const bool before = first <= c && c < last ? c < r : odd;
+        // A slack spring is zero, but nothing foretells which ones are: so there is no branch on that.
+        float* to = (before ? lower : upper).add_if(!kept.is_zero(), c);
+        (turned ? kept.transpose() : kept).store(to);
+        lost.add_lost(block, kept);
       });
-      Mat3 D = own + 0.5 * (lost + lost.transpose());
-      if (!positive_definite(D)) D = own;
+      Mat3 exact, less;
+      own.store(exact.data());
+      lost.store(less.data());
+      Mat3 D = exact + 0.5 * (less + less.transpose());
+      if (!positive_definite(D)) D = exact;
       Eigen::Map<Mat3>(diagonal_.data() + 9 * static_cast<std::ptrdiff_t>(r)) = D;
       Eigen::Map<Mat3>(inverse_.data() + 9 * static_cast<std::ptrdiff_t>(r)) = D.inverse();
       lower.end_row();
       upper.end_row();
     }
-    lower.close();
-    upper.close();
   });
 }
 

@@ -16,17 +16,32 @@ class SparseRows {
  public:
   class Chunk {
    public:
-    // Adds an entry to the row that end_row() closes; the caller writes its numbers.
-    float* add(int column) {
-      column_.push_back(column);
-      value_.resize(value_.size() + width);
-      return value_.data() + value_.size() - width;
+    // Adds an entry to the row that end_row() closes; the caller writes its numbers, and may write one more, which
+    // means nothing.
+    float* add(int column) { return add_if(true, column); }
+    // The same, but the entry is forgotten again where it is not wanted. Nothing branches on that.
+    float* add_if(bool wanted, int column) {
+      if (count_ == column_.size()) expect(2 * count_ + 16);
+      column_[count_] = column;
+      float* value = value_.data() + width * count_;
+      count_ += wanted;
+      return value;
     }
-    void end_row() { start_.push_back(static_cast<int>(column_.size())); }
-    void close() { value_.push_back(0); }  // so that the last column can be read four wide
+    void end_row() { start_.push_back(static_cast<int>(count_)); }
 
    private:
     friend class SparseRows;
+    void begin() {
+      start_.assign(1, 0);
+      count_ = 0;
+    }
+    void expect(std::size_t entries) {
+      if (entries <= column_.size()) return;
+      value_.resize(width * entries + 1);  // so that the last column can be read and written four wide
+      column_.resize(entries);             // comes last, because its size says how many fit
+    }
+
+    std::size_t count_ = 0;  // entries; there is room for more
     std::vector<int> start_, column_;
     std::vector<float> value_;
   };
@@ -37,18 +52,17 @@ class SparseRows {
     const float* operator[](int k) const { return value + width * static_cast<std::ptrdiff_t>(k); }
   };
 
-  // Begins anew with this many rows. Each chunk of them is then opened, filled in order and closed.
+  // Begins anew with this many rows. Each chunk of them is then opened and filled in order. Chunks that are not needed
+  // keep their memory for a larger matrix.
   void resize(int rows) {
     rows_ = rows;
-    chunks_.resize(static_cast<std::size_t>(chunk_count(rows)));
+    const auto needed = static_cast<std::size_t>(chunk_count(rows));
+    if (chunks_.size() < needed) chunks_.resize(needed);
   }
   Chunk& open(int first_row, std::size_t entries_expected) {
     Chunk& chunk = chunks_[first_row / chunk_size];
-    chunk.start_.assign(1, 0);
-    chunk.column_.clear();
-    chunk.value_.clear();
-    chunk.column_.reserve(entries_expected);
-    chunk.value_.reserve(width * entries_expected + 1);
+    chunk.begin();
+    chunk.expect(entries_expected);
     return chunk;
   }
   template <class Make>  // make(row, chunk) adds the entries of the row
@@ -60,7 +74,6 @@ class SparseRows {
         make(row, chunk);
         chunk.end_row();
       }
-      chunk.close();
     });
   }
 
