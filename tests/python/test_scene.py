@@ -177,7 +177,7 @@ class Refusals(Workshop):
         self.assertIsNone(twill.measured_drape_nodes)
         self.assertIn("bend", twill.converted)
         self.assertIn("area_density", twill.measured)
-        self.assertIn("shear=41 N/m, bend_weft=6.1e-07 N m", repr(twill))
+        self.assertIn("shear=41 N/m, compression=0.1, bend_weft=6.1e-07 N m", repr(twill))
         self.assertNotIn("weft", repr(named))
         (self.folder / "mine.toml").write_text('area_density = 0.1\nbending_length = "2 cm"\n')
         self.assertAlmostEqual(drape.load_fabric(str(self.folder / "mine.toml")).fabric.bend, 9.80665 * 0.1 * 8e-6)

@@ -72,8 +72,9 @@ class Step(unittest.TestCase):
     def test_a_woven_sheet_whose_threads_rub_stays_higher(self):
         sheet = drape.grid(13, 5, 0.06, 0.02)
 
-        def droop(friction):
-            fabric = drape.Fabric(area_density=0.15, bend=1e-4, bend_time=0.05, bend_friction=friction)
+        def droop(friction, onset=0.5):
+            fabric = drape.Fabric(area_density=0.15, bend=1e-4, bend_time=0.05, bend_friction=friction,
+                                  bend_friction_onset=onset)
             self.assertEqual(fabric.bend_friction, friction)
             system = drape.System(drape.masses(sheet, fabric))
             system.add(drape.woven(sheet, fabric))
@@ -87,6 +88,10 @@ class Step(unittest.TestCase):
             return -state.x[:, 1].min()
 
         self.assertLess(droop(5e-4), 0.9 * droop(0))
+        self.assertEqual(drape.Fabric().bend_friction_onset, 50)
+        self.assertLess(droop(5e-4), 0.95 * droop(5e-4, 50))
+        with self.assertRaisesRegex(ValueError, "bend_friction_onset = 0"):
+            drape.Fabric(bend_friction_onset=0)
         self.assertIn("bend_friction=0.0005 N", repr(drape.Fabric(bend_friction=5e-4)))
         with self.assertRaisesRegex(ValueError, "bend_friction = -1"):
             drape.Fabric(bend_friction=-1)
