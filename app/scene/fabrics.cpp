@@ -48,7 +48,8 @@ fs::path file_of(const std::string& name, const fs::path& folder) {
 // "bend.warp" and the like: the numbers of a fabric file.
 void add_numbers(const Node& node, const std::string& path, Names& numbers) {
   if (node.kind != Node::Kind::table) return numbers.push_back(path);
-  for (const auto& [key, member] : node.members) add_numbers(member, path + "." + key, numbers);
+  for (const auto& [key, member] : node.members)
+    add_numbers(member, std::string(path).append(".").append(key), numbers);
 }
 
 Names numbers_of(const Node& root) {
