@@ -57,6 +57,11 @@ TEST_CASE("a fabric wrinkles finer than its mesh, unless its file or the scene s
   CHECK(compression("--fabric plain.toml") == app::usual_compression);
   CHECK(compression("--fabric stiff.toml") == 1);
   CHECK(compression("--fabric plain.toml --set cloth.0.compression=0.4") == Approx(0.4));
+  // Springs say that they leave it out where somebody asked for it.
+  const std::string springs =
+      "drop sheet.obj --fabric plain.toml --duration 0.02 --out o --set cloth.0.model=noh-jung";
+  CHECK_THAT(shop.drape(springs).err, !Contains("compression"));
+  CHECK_THAT(shop.drape(springs + " --set cloth.0.compression=0.4").err, Contains("leaves out compression"));
 }
 
 TEST_CASE("edges too long for the folds of a fabric are told, with what helps", "[scene]") {

@@ -30,7 +30,8 @@ int whole(Random& random, int least, int most) {
 }
 
 Mat3 any_rotation(Random& random) {
-  const Eigen::Vector4d q(number(random, -1, 1), number(random, -1, 1), number(random, -1, 1), 1e-3);
+  const Eigen::Vector4d q(number(random, -1, 1), number(random, -1, 1), number(random, -1, 1),
+                          number(random, 1e-3, 1));
   return Eigen::Quaterniond(q.normalized()).toRotationMatrix();
 }
 

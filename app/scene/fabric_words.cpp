@@ -1,4 +1,5 @@
 #include "app/scene/fabric_words.h"
+#include "app/scene/fabrics.h"
 
 namespace drape::app {
 namespace {
@@ -39,6 +40,8 @@ std::string beyond_springs(const Fabric& fabric) {
   if (w.bend_bias) names.emplace_back("bend of the bias");
   if (w.poisson != usual.poisson || w.bend_poisson != usual.bend_poisson)
     names.emplace_back("Poisson's ratio");
+  if (w.compression != usual.compression && w.compression != usual_compression)
+    names.emplace_back("compression");
   if (w.stretch_time > 0 || w.shear_time > 0 || w.bend_time > 0) names.emplace_back("viscosity");
   return names.empty() ? "" : listed(names);
 }
