@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <set>
 
 #include "app/scene/laboratory.h"
 #include "app/textile/elastica.h"
@@ -197,6 +198,30 @@ TEST_CASE("a drape coefficient depends on the ratio of rigidity to weight, not o
   CHECK(drape_test(fabric, ClothModel::woven, 0.015, {.repeats = 1}, each)[0].found == one[0].found);
 }
 
+TEST_CASE("every repeat of a drape test has a mesh of its own, of the same size", "[fabric-tests]") {
+  const DrapeTest test;
+  const double edge = 0.015;
+  std::vector<double> longest;
+  for (int repeat = 0; repeat < 4; ++repeat) {
+    const Specimen disc = draped_disc(test, edge, repeat);
+    const TriangleMesh& mesh = disc.mesh;
+    const std::set<int> held(disc.held.begin(), disc.held.end());  // two rings, apart by more than an edge
+    double most = 0, rim = 0;
+    for (const Edge& e : edges(mesh))
+      if (!held.contains(e.a) && !held.contains(e.b))
+        most = std::max(most, (mesh.positions[static_cast<std::size_t>(e.a)] -
+                               mesh.positions[static_cast<std::size_t>(e.b)])
+                                  .norm());
+    for (const Vec3& x : mesh.positions) rim = std::max(rim, x.norm());
+    CHECK(most <= edge * (1 + 1e-9));
+    CHECK(most > 0.8 * edge);
+    CHECK(rim == Approx(test.radius));
+    for (double other : longest) CHECK(std::abs(most - other) > 1e-6 * edge);
+    longest.push_back(most);
+  }
+  CHECK(draped_disc(test, edge, 2).mesh.positions == draped_disc(test, edge, 2).mesh.positions);
+}
+
 TEST_CASE("test-fabric prints a table and writes it, with the shadows", "[fabric-tests]") {
   Folder folder;
   const Outcome outcome =
@@ -230,6 +255,10 @@ TEST_CASE("what test-fabric cannot do is refused in one line", "[fabric-tests]")
         {"springs.toml", "a specimen needs stretch and bend per width"},
         {"cotton-broad --model choi-ko", "expected woven or noh-jung"},
         {"cotton-broad --repeats 1.5", "whole number"},
+        {"cotton-broad --plate 2cm", "from 50 mm"},
+        {"cotton-broad --plate 29cm", "a smaller --plate"},
+        {"cotton-broad --bending hinge", "there is no such bending"},
+        {"cotton-broad --bending hinges --model noh-jung", "goes with --model woven"},
         {"cotton-broad --specimen 18cm", "from 200 mm"}}) {
     CAPTURE(words);
     const Outcome outcome = folder.drape(std::string("test-fabric ") + words);

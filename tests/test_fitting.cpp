@@ -209,6 +209,8 @@ TEST_CASE("what cannot be fitted is said in one line, and nothing is written", "
       {plain + "measured_drape = { coefficient = 0.5, specimen = \"20 cm\" }\n", "",
        "too coarse for the 10 mm"},
       {plain + "measured_drape = { coefficient = 0.5, specimen = \"20 mm\" }\n", "", "from 20 cm to 40 cm"},
+      {plain + "measured_drape = { coefficient = 0.5, plate = \"20 mm\" }\n", "", "from 5 cm to 30 cm"},
+      {plain + "measured_drape = { coefficient = 0.5, plate = \"30 cm\" }\n", "", "as wide as the disc"},
       {plain + "bend_spring = 1e-7\nmeasured_picture_frame = { side = 0.1, shear = 0.1, force = 1 }\n", "",
        "a specimen needs stretch and bend per width"},
       {plain + "measured_cantilever = { length = \"3 cm\", droop = \"1 cm\" }\n", "",

@@ -1,4 +1,5 @@
-// The force of a plate, flat at rest and bent at rest: laws of its energy, its matrix and its rest shape.
+// The force of bending, by a plate or by hinges, flat at rest and bent at rest: laws of its energy, its matrix and its
+// rest shape.
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -15,9 +16,17 @@ using namespace drape::test;
 
 namespace {
 
-Fabric stiff(double rest_angle) {
+constexpr std::array bendings_at_angles = {Bending::plate, Bending::hinges};
+
+const char* name(Bending bending) {
+  constexpr std::array names = {"plate", "hinges", "quadratic hinges"};
+  return names[static_cast<std::size_t>(bending)];
+}
+
+Fabric stiff(double rest_angle, Bending bending = Bending::plate) {
   Fabric fabric{.area_density = 0.2, .stretch = 300, .bend = 1};
   fabric.weave.rest_angle = rest_angle;
+  fabric.weave.bending = bending;
   return fabric;
 }
 
@@ -66,13 +75,20 @@ Eigen::MatrixXd dense(const BlockMatrix& A) {  // in particle order
 }  // namespace
 
 TEST_CASE(
-    "a plate's force is minus the slope of its energy, bent at rest or flat, and turns and moves nothing",
+    "the force of bending is minus the slope of its energy, bent at rest or flat, and turns and moves "
+    "nothing",
     "[woven][forces]") {
   for (StripMesh kind : strip_meshes)
-    for (double rest_angle : {0.0, 0.3, 1.0}) {
-      INFO(name(kind) << ", rest angle " << rest_angle);
+    for (const auto& [bending, rest_angle] : {std::pair{Bending::plate, 0.0},
+                                              {Bending::plate, 0.3},
+                                              {Bending::plate, 1.0},
+                                              {Bending::hinges, 0.0},
+                                              {Bending::hinges, 0.3},
+                                              {Bending::hinges, 1.0},
+                                              {Bending::quadratic_hinges, 0.0}}) {
+      INFO(name(kind) << ", " << name(bending) << ", rest angle " << rest_angle);
       const TriangleMesh mesh = folded(kind);
-      const auto plate = plate_of_mesh(mesh, stiff(rest_angle));
+      const auto plate = plate_of_mesh(mesh, stiff(rest_angle, bending));
       const VecX x = moved(mesh) + random_vector(3 * mesh.vertex_count(), 0.01, 7);
       const VecX f = pushed(*plate, x);
       double worst = 0;
@@ -95,24 +111,26 @@ TEST_CASE(
 
 TEST_CASE("a cloth that rests in the shape of its mesh is in equilibrium there, wherever it is moved to",
           "[woven]") {
-  for (StripMesh kind : strip_meshes) {
-    INFO(name(kind));
-    const TriangleMesh mesh = folded(kind);
-    const auto flat = plate_of_mesh(mesh, stiff(0)), bent = plate_of_mesh(mesh, stiff(1)),
-               half = plate_of_mesh(mesh, stiff(0.5));
-    for (const VecX& x : {stacked(mesh.positions), moved(mesh)}) {
-      const VecX all = pushed(*flat, x);
-      REQUIRE(all.norm() > 1);
-      CHECK(pushed(*bent, x).norm() < 1e-11 * all.norm());
-      CHECK(std::abs(bent->energy(x)) < 1e-11 * flat->energy(x));
-      CHECK(half->energy(x) == Approx(0.25 * flat->energy(x)));
+  for (StripMesh kind : strip_meshes)
+    for (Bending bending : bendings_at_angles) {
+      INFO(name(kind) << ", " << name(bending));
+      const TriangleMesh mesh = folded(kind);
+      const auto flat = plate_of_mesh(mesh, stiff(0, bending)), bent = plate_of_mesh(mesh, stiff(1, bending)),
+                 half = plate_of_mesh(mesh, stiff(0.5, bending));
+      for (const VecX& x : {stacked(mesh.positions), moved(mesh)}) {
+        const VecX all = pushed(*flat, x);
+        REQUIRE(all.norm() > 1);
+        CHECK(pushed(*bent, x).norm() < 1e-11 * all.norm());
+        CHECK(std::abs(bent->energy(x)) < 1e-11 * flat->energy(x));
+        CHECK(half->energy(x) == Approx(0.25 * flat->energy(x)));
+      }
+      // A flat mesh has no angle to rest with, whatever is asked.
+      TriangleMesh plane = mesh;
+      for (Vec3& x : plane.positions) x.y() = 0;
+      const VecX x = stacked(mesh.positions);
+      CHECK(pushed(*plate_of_mesh(plane, stiff(1, bending)), x) ==
+            pushed(*plate_of_mesh(plane, stiff(0, bending)), x));
     }
-    // A flat mesh has no angle to rest with, whatever is asked.
-    TriangleMesh plane = mesh;
-    for (Vec3& x : plane.positions) x.y() = 0;
-    const VecX x = stacked(mesh.positions);
-    CHECK(pushed(*plate_of_mesh(plane, stiff(1)), x) == pushed(*plate_of_mesh(plane, stiff(0)), x));
-  }
 }
 
 TEST_CASE(
@@ -156,10 +174,11 @@ TEST_CASE("a fold stays where it is at rest, opens where the cloth rests flat, a
   const auto opening = [](const VecX& x) {  // of the edges of both wings, from one another
     return (x.segment<3>(3 * (9 * 2 + 8)) - x.segment<3>(3 * (9 * 2))).norm();
   };
-  const auto run = [&](const TriangleMesh& start, double rest_angle) {
+  const auto run = [&](Bending bending, const TriangleMesh& start, double rest_angle) {
     Assembly all({0, 0, 0});
     Fabric fabric{.area_density = 0.15, .stretch = 500, .bend = 1e-4};
     fabric.weave.rest_angle = rest_angle;
+    fabric.weave.bending = bending;
     fabric.weave.bend_time = 0.01;
     all.add(ClothPart{.mesh = fold, .fabric = fabric, .model = ClothModel::woven, .imperfection = 0});
     all.state.x = stacked(start.positions);
@@ -173,12 +192,16 @@ TEST_CASE("a fold stays where it is at rest, opens where the cloth rests flat, a
     }
     return opening(all.state.x);
   };
-  CHECK(run(fold, 1) == Approx(0.1).epsilon(1e-9));
-  CHECK(run(fold, 0) > 0.19);
-  CHECK(run(plane, 1) < 0.12);
-  const double half = run(fold, 0.5);
-  CHECK(half > 0.13);
-  CHECK(half < 0.19);
+  for (Bending bending : bendings_at_angles) {
+    INFO(name(bending));
+    CHECK(run(bending, fold, 1) == Approx(0.1).epsilon(1e-9));
+    CHECK(run(bending, fold, 0) > 0.19);
+    CHECK(run(bending, plane, 1) < 0.12);
+    const double half = run(bending, fold, 0.5);
+    CHECK(half > 0.13);
+    CHECK(half < 0.19);
+  }
+  CHECK(run(Bending::quadratic_hinges, fold, 0) > 0.19);
 }
 
 TEST_CASE("cloth that rests bent spins as a rigid body does", "[woven]") {
@@ -211,4 +234,6 @@ TEST_CASE("a rest angle that makes no sense is refused", "[woven]") {
   const TriangleMesh mesh = grid(3, 3, 1, 1);
   for (double bad : {-0.1, 1.1, double(NAN)})
     CHECK_THROWS_WITH(woven(mesh, mesh, stiff(bad)), Catch::Contains("rest_angle"));
+  CHECK_THROWS_WITH(woven(mesh, mesh, stiff(0.5, Bending::quadratic_hinges)),
+                    Catch::Contains("quadratic hinges rest flat"));
 }

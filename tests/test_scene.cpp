@@ -208,6 +208,11 @@ TEST_CASE("a woven cloth is read, and refused where its directions are not known
   CHECK(w.rest_angle == 0.4);
   CHECK(read(woven + "rest_angle = \"mesh\"\n").cloths[0].fabric.weave.rest_angle == 1);
   CHECK(read(woven + "rest_angle = \"flat\"\n").cloths[0].fabric.weave.rest_angle == 0);
+  CHECK(w.bending == Bending::plate);
+  CHECK(read(woven + "bending = \"hinges\"\nrest_angle = 1\n").cloths[0].fabric.weave.bending ==
+        Bending::hinges);
+  CHECK(read(woven + "bending = \"quadratic-hinges\"\n").cloths[0].fabric.weave.bending ==
+        Bending::quadratic_hinges);
   CHECK_FALSE(read(cloth).cloths[0].self_contact);
   const ClothEntry layer =
       read(cloth + "self_contact = true\nthickness = \"2 mm\"\nfriction = 0.4\n").cloths[0];
@@ -232,6 +237,10 @@ TEST_CASE("a woven cloth is read, and refused where its directions are not known
       {cloth + "warp = [1, 0, 0]\n", "scene.toml:3:", "goes with model = \"woven\""},
       {cloth + "compression = 0.5\n", "scene.toml:3:", "goes with model = \"woven\""},
       {cloth + "rest_angle = \"mesh\"\n", "scene.toml:3:", "goes with model = \"woven\""},
+      {cloth + "bending = \"hinges\"\n", "scene.toml:3:", "goes with model = \"woven\""},
+      {woven + "bending = \"hinge\"\n", "scene.toml:4:", "hinges"},
+      {woven + "rest_angle = 1\nbending = \"quadratic-hinges\"\n",
+       "scene.toml:5:", "quadratic hinges rest flat"},
       {woven + "rest_angle = \"bent\"\n", "scene.toml:4:", "\"flat\", \"mesh\", or a number"},
       {woven + "rest_angle = 1.5\n", "scene.toml:4:", "from 0 (flat) to 1"},
       {woven + "rest_angle = 1\n[[cloth.seams]]\n", "scene.toml:4:", "with seams"},

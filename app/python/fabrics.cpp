@@ -24,13 +24,20 @@ DampingKind damping_kind(const std::string& name) {
 
 const char* name_of(DampingKind kind) { return kind == DampingKind::axial ? "axial" : "relative"; }
 
+Bending bending_named(const std::string& name) {
+  const Names names = bending_names();
+  if (std::find(names.begin(), names.end(), name) != names.end()) return bending_of(name);
+  throw py::value_error("bending: there is no '" + name + "'; " + suggestion(name, names));
+}
+
 using Given = std::optional<double>;
 
 Fabric made(double area_density, double stretch, double bend, Given stretch_spring, Given bend_spring,
             Given buckling_clamp, double damping, const std::string& kind, bool neighbour_weighting,
             Given stretch_weft, Given shear, double poisson, double compression, Given bend_weft,
             Given bend_bias, double bend_poisson, double stretch_time, double shear_time, double bend_time,
-            double rest_angle, double bend_friction, Given bend_friction_weft, double bend_friction_onset) {
+            double rest_angle, double bend_friction, Given bend_friction_weft, double bend_friction_onset,
+            const std::string& bending) {
   Fabric fabric{area_density,       stretch,        bend,    stretch_spring,
                 bend_spring,        buckling_clamp, damping, damping_kind(kind),
                 neighbour_weighting};
@@ -41,6 +48,7 @@ Fabric made(double area_density, double stretch, double bend, Given stretch_spri
                   .bend_weft = bend_weft,
                   .bend_bias = bend_bias,
                   .bend_poisson = bend_poisson,
+                  .bending = bending_named(bending),
                   .bend_friction = bend_friction,
                   .bend_friction_weft = bend_friction_weft,
                   .bend_friction_onset = bend_friction_onset,
@@ -74,6 +82,7 @@ std::string text(const Fabric& fabric) {
   given("bend_weft", w.bend_weft, " N m");
   given("bend_bias", w.bend_bias, " N m");
   other("bend_poisson", w.bend_poisson, usual.bend_poisson, "");
+  if (w.bending != usual.bending) all += ", bending=" + name_of(w.bending);
   other("stretch_time", w.stretch_time, 0, " s");
   other("shear_time", w.shear_time, 0, " s");
   other("bend_time", w.bend_time, 0, " s");
@@ -97,7 +106,9 @@ void add_fabric(py::module_& m) {
       "share of the mesh's folds with which it rests; bend_friction, bend_friction_weft [N], the moment of "
       "dry\n"
       "friction per width against bending, half of the width 2HB of KES-FB2's loop [Kawabata 1980], and\n"
-      "bend_friction_onset [1/m], the change of curvature within which it sets in.")
+      "bend_friction_onset [1/m], the change of curvature within which it sets in; bending, 'plate',\n"
+      "'hinges' (the angles between triangles [Grinspun et al. 2003]) or 'quadratic-hinges' (their\n"
+      "quadratic form, which rests flat [Bergou et al. 2006]).")
       .def(py::init(&made), py::kw_only(), "area_density"_a = 0.15, "stretch"_a = 500.0, "bend"_a = 1e-5,
            "stretch_spring"_a = py::none(), "bend_spring"_a = py::none(), "buckling_clamp"_a = py::none(),
            "damping"_a = 0.0, "damping_kind"_a = "relative", "neighbour_weighting"_a = false,
@@ -105,6 +116,7 @@ void add_fabric(py::module_& m) {
            "bend_weft"_a = py::none(), "bend_bias"_a = py::none(), "bend_poisson"_a = 0.0,
            "stretch_time"_a = 0.0, "shear_time"_a = 0.0, "bend_time"_a = 0.0, "rest_angle"_a = 0.0,
            "bend_friction"_a = 0.0, "bend_friction_weft"_a = py::none(), "bend_friction_onset"_a = 50.0,
+           "bending"_a = "plate",
            "ValueError names a value that is negative, not finite, or zero where it may not be.")
       .def_readwrite("area_density", &Fabric::area_density, "kg/m^2")
       .def_readwrite("stretch", &Fabric::stretch, "N/m, membrane stiffness per width")
@@ -172,6 +184,10 @@ void add_fabric(py::module_& m) {
           "bend_friction_onset", [](const Fabric& fabric) { return fabric.weave.bend_friction_onset; },
           [](Fabric& fabric, double value) { fabric.weave.bend_friction_onset = value; },
           "1/m, the change of curvature within which the friction sets in")
+      .def_property(
+          "bending", [](const Fabric& fabric) { return name_of(fabric.weave.bending); },
+          [](Fabric& fabric, const std::string& name) { fabric.weave.bending = bending_named(name); },
+          "'plate', 'hinges' or 'quadratic-hinges'")
       .def(
           "copy", [](const Fabric& fabric) { return Fabric(fabric); },
           "Another fabric with the same numbers.")

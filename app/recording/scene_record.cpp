@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "app/base/words.h"
+#include "app/scene/fabric_read.h"
 #include "constraints/pins.h"
 #include "solver/forces/woven.h"
 
@@ -62,6 +63,8 @@ std::string fabric_words(const Json& fabric) {
   words.number("of the bias ", weave["bend_bias"], " N m");
   words.number("Poisson's ratio ", weave["poisson"], "");
   words.number("of bending ", weave["bend_poisson"], "");
+  if (const std::string bending = weave["bending"].text(); !bending.empty() && bending != "plate")
+    words.add("bending by " + bending);
   words.number("compression ", weave["compression"], "");
   words.number("viscosity of stretch ", weave["stretch_time"], " s");
   words.number("of shear ", weave["shear_time"], " s");
@@ -165,6 +168,7 @@ Json weave_json(const ClothEntry& entry, const std::optional<Vec3>& direction) {
                         {"bend_weft", plate.weft},
                         {"bend_bias", 0.25 * (plate.warp + plate.weft + 2 * plate.cross) + plate.twist},
                         {"bend_poisson", weave.bend_poisson},
+                        {"bending", app::name_of(weave.bending)},
                         {"stretch_time", weave.stretch_time},
                         {"shear_time", weave.shear_time},
                         {"bend_time", weave.bend_time},

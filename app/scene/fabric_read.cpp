@@ -1,5 +1,6 @@
 #include "app/scene/fabric_read.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mesh/base/errors.h"
@@ -76,6 +77,15 @@ void read_viscosity(Table& table, Weave& weave) {
 }
 
 }  // namespace
+
+Names bending_names() { return {"plate", "hinges", "quadratic-hinges"}; }
+
+std::string name_of(Bending bending) { return bending_names()[static_cast<std::size_t>(bending)]; }
+
+Bending bending_of(const std::string& name) {
+  const Names names = bending_names();
+  return static_cast<Bending>(std::find(names.begin(), names.end(), name) - names.begin());
+}
 
 void read_fabric(Table& table, Fabric& fabric, FabricRecord& record) {
   table.read("area_density", fabric.area_density, dimension::area_density, Range::positive, "mass per area");

@@ -16,10 +16,15 @@ std::optional<MeasuredDrape> read_drape(Table& table) {
   if (measured.coefficient > 1)
     test.fail("coefficient", "a drape coefficient is at most 1; write 45 % as \"45 %\" or 0.45");
   test.read("nodes", measured.nodes, dimension::number, Range::not_negative, "how many folds were counted");
-  test.read("specimen", measured.specimen, dimension::length, Range::positive,
-            "diameter of the disc; the plate has 18 cm");
+  test.read("specimen", measured.specimen, dimension::length, Range::positive, "diameter of the disc");
   if (measured.specimen < 0.2 || measured.specimen > 0.4)
     test.fail("specimen", "expected a diameter from 20 cm to 40 cm");
+  test.read("plate", measured.plate, dimension::length, Range::positive,
+            "diameter of the plate that the disc lies on");
+  if (measured.plate < 0.05 || measured.plate > 0.3)
+    test.fail("plate", "expected a diameter from 5 cm to 30 cm");
+  if (measured.plate >= measured.specimen)
+    test.fail("plate", "the plate is as wide as the disc; expected less than its specimen");
   test.finish();
   return measured;
 }

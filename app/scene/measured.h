@@ -12,9 +12,9 @@ namespace drape::app {
 
 // What a drape tester of Cusick's kind found.                                            [BS 5058, ISO 9073-9]
 struct MeasuredDrape {
-  double coefficient = 0;            // from 0 to 1
-  std::optional<double> nodes = {};  // how many folds; a mean of several tests may be no whole number
-  double specimen = 0.3;             // m, diameter of the disc, on a plate of 18 cm
+  double coefficient = 0;               // from 0 to 1
+  std::optional<double> nodes = {};     // how many folds; a mean of several tests may be no whole number
+  double specimen = 0.3, plate = 0.18;  // m, diameters of the disc and of the plate that it lies on
 };
 
 // A strip of this length leaves a clamp horizontally. Its free end comes to hang lower by the droop.

@@ -122,6 +122,19 @@ void read_rest_angle(Table& table, ClothEntry& cloth) {
     table.fail("rest_angle", "where panels are sewn the mesh has no angle; expected \"flat\" with seams");
 }
 
+void read_bending(Table& table, ClothEntry& cloth) {
+  std::string word = name_of(cloth.fabric.weave.bending);
+  table.read("bending", word, bending_names(),
+             {"of model = \"woven\": a plate, which is right in every direction on any mesh; hinges, the "
+              "angles between triangles; or the quadratic form of hinges, which rests flat",
+              "\"plate\""});
+  if (cloth.model != "woven" && table.has("bending")) table.fail("bending", "goes with model = \"woven\"");
+  Weave& weave = cloth.fabric.weave;
+  weave.bending = bending_of(word);
+  if (weave.bending == Bending::quadratic_hinges && weave.rest_angle > 0)
+    table.fail("bending", "quadratic hinges rest flat; expected \"hinges\" with this rest_angle");
+}
+
 void read_hysteresis(Table& table, ClothEntry& cloth) {
   bool asked = false;
   table.read(
@@ -211,6 +224,7 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
   read_self_contact(table, cloth);
   cloth.has_own_damping = table.has("damping");
   read_rest_angle(table, cloth);
+  read_bending(table, cloth);
   read_hysteresis(table, cloth);
   check_model(table, cloth);
   for (Table& pin : table.tables("pins", pins_about)) cloth.pins.push_back(read_pin(pin, folder));

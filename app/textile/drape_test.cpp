@@ -26,6 +26,8 @@ class Random {
   std::mt19937_64 numbers_;
 };
 
+Random numbers_of(int repeat) { return Random(static_cast<std::uint64_t>(repeat) + 1); }
+
 bool come_to_rest(Rig& rig, const DrapeTest& test) {
   constexpr double step = 0.02;  // s
   // Gravity is nothing at the start, and so is its energy.
@@ -42,6 +44,10 @@ bool come_to_rest(Rig& rig, const DrapeTest& test) {
 
 }  // namespace
 
+Specimen draped_disc(const DrapeTest& test, double edge, int repeat) {
+  return disc_on_plate(test.radius, test.plate_radius, edge * (1 - finer * numbers_of(repeat)()));
+}
+
 Values drape_test(const Fabric& fabric, ClothModel model, double edge, const DrapeTest& test,
                   const std::function<void(int repeat, const Shadow&)>& each) {
   const double reach = 1.05 * test.radius, plate = Shadow(test.plate_radius, reach).area();
@@ -49,8 +55,9 @@ Values drape_test(const Fabric& fabric, ClothModel model, double edge, const Dra
                    {"nodes", {"", "1", 1}, {}, {}},
                    {"amplitude of the nodes", {"mm", "m", 1e-3}, {}, {}}};
   for (int repeat = 0; repeat < test.repeats && !interrupted(); ++repeat) {
-    Random random(static_cast<std::uint64_t>(repeat) + 1);
-    const Specimen disc = disc_on_plate(test.radius, test.plate_radius, edge * (1 - finer * random()));
+    Random random = numbers_of(repeat);
+    random();  // has made the mesh
+    const Specimen disc = draped_disc(test, edge, repeat);
     Shadow before(test.plate_radius, reach);
     before.add(disc.mesh.triangles, disc.mesh.positions);
     const double whole = before.area(), angle = 2 * pi * random();

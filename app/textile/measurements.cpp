@@ -28,7 +28,8 @@ void check_size(const char* what, double length, double edge) {
 
 // The mean of the specimens that came to rest.
 Found draped(const Fabric& fabric, const MeasuredDrape& measured, const SpecimenOptions& options) {
-  const DrapeTest test{.radius = 0.5 * measured.specimen, .repeats = options.repeats};
+  const DrapeTest test{
+      .plate_radius = 0.5 * measured.plate, .radius = 0.5 * measured.specimen, .repeats = options.repeats};
   const Values values = drape_test(fabric, ClothModel::woven, options.edge, test, [](int, const Shadow&) {});
   double sum = 0, squares = 0, nodes = 0;
   int rested = 0;
@@ -71,7 +72,7 @@ std::vector<Measurement> measurements_of(const MeasuredTests& tests, const Speci
   const double edge = options.edge;
   std::vector<Measurement> all;
   if (tests.drape) {
-    check_overhang(0.5 * tests.drape->specimen, DrapeTest().plate_radius, edge);
+    check_overhang(0.5 * tests.drape->specimen, 0.5 * tests.drape->plate, edge);
     all.push_back(
         {"drape coefficient", percent, tests.drape->coefficient, tolerance_of_coefficient, true, rough_step,
          [=, drape = *tests.drape](const Fabric& fabric) { return draped(fabric, drape, options); }});
@@ -106,7 +107,7 @@ double bend_to_start_from(const MeasuredTests& tests, double area_density, const
   }
   if (!tests.drape) return Fabric().bend;
   // From c = 0.12 to 0.42 times the width of the ring that hangs the coefficient grows from 0 to 1.
-  const double ring = 0.5 * tests.drape->specimen - DrapeTest().plate_radius;
+  const double ring = 0.5 * (tests.drape->specimen - tests.drape->plate);
   return weight * std::pow(ring * (0.12 + 0.3 * tests.drape->coefficient), 3);
 }
 

@@ -54,8 +54,9 @@ void check_widths(const NamedFabric& named) {
 void check_overhang(double radius, double plate_radius, double edge) {
   const double overhang = radius - plate_radius;
   if (overhang < 2.5 * edge)
-    throw InputError("--mesh " + millimetres(edge) + ": is too coarse for the " + millimetres(overhang) +
-                     " of fabric that hang over the plate; take a finer mesh or a larger --specimen");
+    throw InputError(
+        "--mesh " + millimetres(edge) + ": is too coarse for the " + millimetres(overhang) +
+        " of fabric that hang over the plate; take a finer mesh, a larger --specimen or a smaller --plate");
 }
 
 }  // namespace drape::app

@@ -51,12 +51,23 @@ void add_friction(const TestFabricWords& words, Plan& plan) {
   }
 }
 
+void set_bending(const std::string& word, Plan& plan) {
+  if (plan.model != ClothModel::woven)
+    throw InputError("--bending " + word + ": goes with --model woven; the springs of " + plan.model_name +
+                     " bend in their own way");
+  const Names names = bending_names();
+  if (std::find(names.begin(), names.end(), word) == names.end())
+    throw InputError("--bending " + word + ": there is no such bending; " + suggestion(word, names));
+  plan.fabric.fabric.weave.bending = bending_of(word);
+}
+
 Plan plan_of(const TestFabricWords& words) {
   Plan plan;
   plan.fabric = load_fabric(words.fabric);
   check_widths(plan.fabric);
   plan.model_name = words.model.empty() ? "woven" : words.model;
   plan.model = model_of(plan.model_name);
+  if (!words.bending.empty()) set_bending(words.bending, plan);
   if (words.hysteresis) add_friction(words, plan);
   for (const std::string& word : names_in(words.mesh.empty() ? "10 mm,5 mm" : words.mesh))
     plan.edges.push_back(specimen_length(word, "--mesh", least_edge, most_edge));
@@ -75,9 +86,14 @@ Plan plan_of(const TestFabricWords& words) {
     for (std::size_t l = 0; l < k; ++l)
       if (millimetres(plan.edges[k]) == millimetres(plan.edges[l]))
         throw twice("--mesh", words.mesh, millimetres(plan.edges[k]));
-  if (plan.fabric.tests.drape) plan.drape.radius = 0.5 * plan.fabric.tests.drape->specimen;
+  if (plan.fabric.tests.drape) {
+    plan.drape.radius = 0.5 * plan.fabric.tests.drape->specimen;
+    plan.drape.plate_radius = 0.5 * plan.fabric.tests.drape->plate;
+  }
   if (!words.specimen.empty())
     plan.drape.radius = 0.5 * specimen_length(words.specimen, "--specimen", 0.2, 0.4);
+  if (!words.plate.empty())
+    plan.drape.plate_radius = 0.5 * specimen_length(words.plate, "--plate", 0.05, 0.3);
   if (!words.lowering.empty()) plan.drape.lowering = lowering(words.lowering);
   if (!words.repeats.empty()) plan.drape.repeats = repeats_of(words.repeats);
   if (std::find(plan.tests.begin(), plan.tests.end(), "drape") != plan.tests.end())

@@ -11,7 +11,7 @@ namespace drape::app {
 
 // As on the command line; empty when not given.
 struct TestFabricWords {
-  std::string fabric, mesh, tests, model, repeats, specimen, lowering;
+  std::string fabric, mesh, tests, model, bending, repeats, specimen, plate, lowering;
   bool hysteresis = false;  // whether the threads rub, as kes.2HB says
 };
 

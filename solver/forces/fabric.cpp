@@ -23,6 +23,8 @@ void check(const Weave& w) {
           "the share of the resistance to compression is from 0 to 1");
   require(w.rest_angle >= 0 && w.rest_angle <= 1, "rest_angle", w.rest_angle, "",
           "the share of the mesh's own angles is from 0 (flat) to 1");
+  require(w.rest_angle == 0 || w.bending != Bending::quadratic_hinges, "rest_angle", w.rest_angle, "",
+          "quadratic hinges rest flat, with 0; take hinges or a plate");
   require(w.bend_friction >= 0, "bend_friction", w.bend_friction, "N", "a frictional moment is not negative");
   if (w.bend_friction_weft) {
     require(*w.bend_friction_weft > 0, "bend_friction_weft", *w.bend_friction_weft, "N",

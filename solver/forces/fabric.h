@@ -11,6 +11,13 @@
 
 namespace drape {
 
+// How a woven cloth resists bending.
+enum class Bending {
+  plate,             // solver/forces/plate.h: right in every direction on any mesh
+  hinges,            // the angles between triangles, solver/forces/hinge.h
+  quadratic_hinges,  // their quadratic form, which rests flat
+};
+
 // What the woven model (solver/forces/woven.h) knows besides. Unset: as of a fabric that is the same in all
 // directions. The stiffnesses of Fabric are then those along the warp. Models of springs take the means of warp and
 // weft, and nothing else of this.
@@ -20,6 +27,7 @@ struct Weave {
   double compression = 1;  // share of the resistance to compression that stays, from 0 to 1
   std::optional<double> bend_weft = {}, bend_bias = {};  // N m, B along the weft and at 45 degrees
   double bend_poisson = 0;
+  Bending bending = Bending::plate;
   // N, the moment of dry friction per width against bending along warp and weft (solver/forces/plate_friction.h):
   // half of the width 2HB of the loop of KES-FB2. 0: there is none.
   double bend_friction = 0;

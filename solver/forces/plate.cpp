@@ -126,22 +126,6 @@ void add_pairs(const Bending& bending, std::vector<PlatePair>& pairs) {
                          bending.vertices[static_cast<std::size_t>(j)], -K(i, j)});
 }
 
-// One entry for each pair.
-std::vector<PlatePair> summed(std::vector<PlatePair> pairs) {
-  std::stable_sort(pairs.begin(), pairs.end(), [](const PlatePair& p, const PlatePair& q) {
-    return std::tie(p.i, p.j) < std::tie(q.i, q.j);
-  });
-  std::size_t kept = 0;
-  for (const PlatePair& p : pairs) {
-    if (kept > 0 && pairs[kept - 1].i == p.i && pairs[kept - 1].j == p.j)
-      pairs[kept - 1].k += p.k;
-    else
-      pairs[kept++] = p;
-  }
-  pairs.resize(kept);
-  return pairs;
-}
-
 // The rest slopes are those of the mesh, rows X; a triangle among others in its plane has none.
 void add_bent(const TriangleMesh& mesh, const Triangle& triangle, const RestCorners& corners,
               double rest_angle, const Bending& bending, std::vector<BentTriangle>& all) {
@@ -165,6 +149,21 @@ void add_bent(const TriangleMesh& mesh, const Triangle& triangle, const RestCorn
 }
 
 }  // namespace
+
+std::vector<PlatePair> summed(std::vector<PlatePair> pairs) {
+  std::stable_sort(pairs.begin(), pairs.end(), [](const PlatePair& p, const PlatePair& q) {
+    return std::tie(p.i, p.j) < std::tie(q.i, q.j);
+  });
+  std::size_t kept = 0;
+  for (const PlatePair& p : pairs) {
+    if (kept > 0 && pairs[kept - 1].i == p.i && pairs[kept - 1].j == p.j)
+      pairs[kept - 1].k += p.k;
+    else
+      pairs[kept++] = p;
+  }
+  pairs.resize(kept);
+  return pairs;
+}
 
 PlateEnergy plate_energy(const TriangleMesh& mesh, const std::vector<RestCorners>& corners,
                          const PlateStiffness& stiffness, double rest_angle) {

@@ -48,6 +48,9 @@ struct BentTriangle {
   double energy;  // J
 };
 
+// One entry for each pair of vertices, sorted.
+std::vector<PlatePair> summed(std::vector<PlatePair> pairs);
+
 struct PlateEnergy {
   std::vector<PlatePair> pairs;    // sorted by (i, j)
   std::vector<BentTriangle> bent;  // empty where the plate rests flat

@@ -7,6 +7,7 @@
 
 #include "mesh/base/errors.h"
 #include "mesh/triangles/topology.h"
+#include "solver/forces/hinge.h"
 #include "solver/forces/plate_force.h"
 
 namespace drape {
@@ -98,6 +99,25 @@ std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::vect
   return all;
 }
 
+namespace {
+
+std::unique_ptr<Force> bending(const TriangleMesh& mesh, const std::vector<RestCorners>& corners,
+                               const Fabric& fabric, int first) {
+  const PlateStiffness D = plate_of(fabric);
+  const Weave& weave = fabric.weave;
+  switch (weave.bending) {
+    case Bending::hinges:
+      return hinge_force(mesh, corners, D, weave.rest_angle, weave.bend_time, first);
+    case Bending::quadratic_hinges:
+      return std::make_unique<PlateForce>(quadratic_hinges(mesh, corners, D), weave.bend_time, first);
+    default:
+      return std::make_unique<PlateForce>(plate_energy(mesh, corners, D, weave.rest_angle), weave.bend_time,
+                                          first);
+  }
+}
+
+}  // namespace
+
 std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const TriangleMesh& rest,
                                           const Fabric& fabric, const std::optional<Vec3>& warp, int first,
                                           std::shared_ptr<BendMemory> memory) {
@@ -136,8 +156,7 @@ std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const Triang
     forces.push_back(std::make_unique<StencilForce<Membrane>>(std::move(triangles), membrane_of(fabric)));
   }
   if (fabric.bend > 0) {
-    const PlateEnergy plate = plate_energy(mesh, corners, plate_of(fabric), fabric.weave.rest_angle);
-    forces.push_back(std::make_unique<PlateForce>(plate, fabric.weave.bend_time, first));
+    forces.push_back(bending(mesh, corners, fabric, first));
   }
   if (fabric.weave.bend_friction > 0) {
     if (!memory) memory = std::make_shared<BendMemory>();

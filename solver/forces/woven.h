@@ -1,5 +1,5 @@
 // A woven fabric: a membrane of triangles of constant strain (solver/forces/membrane.h) and a plate without a
-// clamp (solver/forces/plate.h). Y, G, B and Poisson's ratios come out as they are given on any mesh, along warp,
+// clamp (solver/forces/plate.h), or hinges in its place (Weave::bending, solver/forces/hinge.h). Y, G, B and Poisson's ratios come out as they are given on any mesh, along warp,
 // weft and between. B is that of a strip so wide that it does not curve across as well.
 //
 // The warp runs along a direction of the rest shape, laid into the plane of every triangle. Where the law is the

@@ -1,6 +1,6 @@
 // What a fabric makes of the bending rigidity it was given: cantilevers of every kind of mesh and of three sizes,
-// by both models of a triangle mesh, against the elastica. Before it what a step costs: a sheet of 1 m hung by
-// two corners, from horizontal, one thread.
+// by both models of a triangle mesh and by hinges, against the elastica. Before it what a step costs: a sheet of
+// 1 m hung by two corners, from horizontal, one thread.
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -19,13 +19,17 @@ const Fabric fabric{.area_density = 0.15, .stretch = 500, .bend = 1e-5};
 enum class Model {
   springs,
   woven,
-  wrinkling
-};  // wrinkling: woven with compression = 0.1, as named fabrics have it
+  wrinkling,  // woven with compression = 0.1, as named fabrics have it
+  hinges,     // woven with these in place of the plate
+  quadratic_hinges
+};
 
 std::vector<std::unique_ptr<Force>> forces(const TriangleMesh& mesh, Model model) {
   if (model == Model::springs) return noh_jung(mesh, fabric);
   Fabric other = fabric;
   if (model == Model::wrinkling) other.weave.compression = 0.1;
+  if (model == Model::hinges) other.weave.bending = Bending::hinges;
+  if (model == Model::quadratic_hinges) other.weave.bending = Bending::quadratic_hinges;
   return woven(mesh, mesh, other, Vec3(Vec3::UnitX()));
 }
 
@@ -50,6 +54,11 @@ double droop(const Strip& sheet, Model model) {
   return height / width;
 }
 
+const char* name(Model model) {
+  constexpr std::array names = {"noh-jung:", "woven:", "wrinkling:", "hinges:", "quadratic hinges:"};
+  return names[static_cast<std::size_t>(model)];
+}
+
 void hung_sheet(int side, Model model) {
   const TriangleMesh sheet = equilateral_sheet(side, side, 1.0 / (side - 1));
   System system(masses(sheet, fabric));
@@ -68,9 +77,9 @@ void hung_sheet(int side, Model model) {
     sum.step_ms += report.step_ms / steps;
     sum.linear_iterations += report.linear_iterations;
   }
-  std::printf("%6d vertices, %-9s %7.2f ms a step, %6.2f ms assembly, %5.1f iterations\n",
-              sheet.vertex_count(), model == Model::springs ? "noh-jung:" : "woven:", sum.step_ms,
-              sum.assemble_ms, static_cast<double>(sum.linear_iterations) / steps);
+  std::printf("%6d vertices, %-17s %7.2f ms a step, %6.2f ms assembly, %5.1f iterations\n",
+              sheet.vertex_count(), name(model), sum.step_ms, sum.assemble_ms,
+              static_cast<double>(sum.linear_iterations) / steps);
 }
 
 }  // namespace
@@ -78,14 +87,15 @@ void hung_sheet(int side, Model model) {
 int main() {
   set_threads(1);
   for (int side : {32, 71, 101})
-    for (Model model : {Model::springs, Model::woven}) hung_sheet(side, model);
+    for (Model model : {Model::springs, Model::woven, Model::hinges, Model::quadratic_hinges})
+      hung_sheet(side, model);
   // Gamma = area_density g L^3 / B and H/W: rows of data/reference/cantilever_master.csv.
   constexpr std::pair<double, double> curve[] = {
       {0.01, 0.00124999955}, {1, 0.124561766}, {10, 1.06680232}, {100, 5.88810462}, {1000, 21.3354405}};
   std::printf("Error of H/W of a cantilever, %%: %g kg/m^2, Y = %g N/m, B = %g N m\n", fabric.area_density,
               fabric.stretch, fabric.bend);
-  std::printf("%-26s %8s %6s %10s %10s %16s\n", "mesh", "Gamma", "cells", "noh-jung", "woven",
-              "compression 0.1");
+  std::printf("%-26s %8s %6s %10s %10s %16s %10s %10s\n", "mesh", "Gamma", "cells", "noh-jung", "woven",
+              "compression 0.1", "hinges", "quadratic");
   for (const auto& [gamma, expected] : curve)
     for (StripMesh kind : strip_meshes)
       for (int cells : {10, 20, 40}) {
@@ -96,8 +106,9 @@ int main() {
         };
         // Stiff strips of springs lie within the dead zone of their clamp: they hang like chains.
         const double springs = gamma < 10 ? NAN : error(Model::springs);
-        std::printf("%-26s %8g %6d %10.1f %10.2f %16.2f\n", name(kind), gamma, cells, springs,
-                    error(Model::woven), error(Model::wrinkling));
+        std::printf("%-26s %8g %6d %10.1f %10.2f %16.2f %10.2f %10.2f\n", name(kind), gamma, cells, springs,
+                    error(Model::woven), error(Model::wrinkling), error(Model::hinges),
+                    error(Model::quadratic_hinges));
         std::fflush(stdout);
       }
   return 0;

@@ -1,5 +1,6 @@
 """A step by hand: the same bits as C++, laws of mechanics, linear systems to take out."""
 
+import itertools
 import multiprocessing
 import os
 import subprocess
@@ -55,9 +56,10 @@ class Step(unittest.TestCase):
     def test_a_woven_fold_rests_as_its_mesh_or_flat(self):
         fold = drape.parse_obj("v 0 0 0\nv 0 0 1\nv 1 0.5 0\nv -1 0.5 1\nf 1 2 3\nf 2 1 4\n")
         state = drape.at_rest(fold)
-        for rest_angle in (0, 0.5, 1):
-            fabric = drape.Fabric(bend=1, rest_angle=rest_angle)
+        for bending, rest_angle in itertools.product(("plate", "hinges"), (0, 0.5, 1)):
+            fabric = drape.Fabric(bend=1, rest_angle=rest_angle, bending=bending)
             self.assertEqual(fabric.rest_angle, rest_angle)
+            self.assertEqual(fabric.bending, bending)
             system = drape.System(drape.masses(fold, fabric))
             system.add(drape.woven(fold, fabric))
             system.add(drape.gravity([0, 0, 0]))
@@ -68,6 +70,10 @@ class Step(unittest.TestCase):
             self.assertAlmostEqual(energy / flat, (1 - rest_angle) ** 2, delta=1e-12)
         with self.assertRaisesRegex(ValueError, "rest_angle = 2"):
             drape.Fabric(rest_angle=2)
+        with self.assertRaisesRegex(ValueError, "quadratic hinges rest flat"):
+            drape.Fabric(rest_angle=1, bending="quadratic-hinges")
+        with self.assertRaisesRegex(ValueError, "bending: there is no 'hinge'"):
+            drape.Fabric(bending="hinge")
 
     def test_a_woven_sheet_whose_threads_rub_stays_higher(self):
         sheet = drape.grid(13, 5, 0.06, 0.02)
