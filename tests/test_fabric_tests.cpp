@@ -251,7 +251,7 @@ TEST_CASE("what test-fabric cannot do is refused in one line", "[fabric-tests]")
         {"cotton-broad --tests stretch", "there is no test"},
         {"cotton-broad --tests drape,drape", "name it once"},
         {"cotton-broad --mesh 10mm,10mm", "name it once"},
-        {"cotton-broad --mesh 15mm --specimen 21cm", "too coarse for the 15 mm"},
+        {"polyester-twill --mesh 15mm --specimen 21cm", "too coarse for the 15 mm"},
         {"springs.toml", "a specimen needs stretch and bend per width"},
         {"cotton-broad --model choi-ko", "expected woven or noh-jung"},
         {"cotton-broad --repeats 1.5", "whole number"},
