@@ -83,6 +83,20 @@ TEST_CASE("edges too long for the folds of a fabric are told, with what helps", 
                                     Contains("subdivide the mesh") && !Contains(advice));
 }
 
+TEST_CASE("a garment that is dropped on the floor keeps its area", "[scene][reference]") {
+  const Workshop shop;
+  const auto kept = [&](const std::string& words) {
+    const Outcome run =
+        shop.drape("drop " + test::source_dir() +
+                   "/data/meshes/tee.obj --onto plane --duration 0.7 --frames none --out o " + words);
+    INFO(run.err);
+    REQUIRE(run.exit_code == 0);
+    return shop.json("o/run.json")["area_kept"].get<double>();
+  };
+  CHECK(kept("") > 0.97);
+  CHECK(kept("--set cloth.0.model=noh-jung") < 0.9);  // it is a heap by then
+}
+
 TEST_CASE("$DRAPE_DATA adds fabrics to the built-in ones, and its own go before", "[scene]") {
   const Workshop shop;
   std::filesystem::create_directories(shop.path / "more/fabrics");

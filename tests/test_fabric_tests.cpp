@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
@@ -239,6 +240,27 @@ TEST_CASE("test-fabric prints a table and writes it, with the shadows", "[fabric
   CHECK(row["asked"].get<double>() == Approx(0.0212).epsilon(1e-3));
   CHECK(row["results"][0]["mesh"] == 0.015);
   CHECK(json["rows"][6]["results"][0]["values"].size() == 2);
+}
+
+TEST_CASE("what a laboratory measured stands beside what the virtual tests find", "[fabric-tests]") {
+  Folder folder;
+  folder.write("mine.toml",
+               "area_density = 0.15\nstretch = { warp = 500, shear = 60 }\nbend = 2e-4\n"
+               "measured_cantilever = { length = \"10 cm\", droop = { warp = \"6 cm\", weft = \"8 cm\" } }\n"
+               "measured_picture_frame = { side = \"10 cm\", shear = \"5 deg\", force = \"0.6 N\" }\n");
+  const Outcome outcome = folder.drape("test-fabric mine.toml --mesh 20mm --tests cantilever,shear --out o");
+  INFO(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  std::map<std::string, nlohmann::json> measured;
+  const auto json = nlohmann::json::parse(content(folder.path / "o/test-fabric.json"));
+  for (const auto& row : json["rows"]) measured[row["quantity"]] = row["measured"];
+  // `drape fit` finds 209 and 88 uN.m, and 46.6 N/m, with which strips and frame do the same.
+  CHECK(measured.at("bending rigidity, warp").get<double>() == Approx(209e-6).epsilon(0.02));
+  CHECK(measured.at("bending rigidity, weft").get<double>() == Approx(88e-6).epsilon(0.03));
+  const double c = measured.at("bending length, warp").get<double>();
+  CHECK(0.15 * 9.80665 * c * c * c == Approx(measured.at("bending rigidity, warp").get<double>()));
+  CHECK(measured.at("bending length, bias").is_null());
+  CHECK(measured.at("shear modulus, picture frame").get<double>() == Approx(46.6).epsilon(0.02));
 }
 
 TEST_CASE("what test-fabric cannot do is refused in one line", "[fabric-tests]") {

@@ -114,3 +114,15 @@ TEST_CASE("a rest shape folded onto itself in uv is the sheet unfolded", "[sewin
   CHECK(mirrored.bend[0].L == Approx(open.bend[0].L));
   CHECK(mirrored.bend[0].k_b == Approx(open.bend[0].k_b));
 }
+
+TEST_CASE("a triangle that is a thousand times thinner in its texture coordinates is refused", "[sewing]") {
+  const auto flat = [](const char* height) {
+    return flat_pattern(
+        parse_obj(std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvt 0.5 ") +
+                      height + "\nf 1/1 2/2 3/3\nf 2/1 4/2 3/4\n",
+                  "needle.obj"));
+  };
+  CHECK(flat("0.01").triangles.size() == 2);
+  for (const char* height : {"0", "1e-7", "4e-4"})
+    CHECK_THROWS_WITH(flat(height), Catch::Contains("face 2 of the file has no area"));
+}

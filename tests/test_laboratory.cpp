@@ -104,6 +104,13 @@ TEST_CASE("mistakes in what a laboratory gave are told with their line", "[scene
       {"kes = { G = \"0.8 gf/cm.deg\" }\n", "f.toml:2:", "is not per angle: write gf/(cm.deg)"},
       {"kes = { 2HB = \"0.1 gf\" , EMT = \"5 m\" }\n", "f.toml:2:", "expected an extension"},
       {"fast = { E5 = \"3 %\", E20 = \"2 %\" }\n", "f.toml:2:", "expected more than E5"},
+      {"fast = { E5 = \"1 %\", E20 = \"3 %\", E100 = \"2 %\" }\n", "f.toml:2:", "expected more than E20"},
+      {"fast = { E5 = \"3 %\", E100 = \"2 %\" }\n", "f.toml:2:", "expected more than E5"},
+      {"fast = { E5 = { warp = \"1 %\", weft = \"2 %\" }, E20 = { warp = \"3 %\", weft = \"2 %\" } }\n",
+       "f.toml:2:", "expected more than E5"},
+      {"bending_length = 21\n", "f.toml:2:", "comes to 21 m; expected up to 50 cm"},
+      {"overhang = { warp = \"4 cm\", weft = \"2 m\" }\n",
+       "f.toml:2:", "comes to 2 m; expected up to 100 cm"},
       {"B = 0.1\n", "f.toml:2:", "docs/fabrics.md"},
       {"2HB = 0.1\n", "f.toml:2:", "kes = { 2HB = "},
       {"G = 0.1\n", "f.toml:2:", "docs/fabrics.md"},
@@ -150,10 +157,11 @@ TEST_CASE("laboratory numbers of a cloth replace those of its fabric, for its ow
   CHECK(other.fabric_record.given.at("area_density") == "area_density = 0.1");
   CHECK(other.fabric_record.given.at("shear") == "kes.G = \"50 N/(m.rad)\"");
   CHECK(other.fabric_record.bending_hysteresis->warp == Approx(1e-3));
-  const ClothEntry pulled = entry("kes = { EMT = \"10 %\" }\n");  // replaces all of stretch, as stretch would
+  // Replaces all of stretch, as stretch would, but not the shear that was measured for itself.
+  const ClothEntry pulled = entry("kes = { EMT = \"10 %\" }\n");
   CHECK(pulled.fabric.stretch == Approx(4903.325));
-  CHECK_FALSE(pulled.fabric.weave.shear);
-  CHECK(pulled.fabric_record.given.count("shear") == 0);
+  CHECK(pulled.fabric.weave.shear == 50.0);
+  CHECK(pulled.fabric_record.given.at("shear") == "kes.G = \"50 N/(m.rad)\"");
   CHECK(pulled.fabric.weave.bend_weft == 2e-5);
 }
 

@@ -114,6 +114,7 @@ TEST_CASE("the grain line of a drawing is the warp of its panel, and no line of 
   for (const char* line :
        {"<line id=\"grain\" x1=\"40\" y1=\"80\" x2=\"60\" y2=\"40\"/>",
         "<path id=\"Grainline-3\" d=\"M40 80 L60 40\"/>", "<path class=\"thin GRAIN\" d=\"M40 80 L60 40\"/>",
+        "<path id=\"front.grain\" d=\"M40 80 L60 40\"/>",
         "<path inkscape:label=\"grain\" d=\"M40 80 L60 40\"/>",
         "<path id=\"grain\" d=\"M38 76 L40 80 L44 79 M40 80 L60 40 M59 45 L60 40 L56 42\"/>",
         "<g transform=\"translate(40 80)\"><path id=\"grain\" d=\"M0 0 l 20 -40\"/></g>"}) {

@@ -8,6 +8,7 @@
 #include "app/run/run.h"
 #include "folder.h"
 #include "mesh/base/errors.h"
+#include "mesh/obj/obj.h"
 
 using namespace drape;
 using namespace drape::app;
@@ -97,6 +98,18 @@ TEST_CASE("frames as a point cache and as OBJ files are the same motion", "[reco
   CHECK(cache.steps().rows.size() == 25);
   CHECK(cache.steps().columns.front() == "step");
   CHECK(cache.steps().rows.back()[1] == Approx(0.25));
+}
+
+TEST_CASE("faces of a recording are cut as in the run, however they are bent by then", "[recording]") {
+  const Folder folder;
+  run_into(folder, "out", Frames::pc2);
+  const Recording recording(folder.path / "out");
+  const TriangleMesh start = parse_obj(content(folder.path / "sheet.obj"), "sheet.obj");
+  CHECK(recording.shapes()[0].mesh.triangles == start.triangles);
+  // The last shape alone would be cut another way: that is what this is for.
+  CHECK(parse_obj(content(folder.path / "out/sheet.obj"), "sheet.obj").triangles != start.triangles);
+  folder.write("out/fields/sheet.triangles.npy", "nothing");
+  CHECK(Recording(folder.path / "out").missing().size() == 1);
 }
 
 TEST_CASE("velocities, strains and contacts are those of the frame", "[recording]") {

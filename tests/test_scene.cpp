@@ -95,6 +95,21 @@ TEST_CASE("a fabric by name is woven, unless constants of connections or the sce
     CHECK(model(named + key) == "noh-jung");
 }
 
+TEST_CASE("a shear stiffness that was measured for itself outlives a stretch that the scene gives",
+          "[scene][woven]") {
+  const auto shear = [](const std::string& keys) {
+    return read(cloth + "fabric = \"polyester-twill\"\n" + keys).cloths[0].fabric.weave.shear;
+  };
+  const std::optional<double> own = shear("");
+  REQUIRE(own);
+  for (const char* keys :
+       {"stretch = \"800 N/m\"\n", "stretch = { warp = \"800 N/m\", weft = \"600 N/m\" }\n",
+        "kes = { EMT = \"10 %\" }\n", "bend = \"3 uN.m\"\n"})
+    CHECK(shear(keys) == own);
+  CHECK(*shear("stretch = { warp = \"800 N/m\", shear = \"55 N/m\" }\n") == 55);
+  CHECK(*shear("kes = { G = \"70 N/(m.rad)\" }\n") == 70);
+}
+
 TEST_CASE("where the warp runs is given, chosen or refused", "[scene][woven]") {
   const std::string twill = "fabric = \"polyester-twill\"\n", woven = "model = \"woven\"\n",
                     down = "warp = \"down\"\n";

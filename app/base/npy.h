@@ -1,8 +1,8 @@
 // Arrays in NumPy's file format, which numpy.load reads, also with mmap_mode.       [NEP 1, version 1.0]
 //   "\x93NUMPY", 1, 0, uint16 length, {'descr': '<f4', 'fortran_order': False, 'shape': (frames, n, 3), }
 //   blanks and a line end up to 128 bytes, then the numbers in C order, little endian.
-// The numbers are float32 ('<f4') or bytes ('|u1'). The first axis counts frames; they are written and read
-// one at a time.
+// The numbers are float32 ('<f4'), int32 ('<i4') or bytes ('|u1'). The first axis counts frames; they are written and
+// read one at a time.
 #pragma once
 
 #include <cstdint>
@@ -16,17 +16,20 @@ namespace drape::app {
 
 class NpyWriter {
  public:
-  enum class Kind { float32, byte };
+  enum class Kind { float32, int32, byte };
   // frame_shape is the shape of one frame: {n} or {n, 3}.
   NpyWriter(std::filesystem::path path, Kind kind, std::vector<int> frame_shape);
 
   void add(const std::vector<float>& frame);
+  void add(const std::vector<std::int32_t>& frame);
   void add(const std::vector<std::uint8_t>& frame);
   void close();  // writes the number of frames into the header
   void keep() { file_.keep(); }
 
  private:
   void write_header();
+  template <class Numbers>
+  void add_words(const Numbers& frame);
 
   AtomicFile file_;
   Kind kind_;
@@ -42,14 +45,15 @@ class NpyReader {
 
   int frames() const { return frames_; }
   const std::vector<int>& frame_shape() const { return frame_shape_; }
-  std::vector<float> frame(int k);  // the numbers of frame k, from 0; bytes come as numbers too
+  // The numbers of frame k, from 0; bytes and whole numbers come as numbers too (whole ones are exact up to 2^24).
+  std::vector<float> frame(int k);
 
  private:
   [[noreturn]] void fail(const std::string& what) const;
 
   std::filesystem::path path_;
   std::ifstream file_;
-  bool bytes_ = false;
+  NpyWriter::Kind kind_ = NpyWriter::Kind::float32;
   int frames_ = 0;
   std::vector<int> frame_shape_;
   // How many numbers a frame has; how many bytes stand before the first one.

@@ -256,13 +256,15 @@ class SvgReader {
     }
   }
 
-  // An id, a class or a label that begins with "grain", as in "Grainline" and "grain-front".
+  // An id, a class or a label that begins with "grain", as in "Grainline" and "grain-front"; also behind the name of a
+  // panel: "front.grain".
   static bool is_grain(const pugi::xml_node& node) {
     Names names = words(node.attribute("class").value());
     for (const char* key : {"id", "label", "inkscape:label"}) names.emplace_back(node.attribute(key).value());
     return std::any_of(names.begin(), names.end(), [](std::string name) {
       std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-      return name.starts_with("grain");
+      const std::size_t dot = name.rfind('.');
+      return name.starts_with("grain") || (dot != name.npos && name.substr(dot + 1).starts_with("grain"));
     });
   }
 

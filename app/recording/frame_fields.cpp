@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/recording/touch.h"
+#include "mesh/obj/obj.h"
 
 namespace drape::app {
 namespace {
@@ -12,6 +13,14 @@ int main_particle(const Embedding& embedding, int vertex) {
   return std::max_element(shares.begin(), shares.end(),
                           [](const auto& a, const auto& b) { return a.weight < b.weight; })
       ->particle;
+}
+
+bool has_polygons(const TriangleMesh& mesh) {
+  if (!mesh.document) return false;
+  const auto& start = mesh.document->face_start;
+  for (std::size_t f = 0; f < mesh.document->face_count(); ++f)
+    if (start[f + 1] - start[f] > 3) return true;
+  return false;
 }
 
 }  // namespace
@@ -27,7 +36,13 @@ FrameFields::FrameFields(const std::filesystem::path& folder, const Cloth& cloth
       strain_(field_path(folder, cloth.name, "strain"), NpyWriter::Kind::float32,
               {cloth.mesh.vertex_count()}),
       contact_(field_path(folder, cloth.name, "contact"), NpyWriter::Kind::byte,
-               {cloth.mesh.vertex_count()}) {}
+               {cloth.mesh.vertex_count()}) {
+  if (!has_polygons(cloth.mesh)) return;
+  triangles_.emplace(field_path(folder, cloth.name, "triangles"), NpyWriter::Kind::int32,
+                     std::vector<int>{3});
+  for (const Triangle& t : cloth.mesh.triangles)
+    triangles_->add(std::vector<std::int32_t>(t.begin(), t.end()));
+}
 
 void FrameFields::mark_touches(const Constraints& constraints, int particles) {
   particle_contact_.assign(static_cast<std::size_t>(particles), 0);
@@ -69,12 +84,14 @@ void FrameFields::close() {
   velocity_.close();
   strain_.close();
   contact_.close();
+  if (triangles_) triangles_->close();
 }
 
 void FrameFields::keep() {
   velocity_.keep();
   strain_.keep();
   contact_.keep();
+  if (triangles_) triangles_->keep();
 }
 
 }  // namespace drape::app

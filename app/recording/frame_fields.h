@@ -3,9 +3,13 @@
 //   fields/NAME.strain.npy     float32 (frames, n)      what is stretched or compressed most at the vertex: of woven
 //                                                    cloth a principal strain of a triangle, else an edge's l / L - 1
 //   fields/NAME.contact.npy    uint8   (frames, n)      0 free, 1 slides, 2 sticks on a body, 3 on cloth, 4 stopped
+// And, where the file has faces of more than three corners, how they are cut:
+//   fields/NAME.triangles.npy  int32   (m, 3)           numbers of vertices, from 0
 // A vertex that lies between several particles has the strain and the contact of the particle with the
 // largest weight.
 #pragma once
+
+#include <optional>
 
 #include "app/base/npy.h"
 #include "app/simulation/simulation.h"
@@ -14,7 +18,7 @@ namespace drape::app {
 
 class FrameFields {
  public:
-  static constexpr int arrays = 3;
+  int arrays() const { return triangles_ ? 4 : 3; }
 
   FrameFields(const std::filesystem::path& folder, const Cloth& cloth);
 
@@ -26,6 +30,7 @@ class FrameFields {
   void mark_touches(const Constraints& constraints, int particles);
 
   NpyWriter velocity_, strain_, contact_;
+  std::optional<NpyWriter> triangles_;
   std::vector<double> particle_strain_;
   std::vector<std::uint8_t> particle_contact_;
 };

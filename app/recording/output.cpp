@@ -173,9 +173,9 @@ void Output::list_written() {
   for (const Cloth& cloth : simulation_.cloths) written_.push_back({cloth_path(cloth, ".obj"), ""});
   for (const Pc2Writer& cache : caches_) written_.push_back({cache.path(), frames});
   if (bodies_.shapes() > 0) written_.push_back({folder_ / "bodies", counted(bodies_.shapes(), "shape")});
-  if (!fields_.empty())
-    written_.push_back(
-        {folder_ / "fields", counted(FrameFields::arrays * static_cast<long>(fields_.size()), "array")});
+  long arrays = 0;
+  for (const FrameFields& fields : fields_) arrays += fields.arrays();
+  if (arrays > 0) written_.push_back({folder_ / "fields", counted(arrays, "array")});
   if (bodies_.has_poses()) written_.push_back({folder_ / "bodies.csv", frames});
   written_.push_back({folder_ / "steps.csv", ""});
   written_.push_back({folder_ / "run.json", ""});

@@ -87,6 +87,7 @@ class Recording {
   // Whether the run wrote frames of this kind, as far as run.json tells.
   bool wrote(std::string_view frames) const;
   void find_field(std::size_t shape, const char* name);
+  void find_triangles(std::size_t shape);
   void settle_frames();
   std::map<std::string, std::vector<Pose>> read_poses();
   void miss(const std::filesystem::path& file, const std::string& what);

@@ -274,6 +274,33 @@ void Recording::find_frames(std::size_t k) {
   }
   shapes_[k].moves = frame_counts_[k] > 0;
   for (const char* field : {"velocity", "strain", "contact"}) find_field(k, field);
+  find_triangles(k);
+}
+
+// How the run cut polygons. Without the file, as of runs without frames, they are cut as their last shape suggests.
+void Recording::find_triangles(std::size_t k) {
+  const fs::path path = field_path(folder_, shapes_[k].name, "triangles");
+  if (frame_counts_[k] == 0 || !fs::exists(path)) return;
+  try {
+    NpyReader reader(path);
+    TriangleMesh& mesh = shapes_[k].mesh;
+    if (reader.frame_shape() != std::vector<int>{3} ||
+        reader.frames() != static_cast<int>(mesh.triangles.size()))
+      throw InputError(path.string() + ": expected " + std::to_string(mesh.triangles.size()) +
+                       " triangles, as " + shapes_[k].name + ".obj has");
+    std::vector<Triangle> triangles;
+    for (int t = 0; t < reader.frames(); ++t) {
+      const std::vector<float> corners = reader.frame(t);
+      for (const float corner : corners)
+        if (!(corner >= 0 && corner < static_cast<float>(mesh.vertex_count())))
+          throw InputError(path.string() + ": names a vertex that " + shapes_[k].name + ".obj does not have");
+      triangles.push_back(
+          {static_cast<int>(corners[0]), static_cast<int>(corners[1]), static_cast<int>(corners[2])});
+    }
+    mesh.triangles = std::move(triangles);
+  } catch (const InputError& error) {
+    missing_.push_back(error.what());
+  }
 }
 
 // Runs of earlier versions have none, nor do they tell of frames: no loss.

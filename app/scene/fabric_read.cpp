@@ -90,6 +90,11 @@ Bending bending_of(const std::string& name) {
 void read_fabric(Table& table, Fabric& fabric, FabricRecord& record) {
   table.read("area_density", fabric.area_density, dimension::area_density, Range::positive, "mass per area");
   Weave& weave = fabric.weave;
+  // A shear stiffness that was measured for itself stays where only the stretch of the fabric is replaced.
+  const auto told_shear = record.given.find("shear");
+  const std::optional<std::string> shear_given =
+      told_shear == record.given.end() ? std::nullopt : std::optional(told_shear->second);
+  const std::optional<double> shear = weave.shear;
   if (table.has("stretch")) {  // replaces all of a named fabric's
     fabric.stretch_spring.reset();
     weave.stretch_weft.reset();
@@ -109,6 +114,10 @@ void read_fabric(Table& table, Fabric& fabric, FabricRecord& record) {
   table.read("bend_spring", fabric.bend_spring, dimension::bend_spring, Range::not_negative,
              "instead of bend: the stiffness of every diagonal, k_b");
   read_laboratory(table, fabric, record);
+  if (shear_given && !weave.shear) {
+    weave.shear = shear;
+    record.given["shear"] = *shear_given;
+  }
   table.read(
       "buckling_clamp", fabric.buckling_clamp, dimension::spring, Range::not_negative,
       {"c_b of every diagonal: how steeply its force sets in; a soft one makes the cloth limp where it is "

@@ -97,6 +97,15 @@ void set_bend_of_length(Fabric& fabric, const Directions& length, double part) {
                         bend_of_length, fabric.area_density));
 }
 
+// A fabric that stands out further than that is none: the unit was left out, or is another.
+const Directions& checked_length(const Table& table, const char* key, const Directions& length, double most) {
+  for (const std::optional<double>& one : {std::optional<double>(length.warp), length.weft, length.bias})
+    if (one && *one > most)
+      table.fail(key, "comes to " + rounded(*one, 4) + " m; expected up to " + rounded(100 * most, 3) +
+                          " cm, such as \"2.1 cm\"");
+  return length;
+}
+
 void check_bias(const Table& table, const std::string& key, const Fabric& fabric) {
   const std::optional<double>& bias = fabric.weave.bend_bias;
   const double least = least_bend_bias(fabric);
@@ -112,9 +121,24 @@ struct Fast {
   std::optional<Directions> E5, E20, E100;
 };
 
+// More load, more extension.
+void check_rises(const Table& fast, const Fast& e) {
+  const auto rises = [&](const char* key, const std::optional<Directions>& small,
+                         const std::optional<Directions>& large, const char* what) {
+    if (!small || !large) return;
+    const auto is_less = [](const Directions& a, const Directions& b) {
+      return a.warp < b.warp && a.weft.value_or(a.warp) < b.weft.value_or(b.warp);
+    };
+    if (!is_less(*small, *large)) fast.fail(key, std::string("expected more than ") + what);
+  };
+  rises("E20", e.E5, e.E20, "E5, the extension at a quarter of the load");
+  rises("E100", e.E20, e.E100, "E20, the extension at a fifth of the load");
+  rises("E100", e.E5, e.E100, "E5, the extension at a twentieth of the load");
+}
+
 // FAST's formability takes the slope between the loads of 5 and 20 gf/cm. Where it is not known, the secant of the
 // smallest load: what a cloth that hangs comes nearest to.
-void set_stretch_of_fast(const Table& fast, const Fast& e, Fabric& fabric) {
+void set_stretch_of_fast(const Fast& e, Fabric& fabric) {
   if (!e.E5 || !e.E20) {
     if (e.E5)
       set_stretch(fabric, each(*e.E5, secant, 5 * gf_per_cm));
@@ -124,10 +148,7 @@ void set_stretch_of_fast(const Table& fast, const Fast& e, Fabric& fabric) {
       set_stretch(fabric, each(*e.E100, secant, 100 * gf_per_cm));
     return;
   }
-  const auto slope = [&](double small, double large) {
-    if (!(large > small)) fast.fail("E20", "expected more than E5, the extension at a quarter of the load");
-    return 15 * gf_per_cm / (large - small);
-  };
+  const auto slope = [](double small, double large) { return 15 * gf_per_cm / (large - small); };
   Directions stretch{slope(e.E5->warp, e.E20->warp)};
   if (e.E5->weft || e.E20->weft)
     stretch.weft = slope(e.E5->weft.value_or(e.E5->warp), e.E20->weft.value_or(e.E20->warp));
@@ -184,7 +205,8 @@ std::optional<double> read_fast(Table& table, Fabric& fabric) {
       extension("E20", "extension at 20 gf/cm: gives stretch, with E5 as said there, else 19.6 N/m / E20");
   e.E100 = extension(
       "E100", "extension at 100 gf/cm: gives stretch where neither E5 nor E20 is there, 98.1 N/m / E100");
-  set_stretch_of_fast(fast, e, fabric);
+  check_rises(fast, e);
+  set_stretch_of_fast(e, fabric);
   std::optional<double> shear, bias_extension;
   fast.read("G", shear, dimension::sheet_force, Range::positive,
             {"shear rigidity: gives the shear of stretch", "none"});
@@ -253,11 +275,11 @@ void read_laboratory(Table& table, Fabric& fabric, FabricRecord& record) {
       one_of(table, "the shear stiffness", {"stretch.shear", "kes.G", "fast.G", "fast.EB5"});
   if (const auto c = read_directions(table, "bending_length", dimension::length, true,
                                      "instead of bend: c of a cantilever test, B = g area_density c^3"))
-    set_bend_of_length(fabric, *c, 1);
+    set_bend_of_length(fabric, checked_length(table, "bending_length", *c, 0.5), 1);
   if (const auto L =
           read_directions(table, "overhang", dimension::length, true,
                           "instead of bend: length at which a strip bends down to 41.5 degrees, 2 c"))
-    set_bend_of_length(fabric, *L, 0.5);
+    set_bend_of_length(fabric, checked_length(table, "overhang", *L, 1), 0.5);
   const std::optional<double> of_kes = read_kes(table, fabric, record), of_fast = read_fast(table, fabric);
   if (of_kes) fabric.weave.shear = of_kes;
   if (of_fast) fabric.weave.shear = of_fast;

@@ -116,17 +116,18 @@ void tell_of_directions(const ClothEntry& entry, Names& messages) {
 // Folds are some three bending lengths wide. An edge as long as one bending length cannot follow them, and one of one
 // and a half not even where the fabric wrinkles finer than the mesh: measured with `drape test-fabric` on meshes of
 // half a bending length to two.
-void warn_if_coarse_for_folds(const Cloth& cloth, Names& messages) {
+void warn_if_coarse_for_folds(const ClothEntry& entry, const Cloth& cloth, Names& messages) {
   const Fabric& fabric = cloth.fabric;
   const double bend = std::min(fabric.bend, fabric.weave.bend_weft.value_or(fabric.bend)),
                c = std::cbrt(bend / (9.81 * fabric.area_density));  // m
   const bool wrinkles = fabric.weave.compression <= 0.1;
   if (cloth.model != ClothModel::woven || cloth.report.median_edge <= (wrinkles ? 1.5 * c : c)) return;
-  messages.push_back("warning: cloth " + cloth.name + ": its edges (median " +
-                     rounded(1000 * cloth.report.median_edge, 2) + " mm) are longer than " +
-                     (wrinkles ? "one and a half times " : "") + "the bending length of the fabric, " +
-                     rounded(1000 * c, 2) + " mm: folds come out too stiff; subdivide the mesh" +
-                     (wrinkles ? "" : ", or set compression = 0.1, so that it wrinkles finer than the mesh"));
+  messages.push_back(
+      "warning: cloth " + cloth.name + ": its edges (median " + rounded(1000 * cloth.report.median_edge, 2) +
+      " mm) are longer than " + (wrinkles ? "one and a half times " : "") +
+      "the bending length of the fabric, " + rounded(1000 * c, 2) + " mm: folds come out too stiff; " +
+      (is_pattern(entry.mesh) ? "give the pattern a smaller edge" : "subdivide the mesh in a modeller") +
+      (wrinkles ? "" : ", or set compression = 0.1, so that it wrinkles finer than the mesh"));
 }
 
 // What contact of cloth with cloth takes for granted.
@@ -224,7 +225,6 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
     if (cloth.soft) continue;
     warn_if_long(cloth, simulation.messages);
     warn_if_limp(cloth, simulation.messages);
-    warn_if_coarse_for_folds(cloth, simulation.messages);
     tell_of_friction(cloth, simulation.messages);
   }
   for (const ClothEntry& cloth : scene.cloths) {
@@ -232,8 +232,10 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
     tell_of_damping(cloth, simulation.messages);
     tell_of_directions(cloth, simulation.messages);
   }
-  for (std::size_t k = 0; k < scene.cloths.size(); ++k)
+  for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
+    warn_if_coarse_for_folds(scene.cloths[k], simulation.cloths[k], simulation.messages);
     tell_of_self_contact(scene.cloths[k], simulation.cloths[k], simulation.messages);
+  }
   for (const SoftEntry& soft : scene.softs) tell_of_self_contact(soft, simulation.messages);
   warn_of_vertices_inside(scene, simulation);
   warn_of_crossed_bodies(scene, simulation);

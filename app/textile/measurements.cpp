@@ -97,6 +97,30 @@ std::vector<Measurement> measurements_of(const MeasuredTests& tests, const Speci
   return all;
 }
 
+std::optional<double> measured_value(const NamedFabric& fabric, const std::string& quantity) {
+  const MeasuredTests& tests = fabric.tests;
+  if (quantity == "drape coefficient" && tests.drape) return tests.drape->coefficient;
+  if (quantity == "nodes" && tests.drape) return tests.drape->nodes;
+  if (quantity == "shear modulus, picture frame" && !tests.frames.empty()) return shear_to_start_from(tests);
+  if (quantity == "shear modulus, between clamps" && tests.frames.empty() && !tests.bias_extensions.empty())
+    return shear_to_start_from(tests);
+  if (tests.cantilevers.empty()) return {};
+  const MeasuredCantilever& strip = tests.cantilevers.front();
+  const Directions& droop = strip.droop;
+  const bool alike = !droop.weft && !droop.bias;  // one number is of all directions
+  const auto of = [&](const char* test) -> std::optional<double> {
+    const std::string start = std::string(test) + ", ";
+    if (quantity == start + "warp") return droop.warp;
+    if (quantity == start + "weft") return alike ? droop.warp : droop.weft;
+    return quantity == start + "bias" ? alike ? droop.warp : droop.bias : std::nullopt;
+  };
+  const auto gamma = [&](double d) { return gamma_of_droop(std::clamp(d / strip.length, 0.002, 0.95)); };
+  if (const auto d = of("bending length")) return strip.length / std::cbrt(gamma(*d));
+  if (const auto d = of("bending rigidity"))
+    return fabric.fabric.area_density * standard_gravity * std::pow(strip.length, 3) / gamma(*d);
+  return {};
+}
+
 double bend_to_start_from(const MeasuredTests& tests, double area_density, const std::string& direction) {
   const double weight = area_density * standard_gravity;
   for (const MeasuredCantilever& c : tests.cantilevers) {

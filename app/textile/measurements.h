@@ -31,6 +31,11 @@ struct SpecimenOptions {
 // compared: it jumps. Throws InputError when a specimen is too small for the mesh.
 std::vector<Measurement> measurements_of(const MeasuredTests& tests, const SpecimenOptions& options);
 
+// What the file of a fabric says was measured of a quantity of the virtual tests, in SI units: a drape coefficient and its
+// nodes as they are, a bending length or rigidity from the droop of a strip by the elastica, a shear modulus from a frame
+// that is sheared evenly or from a long strip in the bias.
+std::optional<double> measured_value(const NamedFabric& fabric, const std::string& quantity);
+
 // Parameters to start from: those of the elastica, of a frame whose fabric is sheared evenly, of a long strip in
 // the bias, and of a drape coefficient that grows with the bending length.
 double bend_to_start_from(const MeasuredTests& tests, double area_density, const std::string& direction);

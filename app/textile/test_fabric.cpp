@@ -8,6 +8,7 @@
 #include "app/base/table.h"
 #include "app/recording/output.h"
 #include "app/scene/fabrics.h"
+#include "app/textile/measurements.h"
 #include "app/textile/options.h"
 #include "mesh/base/errors.h"
 
@@ -107,12 +108,6 @@ std::filesystem::path folder_name(const std::string& fabric) {
   return is_fabric_file(fabric) ? path.stem() : path;
 }
 
-std::optional<double> measured(const NamedFabric& fabric, const std::string& quantity) {
-  if (!fabric.tests.drape) return {};
-  if (quantity == "drape coefficient") return fabric.tests.drape->coefficient;
-  return quantity == "nodes" ? fabric.tests.drape->nodes : std::nullopt;
-}
-
 using Pictures = std::vector<std::pair<std::string, std::string>>;  // name and bytes of the file
 
 Values run(const Plan& plan, const std::string& test, double edge, Pictures& pictures) {
@@ -120,7 +115,7 @@ Values run(const Plan& plan, const std::string& test, double edge, Pictures& pic
   if (test == "cantilever") return cantilever_test(fabric, plan.model, edge);
   if (test == "tensile") return tensile_test(fabric, plan.model, edge);
   if (test == "shear") return shear_test(fabric, plan.model, edge);
-  const std::optional<double> coefficient = measured(plan.fabric, "drape coefficient");
+  const std::optional<double> coefficient = measured_value(plan.fabric, "drape coefficient");
   return drape_test(fabric, plan.model, edge, plan.drape, [&](int repeat, const Shadow& shadow) {
     pictures.emplace_back("drape-" + rounded(1000 * edge, 3) + "mm-" + std::to_string(repeat + 1) + ".png",
                           drawing::png(shadow.picture(plan.drape.radius, coefficient)));
@@ -135,7 +130,7 @@ void add(FabricTable& table, const NamedFabric& fabric, const std::string& test,
     FabricRow& row =
         same != table.rows.end()
             ? *same
-            : table.rows.emplace_back(FabricRow{test, value, measured(fabric, value.quantity), {}});
+            : table.rows.emplace_back(FabricRow{test, value, measured_value(fabric, value.quantity), {}});
     row.found.push_back(value.found);
   }
 }

@@ -31,14 +31,18 @@ std::vector<Vec3> texture_points(const ObjDocument& document, double scale) {
   return points;
 }
 
-// Whether the corners lie in a line, but for the rounding of their coordinates.
-bool is_needle(const TriangleMesh& flat, const Triangle& t) {
+// A triangle of the pattern is this much thinner than that of the mesh at most.
+constexpr double thinnest = 1e-3;
+
+// Area over the square of the longest edge: 0 where the corners are in a line, but for the rounding of their coordinates.
+double shape(const TriangleMesh& mesh, const Triangle& t) {
   double longest = 0;
   for (std::size_t k = 0; k < 3; ++k)
-    longest = std::max(longest, (flat.positions[static_cast<std::size_t>(t[k])] -
-                                 flat.positions[static_cast<std::size_t>(t[(k + 1) % 3])])
+    longest = std::max(longest, (mesh.positions[static_cast<std::size_t>(t[k])] -
+                                 mesh.positions[static_cast<std::size_t>(t[(k + 1) % 3])])
                                     .squaredNorm());
-  return triangle_area(flat, t) <= 1e-9 * longest;
+  const double area = triangle_area(mesh, t);
+  return area > 1e-9 * longest ? area / longest : 0;
 }
 
 }  // namespace
@@ -62,8 +66,8 @@ TriangleMesh flat_pattern(const TriangleMesh& mesh, double scale) {
       uv[k] = std::find_if(corners, end, [&](const ObjCorner& c) { return c.v == t[k]; })->vt;
       if (uv[k] < 0) fail(f, "has a corner without a texture coordinate");
     }
-    if (is_needle(flat, uv) && triangle_area(mesh, t) > 0)
-      fail(f, "has no area in its texture coordinates: it would shrink to nothing");
+    if (const double of_mesh = shape(mesh, t); of_mesh > 0 && shape(flat, uv) < thinnest * of_mesh)
+      fail(f, "has no area in its texture coordinates, or hardly any: it would shrink to nothing");
     flat.triangles.push_back(uv);
   }
   return flat;

@@ -7,6 +7,7 @@
 
 #include "mesh/base/errors.h"
 #include "mesh/triangles/topology.h"
+#include "solver/forces/held_corner.h"
 #include "solver/forces/hinge.h"
 #include "solver/forces/plate_force.h"
 
@@ -101,6 +102,21 @@ std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::vect
 
 namespace {
 
+// What holds the particles p of a triangle without area together; at: where its corners are at rest.
+void add_held(const std::array<int, 3>& p, const std::array<Vec3, 3>& at,
+              std::vector<StencilForce<HeldCorner>::Element>& held) {
+  std::size_t m = 0;  // across from the longest edge
+  const auto across = [&](std::size_t k) { return (at[(k + 2) % 3] - at[(k + 1) % 3]).norm(); };
+  for (std::size_t k = 1; k < 3; ++k)
+    if (across(k) > across(m)) m = k;
+  const std::size_t a = (m + 1) % 3, b = (m + 2) % 3;
+  const Vec3 along = at[b] - at[a];
+  const double square = along.squaredNorm();
+  const double s = square > 0 ? std::clamp((at[m] - at[a]).dot(along) / square, 0.0, 1.0) : 0;
+  held.push_back({.particles = {p[m], p[a], p[b]}, .rest = {s}});
+  if (square == 0) held.push_back({.particles = {p[b], p[a], p[m]}, .rest = {0}});  // all at one place
+}
+
 std::unique_ptr<Force> bending(const TriangleMesh& mesh, const std::vector<RestCorners>& corners,
                                const Fabric& fabric, int first) {
   const PlateStiffness D = plate_of(fabric);
@@ -146,14 +162,24 @@ std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const Triang
   std::vector<std::unique_ptr<Force>> forces;
   if (fabric.stretch > 0) {
     std::vector<StencilForce<Membrane>::Element> triangles;
+    std::vector<StencilForce<HeldCorner>::Element> held;
     for (int t : counted_triangles(mesh)) {
       const auto k = static_cast<std::size_t>(t);
       const Membrane::Rest at_rest = slopes_of(corners[k]);
       const Triangle& v = mesh.triangles[k];
+      const std::array<int, 3> particles = {first + v[0], first + v[1], first + v[2]};
+      const auto at = [&](int corner) {
+        return rest.positions[static_cast<std::size_t>(rest.triangles[k][static_cast<std::size_t>(corner)])];
+      };
       if (at_rest.area > 0)
-        triangles.push_back({.particles = {first + v[0], first + v[1], first + v[2]}, .rest = at_rest});
+        triangles.push_back({.particles = particles, .rest = at_rest});
+      else
+        add_held(particles, {at(0), at(1), at(2)}, held);
     }
     forces.push_back(std::make_unique<StencilForce<Membrane>>(std::move(triangles), membrane_of(fabric)));
+    if (!held.empty())
+      forces.push_back(
+          std::make_unique<StencilForce<HeldCorner>>(std::move(held), HeldCorner::Common{fabric.stretch}));
   }
   if (fabric.bend > 0) {
     forces.push_back(bending(mesh, corners, fabric, first));

@@ -43,7 +43,8 @@ struct GroupWarp {
 // direction.
 std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::vector<Vec3>& warp);
 
-// Vertex 0 is the particle `first_particle` of the system. Triangles without area give no force. `memory` is that of
+// Vertex 0 is the particle `first_particle` of the system. Triangles without area only hold together
+// (solver/forces/held_corner.h). `memory` is that of
 // friction against bending, of these triangles; null: a new one. Throws InputError when the fabric has directions and
 // `warp` is missing.
 std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const TriangleMesh& rest,

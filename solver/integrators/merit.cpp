@@ -22,7 +22,7 @@ RoundOff round_off(const BlockMatrix& A, const VecX& x, const VecX& v, double c)
     }
     return sums;
   });
-  return {all.energy, std::sqrt(all.squares)};
+  return {.least = all.energy, .impulse = std::sqrt(all.squares)};
 }
 
 double potential_of_forces(const System& system, const VecX& x, const VecX& v, double c) {
@@ -47,7 +47,10 @@ double Merit::speed_noise(double residual) const {
   return weight_impulse_ > 0 ? std::min(evenly, 0.02 * weight_impulse_ / mass_) : evenly;
 }
 
-void Merit::measure(const BlockMatrix& A, const Point& p, double c) { noise_ = round_off(A, p.x, p.v, c); }
+void Merit::measure(const BlockMatrix& A, const Point& p, double c) {
+  noise_ = round_off(A, p.x, p.v, c);
+  for (const auto& force : system_.forces()) noise_.terms += force->energy_noise();
+}
 
 // What friction takes is mu N |slip|, as Coulomb's law has it: its linearisation grows with the square of a slip that
 // comes out larger than the one at which it was made.

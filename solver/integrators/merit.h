@@ -6,7 +6,8 @@
 //                                                                [Nocedal & Wright 2006, section 3.1]
 // Rounding of x and v, in sums of a few terms, disturbs v by e_i = 8 eps (|x_i|/c + |v_i|). With
 // N = sum A_ii e_i^2 it changes Phi, a sum of squares, by at most N + 2 sqrt(Phi N), and the gradient of Phi
-// by |A_ii e_i|. Without gravity there is no other scale of what is small. A change that may be round-off
+// by |A_ii e_i|. Forces whose energy is a sum of terms that cancel add what these may be off (Force::energy_noise).
+// Without gravity there is no other scale of what is small. A change that may be round-off
 // counts neither as a rise of Phi nor as a residual.
 // x [m], v [m/s], A [kg], c, h [s].
 #pragma once
@@ -20,9 +21,12 @@ namespace drape {
 
 // How much round-off may change Phi and its gradient.
 struct RoundOff {
-  double least = 0;    // N above [J]
-  double impulse = 0;  // of the gradient [N s]
-  double energy(double phi) const { return least + 2 * std::sqrt(std::abs(phi) * least); }  // of Phi [J]
+  double least = 0;                  // N above [J]
+  double impulse = 0;                // of the gradient [N s]
+  double terms = 0;                  // of energies that are sums of terms that cancel [J]
+  double energy(double phi) const {  // of Phi [J]
+    return least + 2 * std::sqrt(std::abs(phi) * least) + terms;
+  }
 };
 RoundOff round_off(const BlockMatrix& A, const VecX& x, const VecX& v, double c);
 

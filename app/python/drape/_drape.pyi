@@ -83,6 +83,7 @@ class Fabric(metaclass=_Class):
     bend_friction: float
     bend_friction_weft: Optional[float]
     bend_friction_onset: float
+    bending: str
     def __init__(
         self,
         *,
@@ -109,6 +110,7 @@ class Fabric(metaclass=_Class):
         bend_friction: float = ...,
         bend_friction_weft: Optional[float] = ...,
         bend_friction_onset: float = ...,
+        bending: str = ...,
     ) -> None: ...
     def copy(self) -> Fabric: ...
     def __copy__(self) -> Fabric: ...
