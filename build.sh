@@ -309,8 +309,8 @@ pictures() {
   get_required python3-scipy
   say "making the motion of a body"
   "$python" data/meshes/make_motion.py || die "the motion could not be made, see above"
-  for scene in bias choi-ko-{100,200} dressed-turn layers ls-ball-{0,09} nails net noh-jung-{100,200} poncho poncho-sewn rotating-ball skirt-sewn \
-    soft-{bowl,sphere,stack} tablecloth-pull tee towel; do
+  for scene in bias choi-ko-{100,200} dressed-turn fast-ball funnel layers ls-ball-{0,09} nails net noh-jung-{100,200} poncho poncho-sewn rotating-ball skirt-sewn sleeve-twist \
+    soft-{bowl,sphere,stack} stack tablecloth-pull tee towel; do
     say "running $scene into $out/$scene"
     build/release/drape simulate "data/scenes/$scene.toml" --out "$out/$scene" || die "$scene failed, see above"
   done
@@ -337,6 +337,10 @@ pictures() {
   draw layers 1200x440 -25,14 4,9,16,last layers
   draw soft-stack 1200x400 -25,14 8,14,22,last soft-stack
   draw nails 1200x700 -25,14 5,12,38,last nails
+  draw fast-ball 1200x800 60,10 1,8,14,26 fast-ball
+  draw funnel 1200x800 -20,35 1,50,80,last funnel
+  draw sleeve-twist 1200x800 -20,15 1,40,70,last sleeve-twist
+  draw stack 1200x700 -25,14 1,15,30,last stack
   draw towel 1200x400 -25,14 8,14,20,last towel
   draw bias 900x480 -35,12 last bias
   draw strain 640x480 -25,14 last poncho --color strain

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Makes the meshes of this folder again: sheet-958.obj, tablecloth.obj, poncho.obj, flag.obj, net.obj, sheet-625.obj, dress.obj, nails.obj. Not run by the
-build.
+"""Makes the meshes of this folder again: sheet-958.obj, tablecloth.obj, poncho.obj, flag.obj, net.obj, sheet-625.obj, dress.obj, nails.obj, sleeve.obj,
+funnel.obj. Not run by the build.
 
-    python3 make_meshes.py                       the eight generated meshes
+    python3 make_meshes.py                       the ten generated meshes
     python3 make_meshes.py BODY.obj TEE.obj      body.obj and tee.obj, too, from files in metres (see ../README.md)
 
 Needs numpy and scipy (Debian: python3-scipy). The seeds are fixed: it makes the same files every time.
@@ -165,6 +165,28 @@ def dress(around, rows, length):
     return points, faces
 
 
+def sleeve(around, rows, radius, length):
+    """A tube along x, its middle at the origin. Rings from low to high x; quads, normals out."""
+    turn = 2 * np.pi * np.arange(around) / around
+    points = [(length * (r / rows - 0.5), radius * np.cos(a), radius * np.sin(a)) for r in range(rows + 1) for a in turn]
+    faces = [(r * around + c, r * around + (c + 1) % around, (r + 1) * around + (c + 1) % around, (r + 1) * around + c)
+             for r in range(rows) for c in range(around)]
+    return np.array(points), faces
+
+
+def revolved(profile, edge, around):
+    """The closed profile of (radius, y), turned about the y axis; its sides are cut into edges of at most `edge`."""
+    rings = []
+    for p, q in zip(np.array(profile), np.roll(profile, -1, axis=0)):
+        pieces = int(np.ceil(np.linalg.norm(q - p) / edge))
+        rings += [p + (q - p) * k / pieces for k in range(pieces)]
+    turn, n = 2 * np.pi * np.arange(around) / around, len(rings)
+    points = [(r * np.sin(a), y, r * np.cos(a)) for r, y in rings for a in turn]
+    faces = [(k * around + c, k * around + (c + 1) % around, (k + 1) % n * around + (c + 1) % around, (k + 1) % n * around + c)
+             for k in range(n) for c in range(around)]
+    return np.array(points), faces
+
+
 def nails(places, radius, around, size, thickness):
     """A square board, its top at y = 0, and a nail of each (x, z, height) on it."""
     s, t = size / 2, thickness
@@ -206,6 +228,12 @@ def main():
     write("dress.obj", ["A dress without straps, 95 cm long, 80 x 45 quads, standing, its hem at y = 0.",
                         "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
     write_nails()
+    points, faces = sleeve(72, 48, 0.2, 0.8)
+    write("sleeve.obj", ["A sleeve along x, 80 cm long, 40 cm across, 48 x 72 quads, its middle at the origin, normals out.",
+                         "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
+    points, faces = revolved([(0.70, 0.50), (0.17, 0.0), (0.17, -0.30), (0.20, -0.30), (0.20, -0.02), (0.73, 0.48)], 0.06, 60)
+    write("funnel.obj", ["A funnel, closed: 1.4 m across at the top, 34 cm in its neck, which begins at y = 0.",
+                         "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
     if len(sys.argv) == 3:
         points, faces = read(sys.argv[1])
         write("body.obj", ["CC0 1.0. The base mesh hm08 of MakeHuman (makehumancommunity/makehuman, makehuman/data/3dobjs/base.obj), group",
