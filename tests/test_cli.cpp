@@ -249,9 +249,8 @@ TEST_CASE("a dropped fabric has its warp down the cloth, and the run says where 
     REQUIRE(same.exit_code == 0);
     CHECK_THAT(same.err, !Contains("no direction of the warp"));
     CHECK(shop.json("o/run.json")["state_hash"] == shop.json("p/run.json")["state_hash"]);
-    for (const char* others :
-         {" --fabric alike.toml --set cloth.0.compression=1",
-          " --fabric polyester-twill --set cloth.0.model=noh-jung"})
+    for (const char* others : {" --fabric alike.toml --set cloth.0.compression=1",
+                               " --fabric polyester-twill --set cloth.0.model=noh-jung"})
       CHECK_THAT(shop.drape(words + "q" + others).err, !Contains("no direction of the warp"));
     CHECK((shop.json("q/run.json")["cloths"][0]["fabric"]["model"] == "noh-jung"));
   }

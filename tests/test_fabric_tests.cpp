@@ -9,6 +9,7 @@
 
 #include "app/scene/laboratory.h"
 #include "app/textile/elastica.h"
+#include "app/textile/measurements.h"
 #include "app/textile/shadow.h"
 #include "app/textile/virtual_tests.h"
 #include "mesh/triangles/topology.h"
@@ -261,6 +262,14 @@ TEST_CASE("what a laboratory measured stands beside what the virtual tests find"
   CHECK(0.15 * 9.80665 * c * c * c == Approx(measured.at("bending rigidity, warp").get<double>()));
   CHECK(measured.at("bending length, bias").is_null());
   CHECK(measured.at("shear modulus, picture frame").get<double>() == Approx(46.6).epsilon(0.02));
+  // A second strip that has another direction, and a strip in the bias in place of a frame: load / (4 extension).
+  NamedFabric both = load_fabric("mine.toml", folder.path);
+  both.tests.cantilevers.push_back({.length = 0.1, .droop = {.warp = 0.01, .weft = {}, .bias = 0.06}});
+  CHECK(*measured_value(both, "bending rigidity, bias") == *measured_value(both, "bending rigidity, warp"));
+  both.tests.frames.clear();
+  both.tests.bias_extensions.push_back({.length = 0.1, .width = 0.05, .load = 5, .extension = 0.03});
+  CHECK(*measured_value(both, "shear modulus, between clamps") == Approx(5 / 0.12));
+  CHECK_FALSE(measured_value(both, "shear modulus, picture frame"));
 }
 
 TEST_CASE("what test-fabric cannot do is refused in one line", "[fabric-tests]") {
@@ -278,7 +287,8 @@ TEST_CASE("what test-fabric cannot do is refused in one line", "[fabric-tests]")
         {"cotton-broad --model choi-ko", "expected woven or noh-jung"},
         {"cotton-broad --repeats 1.5", "whole number"},
         {"cotton-broad --plate 2cm", "from 50 mm"},
-        {"cotton-broad --plate 29cm", "a smaller --plate"},
+        {"cotton-broad --plate 29cm", "is as wide as the disc of 254 mm"},
+        {"cotton-broad --plate 25cm", "a smaller --plate"},
         {"cotton-broad --bending hinge", "there is no such bending"},
         {"cotton-broad --bending hinges --model noh-jung", "goes with --model woven"},
         {"cotton-broad --specimen 18cm", "from 200 mm"}}) {

@@ -3,6 +3,7 @@
 
 #include "solver/assembly/assembly.h"
 #include "solver/forces/woven.h"
+#include "tests/dense.h"
 #include "tests/tables.h"
 
 using namespace drape;
@@ -25,7 +26,7 @@ std::vector<Dirty> dirty_meshes() {
                      {0.1, 0, 0}, {0.1, 0, 0.1}, {0.2, 0, 0}, {0.2, 0, 0.1}};
   twice.triangles = {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 5, 4}, {4, 5, 6}, {5, 7, 6}};
   all.push_back({"vertices twice", twice, 4, 2, 3, 0});
-  all.push_back({"vertices twice", twice, 5, 3, 2, 0});
+  all.push_back({"vertices twice, the other one", twice, 5, 3, 2, 0});
   TriangleMesh middle;  // a vertex in the middle of an edge that does not know it
   middle.positions = {{0, 0, 0},      {0, 0, 0.1}, {0.1, 0, 0},  {0.1, 0, 0.1},
                       {0.1, 0, 0.03}, {0.2, 0, 0}, {0.2, 0, 0.1}};
@@ -44,7 +45,7 @@ std::vector<Dirty> dirty_meshes() {
 TEST_CASE("a triangle without area holds the cloth together", "[woven]") {
   for (const Dirty& dirty : dirty_meshes())
     for (const Vec3& warp : {Vec3(1, 0, 0), Vec3(0, 0, 1)}) {
-      INFO(dirty.name << ", vertex " << dirty.held);
+      INFO(dirty.name << ", warp along " << warp.transpose());
       Assembly all({0, -9.81, 0});
       Fabric fabric{.area_density = 0.2, .stretch = 500, .bend = 1e-5};
       fabric.weave.compression = 0.1;
@@ -87,5 +88,20 @@ TEST_CASE("the force that holds is minus the slope of its energy, and moves noth
       sum[k % 3] += f[k];
     }
     CHECK(sum.norm() < 1e-12 * f.norm());
+    // It is linear: a step is right at once, and its matrix is that of the force.
+    System system(std::vector<double>(static_cast<std::size_t>(dirty.mesh.vertex_count()), 1.0));
+    std::vector<std::unique_ptr<Force>> alone;
+    alone.push_back(std::move(hold));
+    system.add(std::move(alone));
+    const Force& force = *system.forces()[0];
+    BlockMatrix A = system.matrix();
+    A.set_to_mass(std::vector<double>(system.masses().size(), 0.0));
+    const VecX y = random_vector(rest.size(), 0.01, 8);
+    VecX b = still, ended = still;
+    const double c = 0.1;
+    force.add_linearised(x, still, y, c, Stiffness::tangent, A, b);
+    force.add_force(x + y, still, ended);
+    CHECK((b - c * ended).norm() < 1e-13 * (1 + b.norm()));
+    CHECK((dense(A) / (c * c) * y + ended - f).norm() < 1e-12 * (1 + f.norm()));
   }
 }

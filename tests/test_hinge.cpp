@@ -1,11 +1,17 @@
 // Bending by hinges: what a mesh of them resists, against closed forms.
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include "solver/forces/hinge.h"
+#include "solver/forces/plate_force.h"
 #include "solver/forces/woven.h"
+#include "solver/system/system.h"
+#include "tests/dense.h"
 #include "tests/tables.h"
 
 using namespace drape;
+using namespace drape::internal;
 using namespace drape::test;
 
 namespace {
@@ -31,10 +37,7 @@ std::unique_ptr<Force> bending(const TriangleMesh& mesh, const PlateStiffness& D
   const std::vector<Vec3> warp(mesh.triangles.size(), Vec3::UnitX());
   const auto corners = woven_corners(mesh, warp);
   if (kind == Bending::hinges) return hinge_force(mesh, corners, D, rest_angle, 0);
-  Fabric fabric{.stretch = 0, .bend = D.warp};
-  fabric.weave.bending = kind;
-  auto forces = woven(mesh, mesh, fabric, Vec3(Vec3::UnitX()));
-  return std::move(forces.at(0));
+  return std::make_unique<PlateForce>(quadratic_hinges(mesh, corners, D), 0);
 }
 
 // Two triangles, the second folded by the angle about their edge, which runs along x.
@@ -114,13 +117,15 @@ TEST_CASE("a hinge takes the rigidity across its edge", "[woven]") {
     };
     const Vec3 across = rotation * Vec3::UnitZ();
     const double u = across.x() * across.x(), v = across.z() * across.z();
+    const double B = 5 * u * u + v * v + (2 * 0.4 + 4 * 0.7) * u * v;
     CHECK(bending(two_triangles(turned(0)), D, Bending::hinges)->energy(turned(0.3)) ==
-          Approx(0.5 * 0.3 * 0.3 * (5 * u * u + v * v + (2 * 0.4 + 4 * 0.7) * u * v)));
+          Approx(0.5 * 0.3 * 0.3 * B));
+    CHECK(bending(two_triangles(turned(0)), D, Bending::quadratic_hinges)->energy(turned(0.3)) ==
+          Approx(2 * B * std::pow(std::sin(0.15), 2)));
   }
 }
 
-TEST_CASE("a hinge pushes back as hard as it is bent, also where a triangle is squeezed to nothing",
-          "[woven]") {
+TEST_CASE("the force of a hinge stays bounded where a triangle is squeezed to nothing", "[woven]") {
   const auto hinge = bending(two_triangles(folded(0)), isotropic, Bending::hinges);
   for (double height : {1.0, 1e-2, 1e-6, 0.0}) {
     VecX x = folded(0.5), f = VecX::Zero(12);
@@ -129,5 +134,48 @@ TEST_CASE("a hinge pushes back as hard as it is bent, also where a triangle is s
     INFO(height << ": " << f.transpose());
     CHECK(f.allFinite());
     CHECK(f.norm() < 1e3);
+  }
+}
+
+TEST_CASE("the matrix of hinges is that of their force where they rest, and nowhere indefinite",
+          "[woven][forces]") {
+  const double T = 0.02, c = 0.1;
+  for (double rest : {0.0, 0.7}) {
+    const TriangleMesh mesh = two_triangles(folded(rest));
+    Fabric fabric{.stretch = 0, .bend = 1};
+    fabric.weave.bending = Bending::hinges;
+    fabric.weave.rest_angle = 1;
+    fabric.weave.bend_time = T;
+    System system(std::vector<double>(4, 1.0));
+    system.add(woven(mesh, mesh, fabric));
+    REQUIRE(system.forces().size() == 1);
+    const Force& hinge = *system.forces()[0];
+    const VecX still = VecX::Zero(12), at_rest = stacked(mesh.positions);
+    const auto force = [&](const VecX& x, const VecX& v) {
+      VecX f = still;
+      hinge.add_force(x, v, f);
+      return f;
+    };
+    for (const VecX& x : {at_rest, VecX(at_rest + random_vector(12, 0.2, 5))}) {
+      const VecX v = random_vector(12, 1, 4), y = random_vector(12, 0.01, 6);
+      BlockMatrix A = system.matrix();
+      A.set_to_mass(std::vector<double>(4, 0.0));
+      VecX b = still;
+      hinge.add_linearised(x, v, y, c, Stiffness::tangent, A, b);
+      const Eigen::MatrixXd K = dense(A) / (c * (c + T));
+      CHECK((K - K.transpose()).norm() <= 1e-15 * K.norm());
+      CHECK(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues().minCoeff() > -1e-13 * K.norm());
+      CHECK((b - c * (force(x, v) - K * y)).norm() < 1e-12 * (1 + b.norm()));
+      CHECK((force(x, v) - force(x, still) + T * K * v).norm() < 1e-12 * (1 + (K * v).norm()));
+      CHECK(hinge.dissipation(x, v) == Approx(0.5 * T * v.dot(K * v)));
+      if (x != at_rest) continue;
+      Eigen::MatrixXd slope(12, 12);
+      const double d = 1e-6;
+      for (Eigen::Index k = 0; k < 12; ++k) {
+        const VecX way = d * VecX::Unit(12, k);
+        slope.col(k) = (force(x - way, still) - force(x + way, still)) / (2 * d);
+      }
+      CHECK((K - slope).norm() < 1e-6 * K.norm());
+    }
   }
 }

@@ -8,6 +8,7 @@
 #include "solver/assembly/assembly.h"
 #include "solver/forces/plate_force.h"
 #include "solver/forces/woven.h"
+#include "tests/dense.h"
 #include "tests/strips.h"
 #include "tests/tables.h"
 
@@ -57,19 +58,6 @@ VecX moved(const TriangleMesh& mesh) {
   std::vector<Vec3> all;
   for (const Vec3& x : mesh.positions) all.push_back(turn * x + Vec3(0.3, 1, -2));
   return stacked(all);
-}
-
-Eigen::MatrixXd dense(const BlockMatrix& A) {  // in particle order
-  const Eigen::Index n = 3 * A.rows();
-  Eigen::MatrixXd D(n, n);
-  VecX rows(n), product(n), column(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    to_rows(A.pattern(), VecX(VecX::Unit(n, k)), rows);
-    A.multiply(rows, product);
-    to_particles(A.pattern(), product, column);
-    D.col(k) = column;
-  }
-  return D;
 }
 
 }  // namespace
@@ -236,7 +224,8 @@ TEST_CASE(
   for (const auto& [edge, far] : {std::pair{1e-3, 0.0}, {2e-3, 0.0}, {1e-3, 1.0}})
     for (Bending bending : {Bending::plate, Bending::hinges, Bending::quadratic_hinges})
       for (std::optional<double> imperfection : {std::optional<double>(0.0), std::optional<double>()}) {
-        INFO("edges of " << edge << " m, " << name(bending));
+        INFO("edges of " << edge << " m, " << name(bending) << ", " << far << " m away, imperfection "
+                         << imperfection.value_or(-1));
         Assembly all({0, 0, 0});
         TriangleMesh sheet = grid(21, 21, 20 * edge, 20 * edge);
         for (Vec3& x : sheet.positions) x.x() += far;

@@ -7,6 +7,7 @@
 #include "solver/assembly/assembly.h"
 #include "solver/forces/woven.h"
 #include "tests/allocations.h"
+#include "tests/dense.h"
 #include "tests/same_bits.h"
 #include "tests/strips.h"
 #include "tests/tables.h"
@@ -70,19 +71,6 @@ Loop loop_of(const Strip& s, const Fabric& fabric, const Vec3& warp) {
   for (int k = 240; k >= -250; k -= 10) down[k] = bend_to(k);
   for (int k = -240; k <= 250; k += 10) up[k] = bend_to(k);
   return {0.5 * (up[100] - down[100] + up[-100] - down[-100]), (up[150] - up[50]) / 100, first[20]};
-}
-
-Eigen::MatrixXd dense(const BlockMatrix& A) {  // in particle order
-  const Eigen::Index n = 3 * A.rows();
-  Eigen::MatrixXd D(n, n);
-  VecX rows(n), product(n), column(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    to_rows(A.pattern(), VecX(VecX::Unit(n, k)), rows);
-    A.multiply(rows, product);
-    to_particles(A.pattern(), product, column);
-    D.col(k) = column;
-  }
-  return D;
 }
 
 // A sheet that has been bent to and fro, and friction alone as its force.

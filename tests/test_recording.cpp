@@ -110,6 +110,12 @@ TEST_CASE("faces of a recording are cut as in the run, however they are bent by 
   CHECK(parse_obj(content(folder.path / "out/sheet.obj"), "sheet.obj").triangles != start.triangles);
   folder.write("out/fields/sheet.triangles.npy", "nothing");
   CHECK(Recording(folder.path / "out").missing().size() == 1);
+  // A later run into the same folder whose faces need no cutting.
+  folder.write("sheet.obj", "v 0 0 0\nv 0 0 0.1\nv 0.1 0 0.1\nv 0.1 0 0\nf 1 2 4\nf 2 3 4\n");
+  REQUIRE(run(read_scene(folder.path / "scene.toml", {}), {folder.path / "out", Frames::pc2, true}) == 0);
+  const Recording later(folder.path / "out");
+  CHECK(later.missing().empty());
+  CHECK(later.shapes()[0].mesh.triangles == std::vector<Triangle>{{0, 1, 3}, {1, 2, 3}});
 }
 
 TEST_CASE("velocities, strains and contacts are those of the frame", "[recording]") {

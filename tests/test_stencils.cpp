@@ -10,6 +10,7 @@
 #include "solver/forces/pair_force.h"
 #include "solver/forces/woven.h"
 #include "solver/integrators/newton_matrix.h"
+#include "tests/dense.h"
 #include "tests/integrators.h"
 #include "tests/outside/forces.h"
 #include "tests/same_bits.h"
@@ -133,19 +134,6 @@ struct Woven {  // taut in some triangles and slack in others
   static Law::Common common() { return fabric_of(0.01 * percent); }
 };
 using Cases = std::tuple<FullSpring, Distance, Area, PointTriangle, Woven<100>, Woven<30>>;
-
-Eigen::MatrixXd dense(const BlockMatrix& A) {  // in particle order
-  const Eigen::Index n = 3 * A.rows();
-  Eigen::MatrixXd D(n, n);
-  VecX rows(n), product(n), column(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    to_rows(A.pattern(), VecX(VecX::Unit(n, k)), rows);
-    A.multiply(rows, product);
-    to_particles(A.pattern(), product, column);
-    D.col(k) = column;
-  }
-  return D;
-}
 
 // Of the direct solvers; a multigrid may make its levels anew whenever they work badly.
 bool analyses_are_kept(std::string_view solver) { return solver == "cholmod" || solver == "eigen-ldlt"; }

@@ -1,8 +1,8 @@
 // Arrays in NumPy's file format, which numpy.load reads, also with mmap_mode.       [NEP 1, version 1.0]
 //   "\x93NUMPY", 1, 0, uint16 length, {'descr': '<f4', 'fortran_order': False, 'shape': (frames, n, 3), }
 //   blanks and a line end up to 128 bytes, then the numbers in C order, little endian.
-// The numbers are float32 ('<f4'), int32 ('<i4') or bytes ('|u1'). The first axis counts frames; they are written and
-// read one at a time.
+// The numbers are float32 ('<f4'), int32 ('<i4') or bytes ('|u1'). The first axis counts frames (of triangles it counts
+// triangles); they are written and read one at a time.
 #pragma once
 
 #include <cstdint>

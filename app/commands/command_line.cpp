@@ -223,8 +223,10 @@ void add_test_fabric(CLI::App& app, int& exit_code) {
   option("--model", w.model, "NAME", "woven or noh-jung (woven)");
   option("--repeats", w.repeats, "N", "how many specimens are draped on each mesh (3)");
   option("--bending", w.bending, "NAME", "of woven: plate, hinges or quadratic-hinges (plate)");
-  option("--specimen", w.specimen, "LENGTH", "diameter of the draped disc (30 cm)");
-  option("--plate", w.plate, "LENGTH", "diameter of the plate that it lies on (18 cm)");
+  option("--specimen", w.specimen, "LENGTH",
+         "diameter of the draped disc (as in the fabric's file, else 30 cm)");
+  option("--plate", w.plate, "LENGTH",
+         "diameter of the plate that it lies on (as in the fabric's file, else 18 cm)");
   option("--lowering", w.lowering, "TIME", "how long the draped disc is let down (5 s)");
   command->add_flag("--hysteresis", w.hysteresis, "the threads rub when they are bent, as kes.2HB says");
   option("--out", words->out, "DIR", "output folder (out/test-fabric/FABRIC)");

@@ -22,7 +22,7 @@ DampingKind damping_kind(const std::string& name) {
                         suggestion(name, {"relative", "axial"}));
 }
 
-const char* name_of(DampingKind kind) { return kind == DampingKind::axial ? "axial" : "relative"; }
+const char* damping_name(DampingKind kind) { return kind == DampingKind::axial ? "axial" : "relative"; }
 
 Bending bending_named(const std::string& name) {
   const Names names = bending_names();
@@ -126,7 +126,7 @@ void add_fabric(py::module_& m) {
       .def_readwrite("buckling_clamp", &Fabric::buckling_clamp, "N/m, of every diagonal; None: chosen")
       .def_readwrite("damping", &Fabric::damping, "N s/m, of every connection")
       .def_property(
-          "damping_kind", [](const Fabric& fabric) { return name_of(fabric.damping_kind); },
+          "damping_kind", [](const Fabric& fabric) { return damping_name(fabric.damping_kind); },
           [](Fabric& fabric, const std::string& kind) { fabric.damping_kind = damping_kind(kind); },
           "'relative' or 'axial'")
       .def_readwrite("neighbour_weighting", &Fabric::neighbour_weighting, "Noh & Jung, eq. 1-3")

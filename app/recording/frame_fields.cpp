@@ -15,6 +15,8 @@ int main_particle(const Embedding& embedding, int vertex) {
       ->particle;
 }
 
+}  // namespace
+
 bool has_polygons(const TriangleMesh& mesh) {
   if (!mesh.document) return false;
   const auto& start = mesh.document->face_start;
@@ -22,8 +24,6 @@ bool has_polygons(const TriangleMesh& mesh) {
     if (start[f + 1] - start[f] > 3) return true;
   return false;
 }
-
-}  // namespace
 
 std::filesystem::path field_path(const std::filesystem::path& folder, const std::string& name,
                                  const std::string& field) {

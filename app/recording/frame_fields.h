@@ -35,6 +35,9 @@ class FrameFields {
   std::vector<std::uint8_t> particle_contact_;
 };
 
+// Whether faces have to be cut: some have more than three corners.
+bool has_polygons(const TriangleMesh& mesh);
+
 std::filesystem::path field_path(const std::filesystem::path& folder, const std::string& name,
                                  const std::string& field);
 

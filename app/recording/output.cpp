@@ -143,6 +143,9 @@ void Output::finish(const State& state, RunRecord& record) {
 
   for (Pc2Writer& cache : caches_) cache.keep();
   for (FrameFields& fields : fields_) fields.keep();
+  for (const Cloth& cloth : simulation_.cloths)  // an earlier run may have had another mesh of that name
+    if (frames_ != Frames::none && !has_polygons(cloth.mesh))
+      fs::remove(field_path(folder_, cloth.name, "triangles"));
   steps_->keep();
   for (AtomicFile& text : texts) text.keep();
   if (frames_ == Frames::obj && !record.interrupted && !record.failure) remove_later_frames();

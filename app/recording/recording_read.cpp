@@ -280,10 +280,10 @@ void Recording::find_frames(std::size_t k) {
 // How the run cut polygons. Without the file, as of runs without frames, they are cut as their last shape suggests.
 void Recording::find_triangles(std::size_t k) {
   const fs::path path = field_path(folder_, shapes_[k].name, "triangles");
-  if (frame_counts_[k] == 0 || !fs::exists(path)) return;
+  TriangleMesh& mesh = shapes_[k].mesh;
+  if (frame_counts_[k] == 0 || !has_polygons(mesh) || !fs::exists(path)) return;  // else it is of another run
   try {
     NpyReader reader(path);
-    TriangleMesh& mesh = shapes_[k].mesh;
     if (reader.frame_shape() != std::vector<int>{3} ||
         reader.frames() != static_cast<int>(mesh.triangles.size()))
       throw InputError(path.string() + ": expected " + std::to_string(mesh.triangles.size()) +

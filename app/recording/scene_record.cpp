@@ -14,7 +14,7 @@ Json optional_json(const std::optional<double>& value) { return value ? Json(*va
 Json optional_json(const std::string& text) { return text.empty() ? Json() : Json(text); }
 Json vector_json(const Vec3& v) { return Json::List{v[0], v[1], v[2]}; }
 
-const char* name_of(DampingKind kind) { return kind == DampingKind::axial ? "axial" : "relative"; }
+const char* damping_name(DampingKind kind) { return kind == DampingKind::axial ? "axial" : "relative"; }
 
 // How many vertices of the mesh a rule takes. A box takes particles of a soft body, which its mesh does not have.
 Json count_of(const PinRule& rule, const Cloth& cloth) {
@@ -168,7 +168,7 @@ Json weave_json(const ClothEntry& entry, const std::optional<Vec3>& direction) {
                         {"bend_weft", plate.weft},
                         {"bend_bias", 0.25 * (plate.warp + plate.weft + 2 * plate.cross) + plate.twist},
                         {"bend_poisson", weave.bend_poisson},
-                        {"bending", app::name_of(weave.bending)},
+                        {"bending", name_of(weave.bending)},
                         {"stretch_time", weave.stretch_time},
                         {"shear_time", weave.shear_time},
                         {"bend_time", weave.bend_time},
@@ -196,7 +196,7 @@ Json fabric_json(const ClothEntry& entry, const Cloth* cloth) {
                        {"bend_spring", optional_json(f.bend_spring)},
                        {"buckling_clamp", optional_json(f.buckling_clamp)},
                        {"damping", f.damping},
-                       {"damping_kind", name_of(f.damping_kind)},
+                       {"damping_kind", damping_name(f.damping_kind)},
                        {"neighbour_weighting", f.neighbour_weighting},
                        {"weave", woven ? weave_json(entry, warp_of(entry, cloth)) : Json()},
                        {"given", std::move(given)}};
@@ -212,7 +212,7 @@ Json material_json(const SoftMaterial& m) {
                        {"shear", spring(m.shear)},
                        {"bend", spring(m.bend)},
                        {"damping", m.damping},
-                       {"damping_kind", name_of(m.damping_kind)}};
+                       {"damping_kind", damping_name(m.damping_kind)}};
 }
 
 Json pins_json(const std::vector<PinEntry>& pins, const Cloth& cloth) {

@@ -104,20 +104,22 @@ std::optional<double> measured_value(const NamedFabric& fabric, const std::strin
   if (quantity == "shear modulus, picture frame" && !tests.frames.empty()) return shear_to_start_from(tests);
   if (quantity == "shear modulus, between clamps" && tests.frames.empty() && !tests.bias_extensions.empty())
     return shear_to_start_from(tests);
-  if (tests.cantilevers.empty()) return {};
-  const MeasuredCantilever& strip = tests.cantilevers.front();
-  const Directions& droop = strip.droop;
-  const bool alike = !droop.weft && !droop.bias;  // one number is of all directions
-  const auto of = [&](const char* test) -> std::optional<double> {
-    const std::string start = std::string(test) + ", ";
-    if (quantity == start + "warp") return droop.warp;
-    if (quantity == start + "weft") return alike ? droop.warp : droop.weft;
-    return quantity == start + "bias" ? alike ? droop.warp : droop.bias : std::nullopt;
-  };
-  const auto gamma = [&](double d) { return gamma_of_droop(std::clamp(d / strip.length, 0.002, 0.95)); };
-  if (const auto d = of("bending length")) return strip.length / std::cbrt(gamma(*d));
-  if (const auto d = of("bending rigidity"))
-    return fabric.fabric.area_density * standard_gravity * std::pow(strip.length, 3) / gamma(*d);
+  const std::size_t comma = quantity.find(", ");
+  const std::string test = quantity.substr(0, comma);
+  if (comma == quantity.npos || (test != "bending length" && test != "bending rigidity")) return {};
+  const std::string direction = quantity.substr(comma + 2);
+  for (const MeasuredCantilever& strip : tests.cantilevers) {
+    const Directions& droop = strip.droop;
+    const bool alike = !droop.weft && !droop.bias;  // one number is of all directions
+    const std::optional<double> one = direction == "warp" || alike ? std::optional(droop.warp)
+                                      : direction == "weft"        ? droop.weft
+                                                                   : droop.bias;
+    if (!one) continue;
+    const double gamma = gamma_of_droop(std::clamp(*one / strip.length, 0.002, 0.95));
+    return test == "bending length"
+               ? strip.length / std::cbrt(gamma)
+               : fabric.fabric.area_density * standard_gravity * std::pow(strip.length, 3) / gamma;
+  }
   return {};
 }
 

@@ -31,9 +31,9 @@ struct SpecimenOptions {
 // compared: it jumps. Throws InputError when a specimen is too small for the mesh.
 std::vector<Measurement> measurements_of(const MeasuredTests& tests, const SpecimenOptions& options);
 
-// What the file of a fabric says was measured of a quantity of the virtual tests, in SI units: a drape coefficient and its
-// nodes as they are, a bending length or rigidity from the droop of a strip by the elastica, a shear modulus from a frame
-// that is sheared evenly or from a long strip in the bias.
+// What the file of a fabric says was measured of a quantity of the virtual tests, in SI units: a drape coefficient and
+// its nodes as they are, a bending length or rigidity from the droop of a strip by the elastica, a shear modulus from a
+// frame that is sheared evenly or from a long strip in the bias. Of several results the first that has it.
 std::optional<double> measured_value(const NamedFabric& fabric, const std::string& quantity);
 
 // Parameters to start from: those of the elastica, of a frame whose fabric is sheared evenly, of a long strip in

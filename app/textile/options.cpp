@@ -53,6 +53,10 @@ void check_widths(const NamedFabric& named) {
 
 void check_overhang(double radius, double plate_radius, double edge) {
   const double overhang = radius - plate_radius;
+  if (!(overhang > 0))
+    throw InputError("--plate " + millimetres(2 * plate_radius) + ": is as wide as the disc of " +
+                     millimetres(2 * radius) +
+                     " that lies on it; take a smaller --plate or a larger --specimen");
   if (overhang < 2.5 * edge)
     throw InputError(
         "--mesh " + millimetres(edge) + ": is too coarse for the " + millimetres(overhang) +

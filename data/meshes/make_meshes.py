@@ -232,7 +232,7 @@ def main():
     write("sleeve.obj", ["A sleeve along x, 80 cm long, 40 cm across, 48 x 72 quads, its middle at the origin, normals out.",
                          "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
     points, faces = revolved([(0.70, 0.50), (0.17, 0.0), (0.17, -0.30), (0.20, -0.30), (0.20, -0.02), (0.73, 0.48)], 0.06, 60)
-    write("funnel.obj", ["A funnel, closed: 1.4 m across at the top, 34 cm in its neck, which begins at y = 0.",
+    write("funnel.obj", ["A funnel, closed: its opening is 1.4 m across, its neck 34 cm, which begins at y = 0.",
                          "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
     if len(sys.argv) == 3:
         points, faces = read(sys.argv[1])

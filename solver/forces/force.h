@@ -62,7 +62,7 @@ class Force {
   // All functions below are pure functions of x and v, given the stencils of the step and the past.
   virtual double energy(const VecX& x) const = 0;  // J
   // How far round-off may take that energy from what it is, where it is a sum of terms that cancel [J].
-  virtual double energy_noise() const { return 0; }
+  virtual double energy_noise(const VecX& /*x*/) const { return 0; }
   // A convex function of v, whose slope is the force that depends on v: -dP/dv [W]. Where that force is linear it
   // is v . D v / 2.
   virtual double dissipation(const VecX& /*x*/, const VecX& /*v*/) const { return 0; }

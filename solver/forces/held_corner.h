@@ -6,7 +6,7 @@
 
 #include "solver/forces/stencil_force.h"
 
-namespace drape {
+namespace drape::internal {
 
 struct HeldCorner {
   static constexpr const char* name = "hold";
@@ -31,4 +31,4 @@ struct HeldCorner {
   }
 };
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -6,10 +6,7 @@
 #include "solver/forces/plate_slopes.h"
 #include "solver/forces/stencil_force.h"
 
-namespace drape {
-
-using internal::Functional;
-using internal::PlateSlopes;
+namespace drape::internal {
 
 namespace {
 
@@ -21,8 +18,9 @@ struct HingeLaw {
   static constexpr int particles = 4;
   struct Rest {
     double k, angle;  // N m; theta_0
-    double least_c,
-        least_d;  // m^4: below this square of twice its area, a triangle that is squeezed turns no faster
+    // m^4. A triangle whose squared double area is less than this is taken to have this one, so that the force stays
+    // bounded; it is then no longer the slope of the energy.
+    double least_c, least_d;
   };
   struct Common {
     double time;  // s
@@ -63,9 +61,9 @@ struct HingeLaw {
   }
   // Without the part d theta'', which is not positive semidefinite.
   static Blocks<4> hessian(const Common&, const Rest& rest, const Points<4>& X, Stiffness) {
-    const Points<4> slope = Angle(X).slope(rest, X);
+    const Points<4> slope = std::sqrt(rest.k) * Angle(X).slope(rest, X);
     const Eigen::Map<const Eigen::Matrix<double, 12, 1>> u(slope.data());
-    return rest.k * u * u.transpose();
+    return u * u.transpose();  // symmetric to the last bit
   }
   static Blocks<4> damping(const Common& common, const Rest& rest, const Points<4>& X) {
     return common.time * hessian(common, rest, X, Stiffness::tangent);
@@ -129,7 +127,8 @@ PlateEnergy quadratic_hinges(const TriangleMesh& mesh, const std::vector<RestCor
       }
   });
   energy.pairs = summed(std::move(energy.pairs));
+  measure_pairs(mesh, energy);
   return energy;
 }
 
-}  // namespace drape
+}  // namespace drape::internal

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -26,7 +27,7 @@ Eigen::Matrix3d matrix(const PlateStiffness& stiffness) {
 
 // A triangle of the plate: its energy is d . Z d / 2, where d is how far the inward slope of its linear function is
 // from that of each edge with a hinge.
-struct Bending {
+struct BendingTriangle {
   std::vector<int> vertices;  // ascending
   Eigen::MatrixXd rows;       // d over the vertices [1/m]
   Eigen::MatrixXd stiffness;  // Z [N m]
@@ -53,7 +54,7 @@ class MorleyPlate {
  private:
   // A constant curvature H has the moments m = P D H, where row k of P is l n n of edge k, and H = P^T d / A: so
   // Z = P D P^T / A. The slope of an edge without a hinge is the one of least energy.
-  Bending bending(int t) const {
+  BendingTriangle bending(int t) const {
     Eigen::Matrix3d P;  // over (M_uu, M_vv, M_uv)
     std::array<int, 3> hinge_of = {-1, -1, -1};
     double area = 0;
@@ -73,7 +74,7 @@ class MorleyPlate {
       P.row(static_cast<Eigen::Index>(k)) << l * n.x() * n.x(), l * n.y() * n.y(), 2 * l * n.x() * n.y();
     }
     const Eigen::Matrix3d Z = P * D_ * P.transpose() / area;
-    Bending bending{{}, {}, Z(held, held), P(held, Eigen::all).transpose() / area, area};
+    BendingTriangle bending{{}, {}, Z(held, held), P(held, Eigen::all).transpose() / area, area};
     if (!open.empty()) {
       const Eigen::MatrixXd across = Z(held, open);
       const Eigen::MatrixXd inverse = Eigen::MatrixXd(Z(open, open)).inverse();
@@ -84,7 +85,7 @@ class MorleyPlate {
     return bending;
   }
 
-  void take_rows(int t, const std::array<int, 3>& hinge_of, Bending& bending) const {
+  void take_rows(int t, const std::array<int, 3>& hinge_of, BendingTriangle& bending) const {
     std::vector<Functional> all;
     for (std::size_t k = 0; k < 3; ++k) {
       if (hinge_of[k] < 0) continue;
@@ -117,7 +118,7 @@ class MorleyPlate {
   Eigen::Matrix3d D_;
 };
 
-void add_pairs(const Bending& bending, std::vector<PlatePair>& pairs) {
+void add_pairs(const BendingTriangle& bending, std::vector<PlatePair>& pairs) {
   const Eigen::MatrixXd K = bending.rows.transpose() * bending.stiffness * bending.rows;
   for (Eigen::Index i = 0; i < K.rows(); ++i)
     for (Eigen::Index j = i + 1; j < K.rows(); ++j)
@@ -128,7 +129,7 @@ void add_pairs(const Bending& bending, std::vector<PlatePair>& pairs) {
 
 // The rest slopes are those of the mesh, rows X; a triangle among others in its plane has none.
 void add_bent(const TriangleMesh& mesh, const Triangle& triangle, const RestCorners& corners,
-              double rest_angle, const Bending& bending, std::vector<BentTriangle>& all) {
+              double rest_angle, const BendingTriangle& bending, std::vector<BentTriangle>& all) {
   const auto at = [&](int v) { return mesh.positions[static_cast<std::size_t>(v)]; };
   BentTriangle bent{.corners = triangle, .weights = slopes_of(corners).weights, .pulls = {}, .energy = 0};
   Slopes f = Slopes::Zero();
@@ -168,21 +169,33 @@ std::vector<PlatePair> summed(std::vector<PlatePair> pairs) {
 PlateEnergy plate_energy(const TriangleMesh& mesh, const std::vector<RestCorners>& corners,
                          const PlateStiffness& stiffness, double rest_angle) {
   PlateEnergy energy;
-  MorleyPlate(mesh, corners, stiffness).each([&](int t, const Bending& bending) {
+  MorleyPlate(mesh, corners, stiffness).each([&](int t, const BendingTriangle& bending) {
     const auto number = static_cast<std::size_t>(t);
     add_pairs(bending, energy.pairs);
     if (rest_angle > 0)
       add_bent(mesh, mesh.triangles[number], corners[number], rest_angle, bending, energy.bent);
   });
   energy.pairs = summed(std::move(energy.pairs));
+  measure_pairs(mesh, energy);
   return energy;
+}
+
+void measure_pairs(const TriangleMesh& mesh, PlateEnergy& energy) {
+  energy.pull = energy.size = 0;
+  for (const PlatePair& p : energy.pairs) {
+    const double d =
+        (mesh.positions[static_cast<std::size_t>(p.i)] - mesh.positions[static_cast<std::size_t>(p.j)])
+            .norm();
+    energy.pull += std::abs(p.k) * d;
+    energy.size += std::abs(p.k) * d * d;
+  }
 }
 
 std::vector<PlateCurvature> plate_curvatures(const TriangleMesh& mesh,
                                              const std::vector<RestCorners>& corners,
                                              const PlateStiffness& stiffness) {
   std::vector<PlateCurvature> all;
-  MorleyPlate(mesh, corners, stiffness).each([&](int t, const Bending& bending) {
+  MorleyPlate(mesh, corners, stiffness).each([&](int t, const BendingTriangle& bending) {
     const auto number = static_cast<std::size_t>(t);
     PlateCurvature& triangle = all.emplace_back();
     triangle.number = t;

@@ -54,7 +54,11 @@ std::vector<PlatePair> summed(std::vector<PlatePair> pairs);
 struct PlateEnergy {
   std::vector<PlatePair> pairs;    // sorted by (i, j)
   std::vector<BentTriangle> bent;  // empty where the plate rests flat
+  // Sums over the pairs of |k| d [N] and of |k| d^2 [J], with d [m] the distance of the pair in the mesh: how large the
+  // terms of the energy are that cancel where cloth is flat.
+  double pull = 0, size = 0;
 };
+void measure_pairs(const TriangleMesh& mesh, PlateEnergy& energy);  // sets these two
 
 // corners[t] are those of triangle t of the mesh, vertex by vertex; each triangle may have an origin of its
 // own. rest_angle: the share of the mesh's own curvature with which the plate rests; 0 is flat, 1 the mesh as it is.

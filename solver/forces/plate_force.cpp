@@ -26,7 +26,8 @@ Slopes slopes_at(const BentTriangle& t, const At& at) {
 
 }  // namespace
 
-PlateForce::PlateForce(const PlateEnergy& plate, double time, int first) : time_(time), bent_(plate.bent) {
+PlateForce::PlateForce(const PlateEnergy& plate, double time, int first)
+    : time_(time), pull_(plate.pull), size_(plate.size), bent_(plate.bent) {
   pairs_.reserve(plate.pairs.size());
   for (const PlatePair& p : plate.pairs) pairs_.push_back({first + p.i, first + p.j, p.k, -1});
   for (BentTriangle& t : bent_) {
@@ -68,18 +69,12 @@ void PlateForce::bind(const BlockLayout& layout) {
                           [&](int e) { return rows[static_cast<std::size_t>(e)]; });
 }
 
-// The terms of pairs far apart cancel those of pairs nearby where the cloth is flat. As cloth hardly stretches, their
-// size is that of the first step.
-bool PlateForce::begin_step(const StepStart& start) {
-  if (noise_) return false;
+// The terms of pairs far apart cancel those of pairs nearby where the cloth is flat. Cloth hardly stretches, so they stay
+// as large as in the mesh; the difference of two places has the round-off of the places. What the bent triangles add
+// cancels too, near the rest shape: energy() leaves it out there.
+double PlateForce::energy_noise(const VecX& x) const {
   constexpr double eps = 4 * std::numeric_limits<double>::epsilon();
-  noise_ = 0;
-  for (const Pair& p : pairs_) {
-    const Vec3 xi = start.x.segment<3>(3 * p.i), xj = start.x.segment<3>(3 * p.j);
-    const double d = (xi - xj).norm();
-    *noise_ += eps * std::abs(p.k) * d * (d + xi.norm() + xj.norm());
-  }
-  return false;
+  return eps * (size_ + 4 * pull_ * x.lpNorm<Eigen::Infinity>());
 }
 
 double PlateForce::energy(const VecX& x) const {

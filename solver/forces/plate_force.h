@@ -11,8 +11,6 @@
 // The viscosity is D = T K of the pairs, with a time T [s].
 #pragma once
 
-#include <optional>
-
 #include "solver/forces/chunk_schedule.h"
 #include "solver/forces/force.h"
 #include "solver/forces/plate.h"
@@ -27,9 +25,8 @@ class PlateForce final : public Force {
   std::string_view name() const override { return "bend"; }
   void list_pairs(std::vector<ParticlePair>& pairs) const override;
   void bind(const BlockLayout& layout) override;
-  bool begin_step(const StepStart& start) override;
   double energy(const VecX& x) const override;
-  double energy_noise() const override { return noise_.value_or(0); }
+  double energy_noise(const VecX& x) const override;
   double dissipation(const VecX& x, const VecX& v) const override;
   void add_force(const VecX& x, const VecX& v, VecX& f) const override;
   void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,
@@ -51,8 +48,8 @@ class PlateForce final : public Force {
   template <class At>
   void add_bent(const At& at, double factor, VecX& f) const;
 
-  double time_;                  // s
-  std::optional<double> noise_;  // J, of the energy; set by the first step
+  double time_;         // s
+  double pull_, size_;  // N, J: of the terms of the energy (PlateEnergy)
   std::vector<Pair> pairs_;
   std::vector<Diagonal> diagonal_;
   std::vector<BentTriangle> bent_;

@@ -13,6 +13,8 @@
 
 namespace drape {
 
+using internal::HeldCorner;
+
 Membrane::Common membrane_of(const Fabric& fabric) {
   const Weave& weave = fabric.weave;
   const double warp = fabric.stretch, weft = weave.stretch_weft.value_or(warp), mean = std::sqrt(warp * weft),
@@ -123,13 +125,15 @@ std::unique_ptr<Force> bending(const TriangleMesh& mesh, const std::vector<RestC
   const Weave& weave = fabric.weave;
   switch (weave.bending) {
     case Bending::hinges:
-      return hinge_force(mesh, corners, D, weave.rest_angle, weave.bend_time, first);
+      return internal::hinge_force(mesh, corners, D, weave.rest_angle, weave.bend_time, first);
     case Bending::quadratic_hinges:
-      return std::make_unique<PlateForce>(quadratic_hinges(mesh, corners, D), weave.bend_time, first);
-    default:
-      return std::make_unique<PlateForce>(plate_energy(mesh, corners, D, weave.rest_angle), weave.bend_time,
+      return std::make_unique<PlateForce>(internal::quadratic_hinges(mesh, corners, D), weave.bend_time,
                                           first);
+    case Bending::plate:
+      break;
   }
+  return std::make_unique<PlateForce>(plate_energy(mesh, corners, D, weave.rest_angle), weave.bend_time,
+                                      first);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
-// A woven fabric: a membrane of triangles of constant strain (solver/forces/membrane.h) and a plate without a
-// clamp (solver/forces/plate.h), or hinges in its place (Weave::bending, solver/forces/hinge.h). Y, G, B and Poisson's ratios come out as they are given on any mesh, along warp,
-// weft and between. B is that of a strip so wide that it does not curve across as well.
+// A woven fabric: a membrane of triangles of constant strain (solver/forces/membrane.h) and a plate without a clamp
+// (solver/forces/plate.h). Y, G, B and Poisson's ratios come out as they are given on any mesh, along warp, weft and
+// between. B is that of a strip so wide that it does not curve across as well. With hinges in place of the plate
+// (Weave::bending, solver/forces/hinge.h) B depends on where the edges run.
 //
 // The warp runs along a direction of the rest shape, laid into the plane of every triangle. Where the law is the
 // same in all directions, none has to be given. The rest shape may be cut where
@@ -44,9 +45,8 @@ struct GroupWarp {
 std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::vector<Vec3>& warp);
 
 // Vertex 0 is the particle `first_particle` of the system. Triangles without area only hold together
-// (solver/forces/held_corner.h). `memory` is that of
-// friction against bending, of these triangles; null: a new one. Throws InputError when the fabric has directions and
-// `warp` is missing.
+// (solver/forces/held_corner.h). `memory` is that of friction against bending, of these triangles; null: a new one.
+// Throws InputError when the fabric has directions and `warp` is missing.
 std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const TriangleMesh& rest,
                                           const Fabric& fabric, const std::optional<Vec3>& warp = {},
                                           int first_particle = 0,

@@ -302,7 +302,7 @@ void NewtonKinsol::assemble(const VecX& v) {
   newton_.rub(
       friction_.size(), [&](std::size_t f) { return friction_[f].particle; },
       [&](std::size_t f) { return Mat3(h_ * friction_[f].damping); });
-  noise_ = round_off(newton_.matrix(), x_, v, h_);
+  noise_ = round_off(system_, newton_.matrix(), x_, v, h_);
 }
 
 int NewtonKinsol::solve_linear(N_Vector dv, N_Vector minus_F) {

@@ -6,7 +6,7 @@
 
 namespace drape {
 
-RoundOff round_off(const BlockMatrix& A, const VecX& x, const VecX& v, double c) {
+RoundOff round_off(const System& system, const BlockMatrix& A, const VecX& x, const VecX& v, double c) {
   constexpr double eps = 8 * std::numeric_limits<double>::epsilon();
   struct Sums {
     double energy = 0, squares = 0;  // sums of A_ii e_i^2, and of (A_ii e_i)^2
@@ -22,7 +22,9 @@ RoundOff round_off(const BlockMatrix& A, const VecX& x, const VecX& v, double c)
     }
     return sums;
   });
-  return {.least = all.energy, .impulse = std::sqrt(all.squares)};
+  double terms = 0;
+  for (const auto& force : system.forces()) terms += force->energy_noise(x);
+  return {.least = all.energy, .impulse = std::sqrt(all.squares), .terms = terms};
 }
 
 double potential_of_forces(const System& system, const VecX& x, const VecX& v, double c) {
@@ -48,8 +50,7 @@ double Merit::speed_noise(double residual) const {
 }
 
 void Merit::measure(const BlockMatrix& A, const Point& p, double c) {
-  noise_ = round_off(A, p.x, p.v, c);
-  for (const auto& force : system_.forces()) noise_.terms += force->energy_noise();
+  noise_ = round_off(system_, A, p.x, p.v, c);
 }
 
 // What friction takes is mu N |slip|, as Coulomb's law has it: its linearisation grows with the square of a slip that

@@ -28,7 +28,7 @@ struct RoundOff {
     return least + 2 * std::sqrt(std::abs(phi) * least) + terms;
   }
 };
-RoundOff round_off(const BlockMatrix& A, const VecX& x, const VecX& v, double c);
+RoundOff round_off(const System& system, const BlockMatrix& A, const VecX& x, const VecX& v, double c);
 
 double potential_of_forces(const System& system, const VecX& x, const VecX& v,
                            double c);  // E(x) + c/2 v . D v [J]
