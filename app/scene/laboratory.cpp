@@ -56,7 +56,8 @@ std::string one_of(const Table& table, const char* what, const Names& keys) {
     const Node* const node = at(table, key);
     if (!node) continue;
     if (!found.empty())
-      throw InputError(node->where + ": " + key + " = " + written(*node) + ": " + found + " says " + what +
+      throw InputError(node->where + ": " + key + " = " + written(*node) + ": " +
+                       std::string(found).append(" says ").append(what) +
                        " already; give one of the two, not both; see docs/fabrics.md");
     found = key;
   }

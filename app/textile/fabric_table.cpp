@@ -65,7 +65,7 @@ std::string fabric_text(const FabricTable& table) {
     for (std::size_t c = 0; c < line.size(); ++c) {
       const std::string word = c == 0 && line[0] == before ? "" : line[c];
       const std::string blanks(width[c] - letters(word), ' ');
-      one += c < 3 ? "  " + word + blanks : "  " + blanks + word;
+      one.append("  ").append(c < 3 ? word : blanks).append(c < 3 ? blanks : word);
     }
     before = line[0];
     text += one.substr(0, one.find_last_not_of(' ') + 1) + "\n";

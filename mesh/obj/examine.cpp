@@ -199,7 +199,8 @@ void Examiner::thin_triangles() {
     add(Severity::refusal, "no triangle has an area: there is nothing to simulate");
   } else if (flat > 0) {
     add(Severity::warning,
-        count(flat, "triangle has", "triangles have") + " no area and will carry no mass and no bend; woven cloth only holds together there",
+        count(flat, "triangle has", "triangles have") +
+            " no area and will carry no mass and no bend; woven cloth only holds together there",
         at_flat);
   }
   if (slivers > 0) {
