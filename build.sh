@@ -12,6 +12,8 @@ usage: ./build.sh WORD
   build           install what is missing and build the program, build/release/drape
   python          build the Python module into build/release/python and say how to use it
   bench           build and run the benchmarks
+  fabrics         measure what docs/fabrics.md says of fabrics and meshes: cantilevers, moduli, garments on the floor, sheets on a
+                  ball, drape tests; 20 minutes
   pictures        run the scenes of the gallery into out/pictures and draw them into data/pictures
   compare         compare solvers and integrators on gallery scenes and generated sheets, into out/compare
   lint [--all | --since REVISION]
@@ -261,14 +263,39 @@ clang() {
 bench() {
   get_for_build
   configure_program
-  compile release drape_bench drape_bench_contact drape_bench_fabric drape_bench_motion drape_bench_pattern drape_bench_solvers
+  compile release drape_bench drape_bench_contact drape_bench_motion drape_bench_pattern drape_bench_solvers
   build/release/drape_bench "$@"
   [[ $# -eq 0 ]] || return 0
   build/release/drape_bench_contact
-  build/release/drape_bench_fabric
   build/release/drape_bench_motion 32 100 200 400  # half an hour
   build/release/drape_bench_pattern
   build/release/drape_bench_solvers 32 100
+  fabrics
+}
+
+fabrics() {
+  get_for_build
+  get python3-numpy python3-scipy
+  configure_program
+  compile release drape_program drape_bench_fabric
+  local out=out/fabrics python=/usr/bin/python3 model name
+  build/release/drape_bench_fabric
+  mkdir -p "$out"
+  printf '%s\n' 'area_density = 0.15' 'stretch = 500' 'bend = 1e-5' 'compression = 1' >"$out/plain.toml"
+  for model in noh-jung woven; do
+    say "moduli, $model"
+    build/release/drape test-fabric "$out/plain.toml" --tests tensile,shear --mesh 14mm,10mm,5mm --model "$model" --out "$out/$model" || warn "a test did not come to rest"
+  done
+  say "garments dropped on the floor"
+  "$python" tests/compare/garments_on_floor.py
+  say "sheets on a ball"
+  "$python" tests/compare/two_meshes.py --edges 15,10,7.5,5 --starts 1
+  for name in polyester-twill polyester-plain cotton-broad polyester-tropical wool-polyester-twill polyester-elastane-plain; do
+    say "drape test, $name: woven with friction"
+    build/release/drape test-fabric "$name" --tests drape --repeats 2 --hysteresis --out "$out/$name"
+    say "drape test, $name: noh-jung"
+    build/release/drape test-fabric "$name" --tests drape --repeats 2 --mesh 10mm --model noh-jung --out "$out/$name-springs"
+  done
 }
 
 python_module() {
@@ -466,6 +493,10 @@ case "$word" in
     run_all_tests
     ;;
   bench) bench "$@" ;;
+  fabrics)
+    [[ $# -eq 0 ]] || { warn "'fabrics' takes nothing more, but got: $*"; exit 2; }
+    fabrics
+    ;;
   lint) lint "$@" ;;
   format) format "$@" ;;
   python)

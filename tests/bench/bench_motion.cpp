@@ -4,13 +4,15 @@
 // 0.2 kg/m^2, 1000 N/m, 10 uN.m, h = 10 ms, tolerance 1e-4. Iterations, solves and Newton iterations are those of a
 // step on average; the contact residual is the largest of the run. Arguments: SIDE ... (vertices along an edge; 32 and
 // 100 unless given), --steps N (100), --solver NAME (auto), --threads N, --model noh-jung|woven, --scene hung|dropped,
-// --self-contact 1 (the sheet meets itself, thickness 1 mm).
+// --self-contact 1 (the sheet meets itself, thickness 1 mm). It ends with the times as a table in Markdown, that of
+// docs/measured.md.
 // Without a model, a scene or a number of threads each of them is measured in turn.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mesh/base/threads.h"
@@ -85,6 +87,31 @@ Cost measure(const Run& run, int steps) {
   return cost;
 }
 
+// Seconds for a simulated second by scene, model and size, one cell for all numbers of threads.
+class Table {
+ public:
+  void add(const Run& run, double seconds) {
+    std::string& cell = cells_[{run.scene, run.model}][run.side * run.side];
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2g", seconds);
+    cell += (cell.empty() ? "" : " / ") + std::string(text);
+  }
+  void print(const std::vector<int>& sides) const {
+    std::printf("\n| | model |");
+    for (int side : sides) std::printf(" %d |", side * side);
+    std::printf("\n| --- | --- |");
+    for (std::size_t k = 0; k < sides.size(); ++k) std::printf(" --- |");
+    for (const auto& [row, cells] : cells_) {
+      std::printf("\n| %s | `%s` |", row.first.c_str(), row.second.c_str());
+      for (int side : sides) std::printf(" %s |", cells.at(side * side).c_str());
+    }
+    std::printf("\n");
+  }
+
+ private:
+  std::map<std::pair<std::string, std::string>, std::map<int, std::string>> cells_;  // by vertices
+};
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -112,12 +139,15 @@ int main(int count, char** arguments) {
   std::printf("%-8s %-9s %8s %7s %10s %8s %11s %6s %7s %7s %9s %9s %6s %8s %9s %9s\n", "scene", "model",
               "vertices", "threads", "s a second", "exponent", "iterations", "most", "solves", "newton",
               "multigrid", "assembly", "solve", "contact", "residual", "unsettled");
+  Table table;
   for (const std::string& scene : scenes)
     for (const std::string& model : models) {
       std::map<int, double> before;  // threads -> s a simulated second, of the smaller sheet
       for (std::size_t s = 0; s < sides.size(); ++s)
         for (int threads : thread_counts) {
-          const Cost c = measure({sides[s], threads, scene, model, solver, self_contact}, steps);
+          const Run run{sides[s], threads, scene, model, solver, self_contact};
+          const Cost c = measure(run, steps);
+          table.add(run, c.seconds);
           const double growth =
               s == 0 ? NAN
                      : std::log(c.seconds / before[threads]) / (2 * std::log(1.0 * sides[s] / sides[s - 1]));
@@ -131,5 +161,6 @@ int main(int count, char** arguments) {
           std::fflush(stdout);
         }
     }
+  table.print(sides);
   return 0;
 }
