@@ -13,7 +13,7 @@ usage: ./build.sh WORD
   python          build the Python module into build/release/python and say how to use it
   bench           build and run the benchmarks
   fabrics         measure what docs/fabrics.md says of fabrics and meshes: cantilevers, moduli, garments on the floor, sheets on a
-                  ball, drape tests; 20 minutes
+                  ball, drape tests; half an hour
   pictures        run the scenes of the gallery into out/pictures and draw them into data/pictures
   compare         compare solvers and integrators on gallery scenes and generated sheets, into out/compare
   lint [--all | --since REVISION]
@@ -294,7 +294,7 @@ fabrics() {
     say "drape test, $name: woven with friction"
     build/release/drape test-fabric "$name" --tests drape --repeats 2 --hysteresis --out "$out/$name"
     say "drape test, $name: noh-jung"
-    build/release/drape test-fabric "$name" --tests drape --repeats 2 --mesh 10mm --model noh-jung --out "$out/$name-springs"
+    build/release/drape test-fabric "$name" --tests drape --repeats 2 --model noh-jung --out "$out/$name-springs"
   done
 }
 

@@ -40,8 +40,8 @@ inline double wave_energy_error(const TriangleMesh& mesh, const Force& bending, 
       };
       const Eigen::Vector2d u(warp.x(), warp.z()), v(-warp.z(), warp.x());
       const double uu = second(u, u), vv = second(v, v), uv = second(u, v);
-      expected += 0.5 * d * d *
-                  (D.warp * uu * uu + D.weft * vv * vv + 2 * D.cross * uu * vv + 4 * D.twist * uv * uv);
+      expected +=
+          0.5 * d * d * (D.warp * uu * uu + D.weft * vv * vv + 2 * D.cross * uu * vv + 4 * D.twist * uv * uv);
     }
   VecX x(3 * mesh.vertex_count());
   for (int i = 0; i < mesh.vertex_count(); ++i) {
