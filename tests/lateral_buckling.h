@@ -6,10 +6,16 @@
 // than wide.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
+#include "constraints/constraints.h"
+#include "mesh/triangles/triangle_mesh.h"
+#include "solver/forces/fabric.h"
 #include "solver/forces/woven.h"
 #include "solver/integrators/integrator.h"
+#include "solver/linear/linear_solver.h"
+#include "solver/system/system.h"
 #include "tests/strips.h"
 
 namespace drape::test {

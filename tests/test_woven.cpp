@@ -164,7 +164,7 @@ TEST_CASE("constant curvature of a plate is in equilibrium on every mesh and in 
 TEST_CASE(
     "a plate bends with the energy of its curvature in every direction, and nothing but a plane is free",
     "[woven]") {
-  // To second order in the mesh size.
+  // The error falls with the square of the mesh size.
   const Vec3 warp(std::cos(0.2), 0, std::sin(0.2));
   for (StripMesh kind : strip_meshes)
     for (double angle : {0.0, 0.5, M_PI / 4}) {

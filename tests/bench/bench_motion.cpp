@@ -4,15 +4,14 @@
 // 0.2 kg/m^2, 1000 N/m, 10 uN.m, h = 10 ms, tolerance 1e-4. Iterations, solves and Newton iterations are those of a
 // step on average; the contact residual is the largest of the run. Arguments: SIDE ... (vertices along an edge; 32 and
 // 100 unless given), --steps N (100), --solver NAME (auto), --threads N, --model noh-jung|woven, --scene hung|dropped,
-// --self-contact 1 (the sheet meets itself, thickness 1 mm). It ends with the times as a table in Markdown, that of
-// docs/measured.md.
+// --self-contact 1 (the sheet meets itself, thickness 1 mm). It ends with the times as a table in Markdown, for
+// docs/measured.md; each cell has a number for every number of threads.
 // Without a model, a scene or a number of threads each of them is measured in turn.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "mesh/base/threads.h"
@@ -87,29 +86,35 @@ Cost measure(const Run& run, int steps) {
   return cost;
 }
 
-// Seconds for a simulated second by scene, model and size, one cell for all numbers of threads.
+// Seconds for a simulated second: a row for a scene and model, a column for a size.
 class Table {
  public:
   void add(const Run& run, double seconds) {
-    std::string& cell = cells_[{run.scene, run.model}][run.side * run.side];
+    if (rows_.empty() || rows_.back().scene != run.scene || rows_.back().model != run.model)
+      rows_.push_back({run.scene, run.model, {}});
+    std::string& cell = rows_.back().cells[run.side * run.side];
     char text[32];
     std::snprintf(text, sizeof text, "%.2g", seconds);
     cell += (cell.empty() ? "" : " / ") + std::string(text);
   }
   void print(const std::vector<int>& sides) const {
-    std::printf("\n| | model |");
+    std::printf("\nSeconds for a simulated second, by vertices\n\n| | model |");
     for (int side : sides) std::printf(" %d |", side * side);
     std::printf("\n| --- | --- |");
     for (std::size_t k = 0; k < sides.size(); ++k) std::printf(" --- |");
-    for (const auto& [row, cells] : cells_) {
-      std::printf("\n| %s | `%s` |", row.first.c_str(), row.second.c_str());
-      for (int side : sides) std::printf(" %s |", cells.at(side * side).c_str());
+    for (const Row& row : rows_) {
+      std::printf("\n| %s | `%s` |", row.scene.c_str(), row.model.c_str());
+      for (int side : sides) std::printf(" %s |", row.cells.at(side * side).c_str());
     }
     std::printf("\n");
   }
 
  private:
-  std::map<std::pair<std::string, std::string>, std::map<int, std::string>> cells_;  // by vertices
+  struct Row {
+    std::string scene, model;
+    std::map<int, std::string> cells;  // by vertices
+  };
+  std::vector<Row> rows_;
 };
 
 }  // namespace
