@@ -29,7 +29,7 @@ inline double wave_energy_error(const TriangleMesh& mesh, const Force& bending, 
   const double k = 2 * M_PI / length;
   Vec3 middle = Vec3::Zero();
   for (const Vec3& x : mesh.positions) middle += x / mesh.vertex_count();
-  // Flat to third order where a is 0.45 L, nine tenths of the way to the border.
+  // Zero from 0.45 L on, nine tenths of the way from the middle to the border, without a kink.
   const auto fade = [&](double a) {
     return std::pow(std::cos(M_PI * std::clamp(1.1 * a / L, -0.5, 0.5)), 4);
   };

@@ -22,12 +22,13 @@ namespace drape::test {
 
 inline const double critical_gamma = 12.85 * std::sqrt(2);
 
-// By which factor a small lean out of the plane of the strip grows in the second 12 s of 24; NaN: a step failed.
-inline double lean_growth(StripMesh kind, double gamma) {
+// By which factor a small lean out of the plane of the strip grows in the second 12 s of 24; NaN: a step failed. The
+// strip has about `cells` cells along its length, and a sixteenth of them across.
+inline double lean_growth(StripMesh kind, double gamma, int cells) {
   constexpr double length = 0.2, density = 0.15, g = 9.81;
   const double B = density * g * std::pow(length, 3) / gamma;
   const Fabric fabric{.area_density = density, .stretch = 1e6 * B / (length * length), .bend = B};
-  const Strip on_edge = strip(kind, 48, 3, length);
+  const Strip on_edge = strip(kind, cells, cells / 16, length);
   State state = at_rest(on_edge.mesh);
   for (int i = 0; i < state.particles(); ++i) {
     const Vec3 x = state.x.segment<3>(3 * i);
