@@ -8,59 +8,17 @@
 namespace drape::internal {
 namespace {
 
-// How far a motion may be from the one that was searched, as shares of an edge, and how many pairs there may be for
-// each vertex before this is made less.
-constexpr double most_room = 0.2, least_room = 0.02;
-constexpr std::size_t most_pairs = 40, exploded = 50;
+// How far the motions of two patches may come to differ from those that were searched, as a share of an edge, and how
+// many pairs there may be for each of their triangles before this is made less.
+constexpr double most_room = 0.4, least_room = 0.04;
+constexpr std::size_t most_pairs = 32;
+// Cloth has exploded where there are more pairs for a vertex than this.
+constexpr std::size_t exploded = 2000;
 
 constexpr double never = -std::numeric_limits<double>::infinity();
 
 Vec3 place(const VecX& x, std::size_t particle) {
   return x.segment<3>(3 * static_cast<Eigen::Index>(particle));
-}
-
-struct Sum {
-  Vec3 value = Vec3::Zero();
-  Sum& operator+=(const Sum& other) {
-    value += other.value;
-    return *this;
-  }
-};
-
-// The mean of f(i) for i < n.
-template <class F>
-Vec3 mean(int n, const F& f) {
-  return sum_chunks(n,
-                    [&](int begin, int end) {
-                      Sum sum;
-                      for (int i = begin; i < end; ++i) sum.value += f(i);
-                      return sum;
-                    })
-             .value /
-         n;
-}
-
-struct Largest {
-  double value = 0;
-  Largest& operator+=(const Largest& other) {
-    value = std::max(value, other.value);
-    return *this;
-  }
-};
-
-// The largest of f(i) for i < n; infinite where one is no number.
-template <class F>
-double largest(int n, const F& f) {
-  return sum_chunks(n,
-                    [&](int begin, int end) {
-                      Largest most;
-                      for (int i = begin; i < end; ++i) {
-                        const double value = f(i);
-                        most += {value == value ? value : std::numeric_limits<double>::infinity()};
-                      }
-                      return most;
-                    })
-      .value;
 }
 
 }  // namespace
@@ -82,7 +40,8 @@ void Encounters::set(const std::vector<Triangle>& triangles, int particle_count,
     faces_.push_back({t, {-1, -1, -1}});
   }
   boxes_.reset();
-  beside_ = near_ = {};
+  beside_ = {};
+  groups_.clear();
   forget();
   if (faces_.empty()) return;
 
@@ -126,14 +85,26 @@ void Encounters::set(const std::vector<Triangle>& triangles, int particle_count,
   beside_due_.assign(particles, never);
   beside_.due.assign(beside_.list.size(), never);
   beside_.normal.assign(beside_.list.size(), Vec3::Zero());
-  clock_.assign(particles, 0);
-  clock_end_.assign(particles, 0);
+  clock_.assign(particles, {});
   spread(x, start_);
+  end_ = start_;
   boxes_.emplace(faces_, start_, 1, of_cloth_);
+  patch_start_.assign(1, 0);
+  patch_.clear();
+  for (const MovingBoxes::Patch& p : boxes_->patches()) {
+    const auto first = patch_.size();
+    for (int k = p.first; k < p.first + p.count; ++k)
+      patch_.insert(patch_.end(), faces_[boxes_->face(k)].v.begin(), faces_[boxes_->face(k)].v.end());
+    const auto begin = patch_.begin() + static_cast<std::ptrdiff_t>(first);
+    std::sort(begin, patch_.end());
+    patch_.erase(std::unique(begin, patch_.end()), patch_.end());
+    patch_start_.push_back(static_cast<int>(patch_.size()));
+  }
 }
 
 void Encounters::forget() {
   gap_ = -1;
+  for (Group& g : groups_) g.gap = -1;
   std::fill(beside_.due.begin(), beside_.due.end(), never);
   std::fill(beside_due_.begin(), beside_due_.end(), never);
 }
@@ -195,104 +166,180 @@ bool Encounters::touch(const Box& a, const Box& b, double reach) const {
   return enter <= leave + 1e-9;
 }
 
+// By how much a vector may differ between two patches, or within one, at most, along each axis.
+Eigen::Array3d Encounters::difference(const Range& a, const Range& b) {
+  return (a.upper - b.lower).max(b.upper - a.lower);
+}
+
+double Encounters::largest_difference(const Ranges& ranges) {
+  Range all;
+  for (const Range& range : ranges) {
+    all.lower = all.lower.min(range.lower);
+    all.upper = all.upper.max(range.upper);
+  }
+  return (all.upper - all.lower).maxCoeff();
+}
+
+// The ranges of change(vertex).
+template <class Change>
+void Encounters::measure(const Change& change, Ranges& ranges) const {
+  constexpr int patches_at_once = 8;
+  const int patches = static_cast<int>(patch_start_.size()) - 1;
+  ranges.resize(static_cast<std::size_t>(patches));
+  parallel_for((patches + patches_at_once - 1) / patches_at_once, particles_ < serial_below, [&](int chunk) {
+    for (int p = chunk * patches_at_once; p < std::min(patches, (chunk + 1) * patches_at_once); ++p) {
+      Range range;
+      for (int k = patch_start_[p]; k < patch_start_[p + 1]; ++k) {
+        const Eigen::Array3d value = change(patch_[k]);
+        range.lower = range.lower.min(value);
+        range.upper = range.upper.max(value);
+      }
+      ranges[p] = range;
+    }
+  });
+}
+
 bool Encounters::follow(const VecX& x, const VecX& x_new, double gap) {
   if (!x.allFinite() || !x_new.allFinite()) return false;
-  read_clocks(x, x_new);
-  return covers(x, x_new, gap) || search(x, x_new, gap);
-}
-
-// A list is good for motions whose ends are within its room of those that were searched, but for what all vertices
-// move alike.
-bool Encounters::covers(const VecX& x, const VecX& x_new, double gap) const {
-  if (!(gap <= gap_)) return false;
-  const auto within = [&](const VecX& at, const std::vector<Vec3>& searched) {
-    const int n = static_cast<int>(searched.size());
-    const auto moved = [&](int i) { return Vec3(at.segment<3>(3 * i) - searched[i]); };
-    const Vec3 shift = mean(n, moved);
-    return largest(n, [&](int i) { return (moved(i) - shift).lpNorm<Eigen::Infinity>(); }) <= room_;
-  };
-  return within(x, start_) && within(x_new, end_);
-}
-
-bool Encounters::search(const VecX& x, const VecX& x_new, double gap) {
+  if (faces_.empty()) return true;
+  measure([&](int i) { return Eigen::Array3d(x.segment<3>(3 * i).array() - start_[i].array()); }, of_start_);
+  measure([&](int i) { return Eigen::Array3d(x_new.segment<3>(3 * i).array() - end_[i].array()); }, of_end_);
   spread(x, start_);
   spread(x_new, end_);
-  gap_ = gap;
-  boxes_->refit(faces_, start_, end_);
-  // A list that became long is made again with less room: it is looked through in every step. One that is long even so
-  // is of cloth that has exploded.
-  const std::size_t most = most_pairs * start_.size();
-  if (room_ <= 0 || near_.list.size() < most / 4) room_ = std::min(2 * room_, most_room * mean_edge_);
-  if (room_ <= 0) room_ = most_room * mean_edge_;
-  const auto narrow = [&] { return room_ <= least_room * mean_edge_; };
-  const auto list_is_made = [&] { return list_near(gap + 2 * room_, narrow() ? exploded * most : most); };
-  bool listed = list_is_made();
-  while (!listed && !narrow()) {
-    room_ *= 0.5;
-    listed = list_is_made();
+  for (Group& g : groups_) {
+    g.start_off += difference(of_start_[g.first], of_start_[g.second]).maxCoeff();
+    g.end_off += difference(of_end_[g.first], of_end_[g.second]).maxCoeff();
   }
-  if (!listed) {
-    gap_ = -1;
-    near_.list.clear();
+  start_off_ += largest_difference(of_start_);
+  end_off_ += largest_difference(of_end_);
+  const bool again = gap > gap_ || std::max(start_off_, end_off_) > most_room * mean_edge_;
+  if (again) {
+    boxes_->refit(faces_, start_, end_);
+    group_patches(gap);
   }
-  near_.due.assign(near_.list.size(), never);
-  near_.normal.assign(near_.list.size(), Vec3::Zero());
+  const bool listed = make_lists(gap, again);
+  if (!listed) forget();
+  read_clocks(x, x_new);
   return listed;
 }
 
-// Lists the pairs that come within this distance. False: they are more than `most`.
-bool Encounters::list_near(double within, std::size_t most) {
-  near_.list.clear();
-  const int parts = static_cast<int>(boxes_->parts().size());
-  listed_.resize(boxes_->parts().size());
-  std::atomic<std::size_t> count = 0;
-  parallel_for(parts, static_cast<int>(start_.size()) < serial_below, [&](int part) {
-    std::vector<Encounter>& found = listed_[part];
-    found.clear();
-    boxes_->pairs_of(
-        boxes_->parts()[part],
-        [&](int first, int second) {
-          if (common(first, second) >= 0) return true;
-          if (of_cloth_ != 0 && (first < of_cloth_) == (second < of_cloth_)) return true;
-          const auto before = static_cast<std::ptrdiff_t>(found.size());
-          list(std::min(first, second), std::max(first, second), found);
-          const auto far = [&](const Encounter& e) {
-            const std::size_t cut = e.edges ? 2 : 1;
-            return !touch(box_about(e, 0, cut), box_about(e, cut, 4), within);
-          };
-          found.erase(std::remove_if(found.begin() + before, found.end(), far), found.end());
-          const auto added = found.size() - static_cast<std::size_t>(before);
-          return added == 0 || count.fetch_add(added, std::memory_order_relaxed) + added <= most;
-        },
-        within);
+// Groups the patches that come near each other; what is known of those that were already is kept.
+void Encounters::group_patches(double gap) {
+  near_.clear();
+  boxes_->near_patches([&](int p, int q) { near_.emplace_back(p, q); }, gap + most_room * mean_edge_);
+  std::sort(near_.begin(), near_.end());
+  std::swap(groups_, old_);
+  groups_.clear();
+  auto old = old_.begin();
+  const auto patches = [](const Group& g) { return std::pair(g.first, g.second); };
+  for (const auto& pair : near_) {
+    for (; old != old_.end() && patches(*old) < pair; ++old) spare_.push_back(std::move(*old));
+    if (old != old_.end() && patches(*old) == pair) {
+      groups_.push_back(std::move(*old++));
+      continue;
+    }
+    if (spare_.empty()) spare_.emplace_back();
+    groups_.push_back(std::move(spare_.back()));
+    spare_.pop_back();
+    Group& g = groups_.back();
+    g.first = pair.first, g.second = pair.second;
+    g.gap = -1, g.room = 0;
+    g.pairs.list.clear();
+  }
+  std::move(old, old_.end(), std::back_inserter(spare_));
+  gap_ = gap;
+  start_off_ = end_off_ = 0;
+}
+
+// Lists the pairs of groups whose list does not cover the motion. False: there are so many pairs that the cloth must
+// have exploded.
+bool Encounters::make_lists(double gap, bool fitted) {
+  const std::size_t most = exploded * start_.size();
+  std::size_t kept = 0;
+  stale_.clear();
+  for (std::size_t k = 0; k < groups_.size(); ++k) {
+    const Group& g = groups_[k];
+    if (g.gap < gap || std::max(g.start_off, g.end_off) > g.room)
+      stale_.push_back(static_cast<int>(k));
+    else
+      kept += g.pairs.list.size();
+  }
+  if (stale_.empty()) return true;
+  if (!fitted) boxes_->refit(faces_, start_, end_);
+  std::atomic<std::size_t> count = kept;
+  parallel_for(static_cast<int>(stale_.size()), particles_ < serial_below, [&](int k) {
+    if (count > most) return;
+    Group& g = groups_[stale_[k]];
+    make_list(g, gap);
+    count += g.pairs.list.size();
   });
-  if (count > most) return false;
-  for (const std::vector<Encounter>& found : listed_)
-    near_.list.insert(near_.list.end(), found.begin(), found.end());
-  return true;
+  return count <= most;
+}
+
+// A list that would become long is made with less room, for it is gone through in every step.
+void Encounters::make_list(Group& group, double gap) const {
+  const auto count = [&](int patch) { return static_cast<std::size_t>(boxes_->patches()[patch].count); };
+  const std::size_t most = most_pairs * (count(group.first) + count(group.second));
+  const double largest = most_room * mean_edge_, least = least_room * mean_edge_;
+  if (group.room <= 0)
+    group.room = largest;
+  else if (group.pairs.list.size() < most / 4)
+    group.room = std::min(2 * group.room, largest);
+  while (
+      !search(group, gap + group.room, group.room > least ? most : std::numeric_limits<std::size_t>::max()))
+    group.room *= 0.5;
+  Pairs& pairs = group.pairs;
+  pairs.due.assign(pairs.list.size(), never);
+  pairs.normal.assign(pairs.list.size(), Vec3::Zero());
+  group.gap = gap;
+  group.clock = {};
+  group.due = never;
+  group.start_off = group.end_off = 0;
+}
+
+// Lists the pairs of a group that come within this distance. False: they are more than `most`.
+bool Encounters::search(Group& group, double within, std::size_t most) const {
+  std::vector<Encounter>& found = group.pairs.list;
+  found.clear();
+  return boxes_->pairs_of_patches(
+      group.first, group.second,
+      [&](int first, int second) {
+        if (common(first, second) >= 0) return true;
+        if (of_cloth_ != 0 && (first < of_cloth_) == (second < of_cloth_)) return true;
+        const auto before = static_cast<std::ptrdiff_t>(found.size());
+        list(std::min(first, second), std::max(first, second), found);
+        const auto far = [&](const Encounter& e) {
+          const std::size_t cut = e.edges ? 2 : 1;
+          return !touch(box_about(e, 0, cut), box_about(e, cut, 4), within);
+        };
+        found.erase(std::remove_if(found.begin() + before, found.end(), far), found.end());
+        return found.size() <= most;
+      },
+      within);
 }
 
 void Encounters::read_clocks(const VecX& x, const VecX& x_new) {
-  const int n = static_cast<int>(clock_.size());
   const auto motion = [&](int i) { return Vec3(x_new.segment<3>(3 * i) - x.segment<3>(3 * i)); };
-  const Vec3 common = mean(n, motion);
-  common_clock_end_ = common_clock_ + largest(n, [&](int i) { return (motion(i) - common).norm(); });
+  measure([&](int i) { return Eigen::Array3d(motion(i).array()); }, of_motion_);
+  for (Group& g : groups_)
+    g.clock.end = g.clock.start + difference(of_motion_[g.first], of_motion_[g.second]).matrix().norm();
   if (beside_.list.empty()) return;
-  for_chunks(n, [&](int begin, int end) {
+  for_chunks(static_cast<int>(clock_.size()), [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const Vec3 own = motion(i);
       double most = 0;
       for (int k = next_start_[i]; k < next_start_[i + 1]; ++k)
         most = std::max(most, (motion(next_[k]) - own).squaredNorm());
-      clock_end_[i] = clock_[i] + std::sqrt(most);
+      clock_[i].end = clock_[i].start + 2 * std::sqrt(most);
     }
   });
 }
 
 void Encounters::went(const VecX& x, const VecX& x_new) {
+  if (faces_.empty()) return;
   read_clocks(x, x_new);
-  clock_ = clock_end_;
-  common_clock_ = common_clock_end_;
+  for (Group& g : groups_) g.clock.start = g.clock.end;
+  for (Clock& clock : clock_) clock.start = clock.end;
 }
 
 }  // namespace drape::internal

@@ -1,11 +1,13 @@
 // Which vertices and triangles, and which edges, of the cloth could meet in a step.
 //   Two triangles are looked at when their boxes come near each other at a common time. Each vertex and each edge is
 //   owned by one of its triangles, so that a pair of them comes up once. Triangles with a common vertex are always
-//   near: their pairs are listed once and for all.
-//   What was found to be apart is not looked at again before it can have come near. Of triangles that share the
-//   vertex c, no two points come nearer to each other by more than 2 e_c, where e_c sums up over the steps by how much
-//   the vertices next to c move otherwise than c. Of the other pairs it is 2 e, where e sums up by how much any vertex
-//   moves otherwise than the mean of all.
+//   near: their pairs are listed once and for all. The others are listed for every two patches of some dozens of
+//   triangles that come near each other. Such a list stands as long as the motions of its two patches have not come to
+//   differ by more from what they were when it was made, in either patch or from patch to patch, than it allows for:
+//   what moves wildly elsewhere, and what both do alike, leaves it as it is.
+//   What was found to be apart is not looked at again before it can have come near. No two points of two patches come
+//   nearer to each other in a step than the motions of their vertices differ at most, and no two of triangles that share
+//   the vertex c than by 2 e_c, where e_c is by how much the vertices next to c move otherwise than c.
 // The lists are the same on any number of threads.
 #pragma once
 
@@ -40,8 +42,8 @@ class Encounters {
   void set(const std::vector<Triangle>& triangles, int particles, std::size_t of_cloth, const VecX& x);
   double mean_edge() const { return mean_edge_; }  // when the triangles were set [m]
 
-  // Prepares for select() with motions x -> x_new and gaps up to this one [m]. Searches only where what is known does
-  // not cover this motion. False: a place is no number, or so much comes near so much else that the cloth must have
+  // Prepares for select() with this motion x -> x_new and gaps up to this one [m]. Searches only where what is known
+  // does not cover the motion. False: a place is no number, or so much comes near so much else that the cloth must have
   // exploded; then there is no list.
   bool follow(const VecX& x, const VecX& x_new, double gap);
   // Asks look(pair, corners at x, corners at x_new, the normal found last), which returns an Approach, of the pairs
@@ -57,91 +59,123 @@ class Encounters {
   struct Box {
     std::array<Eigen::Array3d, 2> lower, upper;  // at both ends of the motion
   };
-  // Pairs with the reading of their clock up to which they are surely farther apart than 2 (due - clock).
+  // Pairs with the reading of their clock up to which they are surely farther apart than due - clock.
   struct Pairs {
     std::vector<Encounter> list;
     std::vector<double> due;   // m
     std::vector<Vec3> normal;  // that of the last look
   };
-  // The reading of a clock at the start and at the end of the motion [m].
+  // By how much two things can have come nearer to each other, summed up over the steps, at the start and at the end of
+  // the motion [m].
   struct Clock {
-    double start, end;
+    double start = 0, end = 0;
+  };
+  // The range of a vector over the vertices of a patch [m].
+  struct Range {
+    Eigen::Array3d lower = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
+  };
+  using Ranges = std::vector<Range>;  // by patch
+  // The pairs of two patches, or within one, that come within the gap, for motions that differ from the one they were
+  // searched for by at most `room`.
+  struct Group {
+    int first = 0, second = 0;  // patches
+    Pairs pairs;
+    Clock clock;
+    double due = 0;                     // that of the first pair to come near
+    double gap = -1, room = 0;          // m
+    double start_off = 0, end_off = 0;  // by how much the two ends of the motion differ by now at most [m]
   };
   void list(int first, int second, std::vector<Encounter>& found) const;
   void spread(const VecX& x, std::vector<Vec3>& places) const;
   Box box_about(const Encounter& e, std::size_t from, std::size_t to) const;
   bool touch(const Box& a, const Box& b, double reach) const;
   int common(int first, int second) const;  // the lowest common vertex; -1: none
-  bool covers(const VecX& x, const VecX& x_new, double gap) const;
-  bool list_near(double within, std::size_t most);
-  bool search(const VecX& x, const VecX& x_new, double gap);
+  static Eigen::Array3d difference(const Range& a, const Range& b);
+  static double largest_difference(const Ranges& ranges);
+  template <class Change>
+  void measure(const Change& change, Ranges& ranges) const;
+  void group_patches(double gap);
+  bool make_lists(double gap, bool fitted);
+  void make_list(Group& group, double gap) const;
+  bool search(Group& group, double within, std::size_t most) const;
   void read_clocks(const VecX& x, const VecX& x_new);
   template <class Look>
   double select_pair(Pairs& pairs, std::size_t k, Clock clock, const VecX& x, const VecX& x_new, double gap,
                      const Look& look, std::vector<Meeting>& found) const;
   template <class Select>
-  void select_chunks(int n, const Select& select);
+  void select_chunks(int n, int in_a_chunk, const Select& select);
 
   std::vector<Face> faces_;
   int particles_ = 0, of_cloth_ = 0;  // of_cloth_: faces, 0 where pairs between all are looked for
   std::vector<unsigned char>
       owned_;  // of each face: bits 0 to 2 its vertices, bits 3 to 5 its edges k to k + 1
   std::optional<MovingBoxes> boxes_;
-  std::vector<int> next_start_, next_;  // the vertices next to each one
+  std::vector<int> next_start_, next_;    // the vertices next to each one
+  std::vector<int> patch_start_, patch_;  // the vertices of each patch
   // The pairs that have the common vertex c are the numbers beside_start_[c] to beside_start_[c + 1] of beside_, and
   // none is due before beside_due_[c].
-  Pairs beside_, near_;
+  Pairs beside_;
   std::vector<int> beside_start_;
   std::vector<double> beside_due_;
-  std::vector<Vec3> start_, end_;  // of the motion that was searched last
-  double gap_ = -1, room_ = 0, mean_edge_ = 0;
-  // Readings of the clocks at the start and at the end of the motion [m]: by vertex, and of all.
-  std::vector<double> clock_, clock_end_;
-  double common_clock_ = 0, common_clock_end_ = 0;
-  std::vector<std::vector<Encounter>> listed_;  // scratch of list_near()
-  std::vector<std::vector<Meeting>> chunks_;    // scratch of select()
+  std::vector<Clock> clock_;         // by vertex
+  std::vector<Group> groups_;        // sorted by patches
+  std::vector<Vec3> start_, end_;    // of the motion that was followed last
+  double gap_ = -1, mean_edge_ = 0;  // m
+  double start_off_ = 0,
+         end_off_ = 0;  // by how much any two vertices moved differently since patches were grouped [m]
+  Ranges of_start_, of_end_, of_motion_;      // scratch
+  std::vector<Group> old_, spare_;            // scratch of group_patches()
+  std::vector<std::pair<int, int>> near_;     // scratch
+  std::vector<int> stale_;                    // scratch: numbers of groups
+  std::vector<std::vector<Meeting>> chunks_;  // scratch of select()
   std::vector<Meeting> selected_;
 };
 
 template <class Look>
 std::vector<Meeting>& Encounters::select(const VecX& x, const VecX& x_new, double gap, const Look& look) {
+  constexpr int groups_in_a_chunk = 8;
   selected_.clear();
-  select_chunks(static_cast<int>(near_.list.size()), [&](int k, std::vector<Meeting>& found) {
-    select_pair(near_, k, {common_clock_, common_clock_end_}, x, x_new, gap, look, found);
-  });
-  select_chunks(static_cast<int>(clock_.size()), [&](int c, std::vector<Meeting>& found) {
-    if (2 * (beside_due_[c] - clock_end_[c]) > gap) return;
+  // Returns when the first of the pairs [begin, end) is due, which are due at `due` by what is known.
+  const auto select_list = [&](Pairs& pairs, int begin, int end, const Clock& clock, double due,
+                               std::vector<Meeting>& found) {
+    if (due - clock.end > gap) return due;
     double earliest = std::numeric_limits<double>::infinity();
-    for (int k = beside_start_[c]; k < beside_start_[c + 1]; ++k)
-      earliest =
-          std::min(earliest, select_pair(beside_, k, {clock_[c], clock_end_[c]}, x, x_new, gap, look, found));
-    beside_due_[c] = earliest;
+    for (int k = begin; k < end; ++k)
+      earliest = std::min(earliest, select_pair(pairs, k, clock, x, x_new, gap, look, found));
+    return earliest;
+  };
+  select_chunks(static_cast<int>(groups_.size()), groups_in_a_chunk, [&](int k, std::vector<Meeting>& found) {
+    Group& g = groups_[k];
+    g.due = select_list(g.pairs, 0, static_cast<int>(g.pairs.list.size()), g.clock, g.due, found);
+  });
+  select_chunks(static_cast<int>(clock_.size()), chunk_size, [&](int c, std::vector<Meeting>& found) {
+    beside_due_[c] =
+        select_list(beside_, beside_start_[c], beside_start_[c + 1], clock_[c], beside_due_[c], found);
   });
   return selected_;
 }
 
 // Calls select(k, the list to add to) for k < n, by all threads.
 template <class Select>
-void Encounters::select_chunks(int n, const Select& select) {
-  const auto count = static_cast<std::size_t>(chunk_count(n));
-  if (chunks_.size() < count) chunks_.resize(count);
-  for_chunks(n, [&](int begin, int end) {
-    std::vector<Meeting>& found = chunks_[static_cast<std::size_t>(begin / chunk_size)];
+void Encounters::select_chunks(int n, int in_a_chunk, const Select& select) {
+  const int count = (n + in_a_chunk - 1) / in_a_chunk;
+  if (chunks_.size() < static_cast<std::size_t>(count)) chunks_.resize(count);
+  parallel_for(count, particles_ < serial_below, [&](int chunk) {
+    std::vector<Meeting>& found = chunks_[chunk];
     found.clear();
-    for (int k = begin; k < end; ++k) select(k, found);
+    for (int k = chunk * in_a_chunk; k < std::min(n, (chunk + 1) * in_a_chunk); ++k) select(k, found);
   });
-  for (std::size_t k = 0; k < count; ++k)
-    selected_.insert(selected_.end(), chunks_[k].begin(), chunks_[k].end());
+  for (int k = 0; k < count; ++k) selected_.insert(selected_.end(), chunks_[k].begin(), chunks_[k].end());
 }
 
 // Returns when the pair is due.
 template <class Look>
 double Encounters::select_pair(Pairs& pairs, std::size_t k, Clock clock, const VecX& x, const VecX& x_new,
                                double gap, const Look& look, std::vector<Meeting>& found) const {
-  if (2 * (pairs.due[k] - clock.end) > gap) return pairs.due[k];
+  if (pairs.due[k] - clock.end > gap) return pairs.due[k];
   const Encounter& e = pairs.list[k];
   Meeting one{.who = e, .approach = look(e, corners(x, e), corners(x_new, e), pairs.normal[k])};
-  pairs.due[k] = clock.start + 0.5 * one.approach.start;
+  pairs.due[k] = clock.start + one.approach.start;
   pairs.normal[k] = one.approach.last.normal;
   if (!one.approach.apart) found.push_back(one);
   return pairs.due[k];

@@ -28,8 +28,8 @@ MovingBoxes::MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>
                          static_cast<int>(middles.size()));
   grow(middles, 0, static_cast<int>(middles.size()));
   for (const auto& [middle, face] : middles) order_.push_back(face);
-  constexpr int divided = 3;  // levels; some 200 parts
-  divide(0, divided);
+  int below = 0;
+  for (int child = 0; child < 4; ++child) below += make_patches(0, child, below);
   mark_kinds(first_kind);
 }
 
@@ -45,15 +45,24 @@ void MovingBoxes::mark_kinds(int first_kind) {
     }
 }
 
-// Lists the pairs below a node in parts.
-void MovingBoxes::divide(int node, int levels) {
-  for (int child = 0; child < 4; ++child) {
-    if (levels > 1 && nodes_[node].count[child] < 0)
-      divide(nodes_[node].first[child], levels - 1);
-    else
-      parts_.push_back({node, child, -1});
-    for (int other = child + 1; other < 4; ++other) parts_.push_back({node, child, other});
+// Makes patches of the faces below a child, which are those from `first` on in the tree's order. Returns how many they are.
+int MovingBoxes::make_patches(int node, int child, int first) {
+  constexpr int most = 32;
+  int count = nodes_[node].count[child];
+  const std::size_t before = patches_.size();
+  if (count < 0) {
+    count = 0;
+    for (int below = 0; below < 4; ++below)
+      count += make_patches(nodes_[node].first[child], below, first + count);
   }
+  if (count == 0 || count > most) return count;
+  // What is a part of this patch is none by itself.
+  for (std::size_t p = before; p < patches_.size(); ++p)
+    nodes_[patches_[p].node].patch[patches_[p].child] = -1;
+  patches_.resize(before);
+  nodes_[node].patch[child] = static_cast<int>(before);
+  patches_.push_back({node, child, first, count});
+  return count;
 }
 
 // Makes a node of middles[begin, end): they are halved across their longest side, and each half is halved

@@ -45,16 +45,27 @@ class MovingBoxes {
   // boxes come as near along each axis at a common s. ask returns whether to go on.
   template <class Ask>
   void pairs(const Ask& ask, double margin = 0) const {
-    for (const Part& part : parts_)
-      if (!pairs_of(part, ask, margin)) return;
+    const float reach = reach_of(margin);
+    for (int child = 0; child < 4; ++child)
+      if (!pairs_between(0, child, 0, 1u << child | (near_children(0, child, 0, reach) & after(child)), reach,
+                         is_leaf(), ask_faces(ask)))
+        return;
   }
-  // The same in parts, so that threads can share them: all parts together have every pair once.
-  struct Part {
-    int node, first, second;  // the pairs between two children of a node; second -1: those within the first
+
+  // The faces in patches of up to 64 that lie beside each other.
+  struct Patch {
+    int node, child;   // where in the tree
+    int first, count;  // which faces of the tree's order
   };
-  const std::vector<Part>& parts() const { return parts_; }
+  const std::vector<Patch>& patches() const { return patches_; }
+  int face(int place) const { return order_[place]; }  // in the tree's order
+  // Calls meet(p, q), p <= q, once for every two patches that can come within the margin at some s, and for every
+  // patch with itself.
+  template <class Meet>
+  void near_patches(const Meet& meet, double margin) const;
+  // pairs() of the faces of two patches, or of those within one. Returns false when ask did.
   template <class Ask>
-  bool pairs_of(const Part& part, const Ask& ask, double margin) const;
+  bool pairs_of_patches(int first, int second, const Ask& ask, double margin) const;
 
  private:
   using Four = Eigen::Array<float, 4, 1>;
@@ -62,6 +73,7 @@ class MovingBoxes {
     std::array<std::array<Four, 3>, 2> lower{}, upper{};  // at s = 0 and at s = 1; x, y and z
     std::array<int, 4> first{}, count{};                  // range of faces in order_; count -1: a node
     std::array<unsigned char, 4> kinds{};                 // bits of the kinds of faces below
+    std::array<int, 4> patch{-1, -1, -1, -1};             // which patch a child is; -1: none
   };
   struct Waiting {
     int first, count;
@@ -69,12 +81,23 @@ class MovingBoxes {
   };
   static constexpr int deepest = 64;  // most entries of a search's stack: three per level
 
+  // Calls meet(node, child, other node, its child) for what comes near below a child of a node and below those children
+  // of another that are marked in `others`, down to where ends(node, child). Where both are the same: for what comes
+  // near within it. Returns false as soon as meet does.
+  template <class Ends, class Meet>
+  bool pairs_between(int node, int child, int other, unsigned others, float margin, const Ends& ends,
+                     const Meet& meet) const;
+  template <class Ends, class Meet>
+  bool pairs_within(int node, int child, float margin, const Ends& ends, const Meet& meet) const;
+  auto is_leaf() const {
+    return [this](int node, int child) { return nodes_[node].count[child] >= 0; };
+  }
   template <class Ask>
-  bool pairs_within(int node, int child, float margin, const Ask& ask) const;
-  template <class Ask>
-  bool pairs_between(int node, int child, int other, unsigned others, float margin, const Ask& ask) const;
+  auto ask_faces(const Ask& ask) const;
+  float reach_of(double margin) const { return static_cast<float>(margin * (1 + 1e-6)) + slack_; }
+  static unsigned after(int child) { return ~(2u * (1u << child) - 1u); }
   unsigned near_children(int node, int child, int other, float margin) const;
-  void divide(int node, int levels);
+  int make_patches(int node, int child, int first);
   void mark_kinds(int first_kind);
   // Whether faces of different kinds are below both.
   static bool differ(unsigned char a, unsigned char b) {
@@ -88,7 +111,7 @@ class MovingBoxes {
 
   std::vector<Node> nodes_;  // parents before their children
   std::vector<int> order_;   // face numbers, leaf by leaf
-  std::vector<Part> parts_;
+  std::vector<Patch> patches_;
   int most_faces_;  // of a leaf
   Vec3 origin_ = Vec3::Zero();
   float slack_ = 0;  // m
@@ -160,52 +183,75 @@ void MovingBoxes::along(const Vec3& x0, const Vec3& x1, double from, const Ask& 
   }
 }
 
+// All faces of one leaf with all of another, or with each other.
 template <class Ask>
-bool MovingBoxes::pairs_of(const Part& part, const Ask& ask, double margin) const {
-  const float reach = static_cast<float>(margin * (1 + 1e-6)) + slack_;
-  if (part.second < 0) return pairs_within(part.node, part.first, reach, ask);
-  const unsigned second = near_children(part.node, part.first, part.node, reach) & 1u << part.second;
-  return pairs_between(part.node, part.first, part.node, second, reach, ask);
+auto MovingBoxes::ask_faces(const Ask& ask) const {
+  return [this, &ask](int node, int child, int other, int of_other) {
+    const int first = nodes_[node].first[child], end = first + nodes_[node].count[child];
+    const bool same = node == other && child == of_other;
+    const int second = nodes_[other].first[of_other], second_end = second + nodes_[other].count[of_other];
+    for (int i = first; i < end; ++i)
+      for (int k = same ? i + 1 : second; k < second_end; ++k)
+        if (!ask(order_[i], order_[k])) return false;
+    return true;
+  };
+}
+
+template <class Meet>
+void MovingBoxes::near_patches(const Meet& meet, double margin) const {
+  const float reach = reach_of(margin);
+  const auto is_patch = [this](int node, int child) { return nodes_[node].patch[child] >= 0; };
+  const auto tell = [&](int node, int child, int other, int of_other) {
+    const auto [p, q] = std::minmax(nodes_[node].patch[child], nodes_[other].patch[of_other]);
+    meet(p, q);
+    return true;
+  };
+  for (int child = 0; child < 4; ++child)
+    pairs_between(0, child, 0, 1u << child | (near_children(0, child, 0, reach) & after(child)), reach,
+                  is_patch, tell);
 }
 
 template <class Ask>
-bool MovingBoxes::pairs_within(int node, int child, float margin, const Ask& ask) const {
-  const int first = nodes_[node].first[child], count = nodes_[node].count[child];
+bool MovingBoxes::pairs_of_patches(int first, int second, const Ask& ask, double margin) const {
+  const Patch &p = patches_[first], &q = patches_[second];
+  return pairs_between(p.node, p.child, q.node, 1u << q.child, reach_of(margin), is_leaf(), ask_faces(ask));
+}
+
+template <class Ends, class Meet>
+bool MovingBoxes::pairs_within(int node, int child, float margin, const Ends& ends, const Meet& meet) const {
   if (!differ(nodes_[node].kinds[child], nodes_[node].kinds[child])) return true;
-  for (int i = first; i < first + count; ++i)
-    for (int k = i + 1; k < first + count; ++k)
-      if (!ask(order_[i], order_[k])) return false;
-  if (count >= 0) return true;
-  for (int i = 0; i < 4; ++i) {
-    const unsigned after = ~(2u * (1u << i) - 1u);
-    if (!pairs_within(first, i, margin, ask) ||
-        !pairs_between(first, i, first, near_children(first, i, first, margin) & after, margin, ask))
+  if (ends(node, child)) return meet(node, child, node, child);
+  const int below = nodes_[node].first[child];
+  for (int i = 0; i < 4; ++i)
+    if (!pairs_between(below, i, below, 1u << i | (near_children(below, i, below, margin) & after(i)), margin,
+                       ends, meet))
       return false;
-  }
   return true;
 }
 
-// The pairs between a child of a node and those of the children of another that are marked in `others`: their boxes
-// come near.
-template <class Ask>
+template <class Ends, class Meet>
 bool MovingBoxes::pairs_between(int node, int child, int other, unsigned others, float margin,
-                                const Ask& ask) const {
-  const int first = nodes_[node].first[child], count = nodes_[node].count[child];
+                                const Ends& ends, const Meet& meet) const {
+  const int below = nodes_[node].first[child];
+  const bool end = ends(node, child);
   for (int k = 0; k < 4; ++k) {
     if ((others >> k & 1u) == 0 || !differ(nodes_[node].kinds[child], nodes_[other].kinds[k])) continue;
-    const int second = nodes_[other].first[k], other_count = nodes_[other].count[k];
-    if (count >= 0 && other_count >= 0) {
-      for (int i = first; i < first + count; ++i)
-        for (int l = second; l < second + other_count; ++l)
-          if (!ask(order_[i], order_[l])) return false;
-    } else if (other_count >= 0) {
-      if (!pairs_between(other, k, first, near_children(other, k, first, margin), margin, ask)) return false;
-    } else if (count >= 0) {
-      if (!pairs_between(node, child, second, near_children(node, child, second, margin), margin, ask))
+    const int other_below = nodes_[other].first[k];
+    const bool other_end = ends(other, k);
+    if (node == other && child == k) {
+      if (!pairs_within(node, child, margin, ends, meet)) return false;
+    } else if (end && other_end) {
+      if (!meet(node, child, other, k)) return false;
+    } else if (other_end) {
+      if (!pairs_between(other, k, below, near_children(other, k, below, margin), margin, ends, meet))
         return false;
+    } else if (end) {
+      const unsigned near = near_children(node, child, other_below, margin);
+      if (!pairs_between(node, child, other_below, near, margin, ends, meet)) return false;
     } else {
       for (int i = 0; i < 4; ++i)
-        if (!pairs_between(first, i, second, near_children(first, i, second, margin), margin, ask))
+        if (!pairs_between(below, i, other_below, near_children(below, i, other_below, margin), margin, ends,
+                           meet))
           return false;
     }
   }

@@ -1,0 +1,197 @@
+// The search for what could meet: it misses nothing, whatever moves, and does not begin again for what moves elsewhere.
+#include "constraints/encounters.h"
+
+#include <random>
+#include <set>
+
+#include "mesh/base/threads.h"
+#include "tests/sheets.h"
+
+using namespace drape;
+using namespace drape::internal;
+using namespace drape::test;
+
+namespace {
+
+constexpr double edge = 0.01, gap = 0.003;  // m
+
+// Two sheets of n x n vertices, one above the other.
+struct TwoSheets {
+  TwoSheets(Kind kind, int n, double distance) {
+    const TriangleMesh sheet = bent(n, kind, edge * (n - 1), [](double, double) { return 0.0; });
+    half = sheet.vertex_count();
+    for (int k = 0; k < 2; ++k) {
+      for (const Vec3& at : sheet.positions) places.push_back(at + k * Vec3(0.002, distance, 0.001));
+      for (const Triangle& t : sheet.triangles)
+        triangles.push_back({k * half + t[0], k * half + t[1], k * half + t[2]});
+    }
+    x.resize(6 * half);
+    for (int i = 0; i < 2 * half; ++i) x.segment<3>(3 * i) = places[i];
+    encounters.set(triangles, 2 * half, triangles.size(), x);
+  }
+
+  // Every vertex with every triangle, and every edge with every other, that have no vertex in common.
+  std::vector<Encounter> all_pairs() const {
+    std::vector<Encounter> pairs;
+    std::set<std::pair<int, int>> edges;
+    for (const Triangle& t : triangles)
+      for (std::size_t k = 0; k < 3; ++k) edges.insert(std::minmax(t[k], t[(k + 1) % 3]));
+    for (const Triangle& t : triangles)
+      for (int v = 0; v < 2 * half; ++v)
+        if (v != t[0] && v != t[1] && v != t[2])
+          pairs.push_back({.v = {v, t[0], t[1], t[2]}, .edges = false});
+    for (const auto& [a, b] : edges)
+      for (const auto& [c, d] : edges)
+        if (a < c && a != d && b != c && b != d) pairs.push_back({.v = {a, b, c, d}, .edges = true});
+    return pairs;
+  }
+
+  std::vector<Encounter> select(const VecX& x_new, long* looks = nullptr) {
+    REQUIRE(encounters.follow(x, x_new, gap));
+    std::vector<Encounter> found;
+    const auto look = [&](const Encounter& e, const FourPoints& start, const FourPoints& end,
+                          const Vec3& likely) {
+      if (looks) ++*looks;
+      return approach(e.edges, start, end, gap, likely);
+    };
+    for (const Meeting& m : encounters.select(x, x_new, gap, look)) {
+      found.push_back(m.who);
+      std::array<int, 4>& v = found.back().v;
+      if (m.who.edges && v[0] > v[2]) v = {v[2], v[3], v[0], v[1]};  // as all_pairs() names it
+    }
+    return found;
+  }
+  void go(const VecX& x_new) {
+    encounters.went(x, x_new);
+    x = x_new;
+  }
+
+  int half = 0;
+  std::vector<Vec3> places;
+  std::vector<Triangle> triangles;
+  VecX x;
+  Encounters encounters;
+};
+
+// What each vertex does in a step [m].
+Vec3 motion(int kind, const TwoSheets& two, int i, int step, double shake) {
+  const bool upper = i >= two.half;
+  const Vec3 tremble = 1e-4 * shake * Vec3(1, -0.5, 0.7);
+  if (kind == 0) return tremble;
+  if (kind == 5) return 30 * tremble;                      // every vertex for itself: the sheets crumple
+  if (kind == 1) return tremble + Vec3(0.05, -0.1, 0.02);  // all go far, as one
+  if (kind == 2) return tremble + (upper ? Vec3(0.004, 0, 0.002) : Vec3(0, 0, 0));  // one slides on the other
+  if (kind == 3) return tremble + (upper && step % 8 < 4 ? -1 : 1) * Vec3(0, 0.002, 0);  // and comes and goes
+  return tremble +
+         (i == 0 ? Vec3((step % 2 == 0 ? 1 : -1) * Vec3(0.01, 0.03, 0)) : Vec3(0, 0, 0));  // a corner flaps
+}
+
+bool come_near(const Encounter& e, const FourPoints& start, const FourPoints& end, double within) {
+  for (int axis = 0; axis < 3; ++axis) {  // most are far apart, which is seen at once
+    double lower[2] = {1e9, 1e9}, upper[2] = {-1e9, -1e9};
+    for (std::size_t c = 0; c < 4; ++c) {
+      const std::size_t side = c < (e.edges ? 2u : 1u) ? 0 : 1;
+      lower[side] = std::min({lower[side], start[c][axis], end[c][axis]});
+      upper[side] = std::max({upper[side], start[c][axis], end[c][axis]});
+    }
+    if (lower[0] - upper[1] > within || lower[1] - upper[0] > within) return false;
+  }
+  constexpr int looks = 8;
+  for (int k = 0; k <= looks; ++k) {
+    FourPoints at;
+    for (std::size_t c = 0; c < 4; ++c) at[c] = start[c] + (1.0 * k / looks) * (end[c] - start[c]);
+    if (nearest(e.edges, at).distance < within) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("the search for what could meet misses nothing, and tells each pair once", "[approach]") {
+  for (const Kind kind : kinds)
+    for (const int n : {3, 6, 9})
+      for (int moves = 0; moves < 6; ++moves) {
+        INFO("mesh " << static_cast<int>(kind) << ", " << n << " vertices along an edge, motion " << moves);
+        TwoSheets two(kind, n, 0.002);
+        const std::vector<Encounter> pairs = two.all_pairs();
+        std::mt19937 random(5);
+        std::uniform_real_distribution<double> number(-1, 1);
+        for (int step = 0; step < 8; ++step) {
+          VecX x_new = two.x;
+          // The end of the motion changes with every solve of a step.
+          for (int solve = 0; solve < 3; ++solve) {
+            for (int i = 0; i < 2 * two.half; ++i)
+              x_new.segment<3>(3 * i) = two.x.segment<3>(3 * i) +
+                                        motion(moves, two, i, step, number(random)) * (solve == 0 ? 1.5 : 1);
+            const std::vector<Encounter> selected = two.select(x_new);
+            const std::set<Encounter> found(selected.begin(), selected.end());
+            CHECK(found.size() == selected.size());
+            long missed = 0, far = 0;
+            for (const Encounter& e : pairs) {
+              const FourPoints start = corners(two.x, e), end = corners(x_new, e);
+              missed += found.count(e) == 0 && come_near(e, start, end, 0.99 * gap);
+            }
+            for (const Encounter& e : selected)
+              far += !come_near(e, corners(two.x, e), corners(x_new, e), 1.3 * gap);
+            CHECK(missed == 0);
+            CHECK(far == 0);
+          }
+          two.go(x_new);
+        }
+      }
+}
+
+TEST_CASE("what moves elsewhere, and what all do alike, does not make the search begin again", "[approach]") {
+  for (const Kind kind : kinds)
+    for (const int n : {12, 18, 24}) {
+      INFO("mesh " << static_cast<int>(kind) << ", " << n << " vertices along an edge");
+      TwoSheets two(kind, n, 0.004);  // farther apart than the gap: nothing has to be looked at twice
+      std::vector<long> looks(6, 0);
+      for (int step = 0; step < 6; ++step) {
+        VecX x_new = two.x;
+        for (int i = 0; i < 2 * two.half; ++i)
+          x_new.segment<3>(3 * i) += Vec3(0.3, -1, 0.2) + motion(4, two, i, step, 0.01);
+        two.select(x_new, &looks[step]);
+        two.go(x_new);
+      }
+      // Once all, and then again those of the patch that flaps.
+      CHECK(looks[0] > 10 * two.half);
+      for (int step = 1; step < 6; ++step) CHECK(looks[step] < looks[0] / 5);
+    }
+}
+
+TEST_CASE("the search finds the same, in the same order, on any number of threads", "[approach]") {
+  const int before = threads();
+  std::vector<std::vector<Encounter>> found;
+  for (const int count : {1, 2, 7}) {
+    set_threads(count);
+    TwoSheets two(Kind::irregular, 45, 0.002);  // large enough for more than one thread
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> number(-1, 1);
+    found.emplace_back();
+    for (int step = 0; step < 4; ++step) {
+      VecX x_new = two.x;
+      for (int i = 0; i < 2 * two.half; ++i)
+        x_new.segment<3>(3 * i) += motion(3, two, i, step, 10 * number(random));
+      const std::vector<Encounter> here = two.select(x_new);
+      found.back().insert(found.back().end(), here.begin(), here.end());
+      two.go(x_new);
+    }
+  }
+  set_threads(before);
+  CHECK(found[0].size() > 1000);
+  CHECK(found[1] == found[0]);
+  CHECK(found[2] == found[0]);
+}
+
+TEST_CASE("a search among cloth that has exploded gives up, and begins anew", "[approach]") {
+  TwoSheets two(Kind::squares, 24, 0.004);
+  const VecX sound = two.x;
+  CHECK_FALSE(two.encounters.follow(VecX::Zero(sound.size()), VecX::Zero(sound.size()), gap));
+  VecX broken = sound;
+  broken[7] = std::numeric_limits<double>::quiet_NaN();
+  CHECK_FALSE(two.encounters.follow(sound, broken, gap));
+  const auto found = two.select(sound);
+  TwoSheets fresh(Kind::squares, 24, 0.004);
+  CHECK(found == fresh.select(sound));
+}
