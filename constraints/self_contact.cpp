@@ -190,6 +190,7 @@ void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<Movi
   const StepMotion& step = surfaces_->step();
   prepare(step, bodies);
   accepted_ = is_proven_ = false;
+  caution_ = 1;
   stopped_.assign(static_cast<std::size_t>(cloth_particles()), 0);
   kappa_ = kappa;
   recovery_ = recovery;
@@ -250,7 +251,7 @@ double SelfContacts::imbalance(double h, const VecX& x_new) const {
   for (const SelfContact& c : touching_) {
     const Vec3 p = c.at(x_new);
     const double push = c.push_at(p), assumed = c.active ? c.linear_push(p) : 0;
-    const Vec3 rub = c.rub_at(p, push), taken = c.active ? Vec3(c.share * c.drag_at(p)) : Vec3(Vec3::Zero());
+    const Vec3 rub = c.rub_at(p, push), taken = c.active ? c.linear_rub(p) : Vec3(Vec3::Zero());
     sum += (push - assumed) * (push - assumed) + (rub - taken).squaredNorm();
   }
   return h * std::sqrt(sum);
@@ -291,10 +292,17 @@ bool SelfContacts::react(const VecX& v, const VecX& r, const VecX& x_new, double
     v_at_ = v;
   accepted_ = true;
   bool changed = share_of < 1;
+  constexpr double too_far = 0.9;  // a solve went too far when less of its way is taken
+  caution_ = share_of < too_far ? std::min(1.0, 3 * caution_ + 0.1) : 0.1 * caution_;
   for (SelfContact& c : touching_) {
     c.now += share_of * (c.at(x_new) - c.now);
-    const double push = c.push_at(c.now), drag = c.drag_at(c.now).norm();
-    const double share = drag > c.friction * push ? c.friction * push / drag : 1;
+    const Vec3 d = c.drag_at(c.now);
+    const double push = c.push_at(c.now), drag = d.norm(), most = c.friction * push;
+    const double share = drag > most ? most / drag : 1;
+    const bool slides_on = share < 1 && c.share < 1;
+    c.slides = slides_on ? Vec3(d / drag) : Vec3(Vec3::Zero());
+    c.spring = slides_on ? caution_ : 1;
+    c.slide = (1 - c.spring) * most;
     changed = changed || c.active != (push > 0) || std::abs(share - c.share) > 1e-9;
     c.active = push > 0;
     c.push = push;

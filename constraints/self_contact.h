@@ -10,8 +10,11 @@
 //     k = kappa m / h^2,  1/m = sum w_k^2 / m_k     as stiff as the time step allows, whatever the mesh: a layer sinks
 //                                                   into the thickness by g h^2 / kappa, 33 um with h = 10 ms
 //   kappa is larger, up to a limit, where the load, or what arrives, would sink in by more than a share of r.
-//   Within a solve a contact is linear: it acts or not, and friction is a spring weakened to share (t_0 - k s).
-//   react() corrects both until they agree with the solve.
+//   Within a solve a contact is linear: it acts or not, and friction is a spring weakened to share (t_0 - k s), with which
+//   a solve never goes too far. It comes nearer to the sliding contact by as little as an eighth in each solve where many
+//   slide. So what slid in the solve before, too, is linearised as the force along d that friction is, with a spring across
+//   d only [Newton's method: Alart & Curnier 1991]; where a solve went too far, some of the spring along d comes back.
+//   react() corrects all until they agree with the solve.
 //   The guard: every vertex goes all of its way d_i at first. The pairs that would come nearer than `floor` on the way are
 //   found [mesh/distance/approach.h]. Their vertices become a zone, which keeps the motion D that it has on the whole, or
 //   that of pins or of a body in it, so that cloth in motion is not held up: x_i + D + t_i (d_i - D). t_i is made less
@@ -81,11 +84,14 @@ struct SelfContact {
   bool active = false;            // whether it acts in the next solve
   double push = 0;                // f of the last solve [N]
   double share = 0;               // of the spring that friction is in the next solve, 0 to 1
+  Vec3 slides = Vec3::Zero();     // d/|d| where friction is a force along d in the next solve, else zero
+  double slide = 0;               // that force [N]
+  double spring = 1;              // what is left there of the spring along d, as a share of the weakened one
 
   // The slope of the energy along a way of p [N]: of the law, and of the linear contact of the solve.
   Vec3 slope(const Vec3& p) const { return -push_at(p) * normal - rub_at(p, push); }
   Vec3 solved_slope(const Vec3& p) const {
-    return active ? Vec3(-linear_push(p) * normal - share * drag_at(p)) : Vec3(Vec3::Zero());
+    return active ? Vec3(-linear_push(p) * normal - linear_rub(p)) : Vec3(Vec3::Zero());
   }
 
   double linear_push(const Vec3& p) const { return stiffness * (thickness - normal.dot(p)); }  // N
@@ -95,6 +101,10 @@ struct SelfContact {
     return hold - stiffness * (moved - normal.dot(moved) * normal);
   }
   Vec3 rub_at(const Vec3& p, double normal_force) const;  // t
+  Vec3 linear_rub(const Vec3& p) const {                  // what t is in a solve
+    const Vec3 d = share * drag_at(p);
+    return d + (slide - (1 - spring) * slides.dot(d)) * slides;
+  }
   // p when the step takes the cloth to x [m].
   template <class Vector>
   Vec3 at(const Vector& x) const {
@@ -222,6 +232,7 @@ class SelfContacts {
   std::unique_ptr<internal::Tangles> tangles_;
   bool stale_ = true, look_again_ = true;
   double kappa_ = 0;                   // m/h^2
+  double caution_ = 1;                 // SelfContact::spring of what slides in the next solve
   double reach_ = 0, body_reach_ = 0;  // m, from which on pairs are looked at
   double recovery_ = 0;                // m, by which tangles move in a step at most
   int touched_body_ = 0;               // not 0: the same of cloth and a body

@@ -32,11 +32,11 @@ struct SelfLaw {
     const bool acts = stiffness == Stiffness::tangent ? contact->linear_push(p) > 0 : contact->active;
     if (!acts) return {};
     const Vec3 s = shift();
-    const double k = contact->stiffness, share = contact->share;
-    const Mat3 along = n * n.transpose();
-    return {.impulse = c * ((k * n.dot(s) - contact->linear_push(p)) * n -
-                            share * (contact->drag_at(p) - k * (s - n.dot(s) * n))),
-            .block = c * c * k * (along + share * (Mat3::Identity() - along)),
+    const Vec3& t = contact->slides;
+    const Mat3 along = n * n.transpose(),
+               across = Mat3::Identity() - along - (1 - contact->spring) * t * t.transpose();
+    return {.impulse = -c * (contact->linear_push(p + s) * n + contact->linear_rub(p + s)),
+            .block = c * c * contact->stiffness * (along + contact->share * across),
             .acts = true};
   }
 };
