@@ -12,8 +12,8 @@ namespace {
 // many pairs there may be for each of their triangles before this is made less.
 constexpr double most_room = 0.4, least_room = 0.04;
 constexpr std::size_t most_pairs = 32;
-// Cloth has exploded where there are more pairs for a vertex than this.
-constexpr std::size_t exploded = 2000;
+// Cloth has exploded where there are more pairs for a vertex than this, or more patches near each patch.
+constexpr std::size_t exploded = 2000, most_groups = 1000;
 
 constexpr double never = -std::numeric_limits<double>::infinity();
 
@@ -215,18 +215,27 @@ bool Encounters::follow(const VecX& x, const VecX& x_new, double gap) {
   const bool again = gap > gap_ || std::max(start_off_, end_off_) > most_room * mean_edge_;
   if (again) {
     boxes_->refit(faces_, start_, end_);
-    group_patches(gap);
   }
-  const bool listed = make_lists(gap, again);
-  if (!listed) forget();
+  const bool listed = (!again || group_patches(gap)) && make_lists(gap, again);
+  if (!listed) {
+    groups_.clear();
+    spare_.clear();
+    forget();
+  }
   read_clocks(x, x_new);
   return listed;
 }
 
-// Groups the patches that come near each other; what is known of those that were already is kept.
-void Encounters::group_patches(double gap) {
+// Groups the patches that come near each other; what is known of those that were already is kept. False: so many do that
+// the cloth must have exploded.
+bool Encounters::group_patches(double gap) {
   near_.clear();
-  boxes_->near_patches([&](int p, int q) { near_.emplace_back(p, q); }, gap + most_room * mean_edge_);
+  const std::size_t most = most_groups * boxes_->patches().size();
+  const auto add = [&](int p, int q) {
+    near_.emplace_back(p, q);
+    return near_.size() <= most;
+  };
+  if (!boxes_->near_patches(add, gap + most_room * mean_edge_)) return false;
   std::sort(near_.begin(), near_.end());
   std::swap(groups_, old_);
   groups_.clear();
@@ -249,6 +258,7 @@ void Encounters::group_patches(double gap) {
   std::move(old, old_.end(), std::back_inserter(spare_));
   gap_ = gap;
   start_off_ = end_off_ = 0;
+  return true;
 }
 
 // Lists the pairs of groups whose list does not cover the motion. False: there are so many pairs that the cloth must

@@ -1,7 +1,7 @@
 // Which vertices and triangles, and which edges, of the cloth could meet in a step.
 //   Two triangles are looked at when their boxes come near each other at a common time. Each vertex and each edge is
 //   owned by one of its triangles, so that a pair of them comes up once. Triangles with a common vertex are always
-//   near: their pairs are listed once and for all. The others are listed for every two patches of some dozens of
+//   near: their pairs are listed once and for all. The others are listed for every two patches of up to 32
 //   triangles that come near each other. Such a list stands as long as the motions of its two patches have not come to
 //   differ by more from what they were when it was made, in either patch or from patch to patch, than it allows for:
 //   what moves wildly elsewhere, and what both do alike, leaves it as it is.
@@ -94,7 +94,7 @@ class Encounters {
   static double largest_difference(const Ranges& ranges);
   template <class Change>
   void measure(const Change& change, Ranges& ranges) const;
-  void group_patches(double gap);
+  bool group_patches(double gap);
   bool make_lists(double gap, bool fitted);
   void make_list(Group& group, double gap) const;
   bool search(Group& group, double within, std::size_t most) const;

@@ -285,25 +285,34 @@ double SelfContacts::share_of_way(double slope, double curvature, const VecX& x_
 
 bool SelfContacts::react(const VecX& v, const VecX& r, const VecX& x_new, double curvature) {
   if (touching_.empty()) return false;
-  const double share_of = accepted_ ? share_of_way(dot(r, v) - dot(r, v_at_), curvature, x_new) : 1;
+  const bool searches = accepted_ && curvature > 0;
+  const double share_of = searches ? share_of_way(dot(r, v) - dot(r, v_at_), curvature, x_new) : 1;
   if (accepted_)
     v_at_ += share_of * (v - v_at_);
   else
     v_at_ = v;
   accepted_ = true;
   bool changed = share_of < 1;
-  constexpr double too_far = 0.9;  // a solve went too far when less of its way is taken
-  caution_ = share_of < too_far ? std::min(1.0, 3 * caution_ + 0.1) : 0.1 * caution_;
+  // Friction is a force only where the energy says whether a solve went too far.
+  constexpr double too_far = 0.9;  // when less of its way is taken
+  if (!searches)
+    caution_ = 1;
+  else
+    caution_ = share_of < too_far ? std::min(1.0, 3 * caution_ + 0.1) : 0.1 * caution_;
   for (SelfContact& c : touching_) {
     c.now += share_of * (c.at(x_new) - c.now);
     const Vec3 d = c.drag_at(c.now);
     const double push = c.push_at(c.now), drag = d.norm(), most = c.friction * push;
     const double share = drag > most ? most / drag : 1;
-    const bool slides_on = share < 1 && c.share < 1;
-    c.slides = slides_on ? Vec3(d / drag) : Vec3(Vec3::Zero());
-    c.spring = slides_on ? caution_ : 1;
-    c.slide = (1 - c.spring) * most;
-    changed = changed || c.active != (push > 0) || std::abs(share - c.share) > 1e-9;
+    const bool slides_on = share < 1 && c.slid && caution_ < 1;
+    const Vec3 slides = slides_on ? Vec3(d / drag) : Vec3(Vec3::Zero());
+    const double spring = slides_on ? caution_ : 1;
+    changed = changed || c.active != (push > 0) || std::abs(share - c.share) > 1e-9 ||
+              (slides - c.slides).norm() > 1e-9 || std::abs(spring - c.spring) > 1e-3;
+    c.slides = slides;
+    c.spring = spring;
+    c.slide = (1 - spring) * most;
+    c.slid = push > 0 && share < 1;
     c.active = push > 0;
     c.push = push;
     c.share = share;

@@ -10,11 +10,11 @@
 //     k = kappa m / h^2,  1/m = sum w_k^2 / m_k     as stiff as the time step allows, whatever the mesh: a layer sinks
 //                                                   into the thickness by g h^2 / kappa, 33 um with h = 10 ms
 //   kappa is larger, up to a limit, where the load, or what arrives, would sink in by more than a share of r.
-//   Within a solve a contact is linear: it acts or not, and friction is a spring weakened to share (t_0 - k s), with which
-//   a solve never goes too far. It comes nearer to the sliding contact by as little as an eighth in each solve where many
-//   slide. So what slid in the solve before, too, is linearised as the force along d that friction is, with a spring across
-//   d only [Newton's method: Alart & Curnier 1991]; where a solve went too far, some of the spring along d comes back.
-//   react() corrects all until they agree with the solve.
+//   Within a solve a contact is linear: it acts or not, and friction is a spring weakened to share (t_0 - k s). With such
+//   springs no solve goes too far, but where many contacts slide, each solve takes away only an eighth of the error. So what
+//   slid in the solve before, too, is linearised as the force along d that friction is, with the spring across d
+//   [Newton's method: Alart & Curnier 1991]. Along d the spring goes in steps of a tenth, and comes back where a solve went
+//   too far. react() corrects all until they agree with the solve.
 //   The guard: every vertex goes all of its way d_i at first. The pairs that would come nearer than `floor` on the way are
 //   found [mesh/distance/approach.h]. Their vertices become a zone, which keeps the motion D that it has on the whole, or
 //   that of pins or of a body in it, so that cloth in motion is not held up: x_i + D + t_i (d_i - D). t_i is made less
@@ -87,6 +87,7 @@ struct SelfContact {
   Vec3 slides = Vec3::Zero();     // d/|d| where friction is a force along d in the next solve, else zero
   double slide = 0;               // that force [N]
   double spring = 1;              // what is left there of the spring along d, as a share of the weakened one
+  bool slid = false;  // whether it pushed and slid at the point that the contacts were made for last
 
   // The slope of the energy along a way of p [N]: of the law, and of the linear contact of the solve.
   Vec3 slope(const Vec3& p) const { return -push_at(p) * normal - rub_at(p, push); }

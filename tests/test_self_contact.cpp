@@ -232,7 +232,7 @@ TEST_CASE("a layer sticks on a slope below its friction and slides as Coulomb sa
   }
 }
 
-TEST_CASE("where all layers of a stack slide, ten solves settle a step", "[self-contact]") {
+TEST_CASE("where all layers of a stack slide, ten solves settle a step on average", "[self-contact]") {
   for (const Kind kind : kinds)
     for (const int n : {4, 6, 10}) {
       INFO(n << " vertices along an edge, kind " << static_cast<int>(kind));

@@ -49,13 +49,14 @@ void MovingBoxes::mark_kinds(int first_kind) {
 int MovingBoxes::make_patches(int node, int child, int first) {
   constexpr int most = 32;
   int count = nodes_[node].count[child];
+  const bool leaf = count >= 0;
   const std::size_t before = patches_.size();
-  if (count < 0) {
+  if (!leaf) {
     count = 0;
     for (int below = 0; below < 4; ++below)
       count += make_patches(nodes_[node].first[child], below, first + count);
   }
-  if (count == 0 || count > most) return count;
+  if (count == 0 || (count > most && !leaf)) return count;
   // What is a part of this patch is none by itself.
   for (std::size_t p = before; p < patches_.size(); ++p)
     nodes_[patches_[p].node].patch[patches_[p].child] = -1;

@@ -48,21 +48,21 @@ class MovingBoxes {
     const float reach = reach_of(margin);
     for (int child = 0; child < 4; ++child)
       if (!pairs_between(0, child, 0, 1u << child | (near_children(0, child, 0, reach) & after(child)), reach,
-                         is_leaf(), ask_faces(ask)))
+                         IsLeaf{this}, ask_faces(ask)))
         return;
   }
 
-  // The faces in patches of up to 64 that lie beside each other.
+  // The faces in patches of up to 32 that lie beside each other.
   struct Patch {
     int node, child;   // where in the tree
     int first, count;  // which faces of the tree's order
   };
   const std::vector<Patch>& patches() const { return patches_; }
   int face(int place) const { return order_[place]; }  // in the tree's order
-  // Calls meet(p, q), p <= q, once for every two patches that can come within the margin at some s, and for every
-  // patch with itself.
+  // Calls meet(p, q), p <= q, once for every two patches that can come within the margin at some s and have pairs to ask
+  // for, and with p = q for those within a patch. meet returns whether to go on; returns false when it did.
   template <class Meet>
-  void near_patches(const Meet& meet, double margin) const;
+  bool near_patches(const Meet& meet, double margin) const;
   // pairs() of the faces of two patches, or of those within one. Returns false when ask did.
   template <class Ask>
   bool pairs_of_patches(int first, int second, const Ask& ask, double margin) const;
@@ -89,9 +89,10 @@ class MovingBoxes {
                      const Meet& meet) const;
   template <class Ends, class Meet>
   bool pairs_within(int node, int child, float margin, const Ends& ends, const Meet& meet) const;
-  auto is_leaf() const {
-    return [this](int node, int child) { return nodes_[node].count[child] >= 0; };
-  }
+  struct IsLeaf {
+    const MovingBoxes* boxes;
+    bool operator()(int node, int child) const { return boxes->nodes_[node].count[child] >= 0; }
+  };
   template <class Ask>
   auto ask_faces(const Ask& ask) const;
   float reach_of(double margin) const { return static_cast<float>(margin * (1 + 1e-6)) + slack_; }
@@ -198,23 +199,25 @@ auto MovingBoxes::ask_faces(const Ask& ask) const {
 }
 
 template <class Meet>
-void MovingBoxes::near_patches(const Meet& meet, double margin) const {
+bool MovingBoxes::near_patches(const Meet& meet, double margin) const {
   const float reach = reach_of(margin);
   const auto is_patch = [this](int node, int child) { return nodes_[node].patch[child] >= 0; };
   const auto tell = [&](int node, int child, int other, int of_other) {
     const auto [p, q] = std::minmax(nodes_[node].patch[child], nodes_[other].patch[of_other]);
-    meet(p, q);
-    return true;
+    return meet(p, q);
   };
   for (int child = 0; child < 4; ++child)
-    pairs_between(0, child, 0, 1u << child | (near_children(0, child, 0, reach) & after(child)), reach,
-                  is_patch, tell);
+    if (!pairs_between(0, child, 0, 1u << child | (near_children(0, child, 0, reach) & after(child)), reach,
+                       is_patch, tell))
+      return false;
+  return true;
 }
 
 template <class Ask>
 bool MovingBoxes::pairs_of_patches(int first, int second, const Ask& ask, double margin) const {
   const Patch &p = patches_[first], &q = patches_[second];
-  return pairs_between(p.node, p.child, q.node, 1u << q.child, reach_of(margin), is_leaf(), ask_faces(ask));
+  return pairs_between(p.node, p.child, q.node, 1u << q.child, reach_of(margin), IsLeaf{this},
+                       ask_faces(ask));
 }
 
 template <class Ends, class Meet>
