@@ -325,8 +325,7 @@ bool ParticleContacts::update_friction(const Bodies& bodies, const StepMotion& s
     if (asked.norm() <= holds) return false;
     ++c.changes;
   } else if (asked.norm() < (1 - round_off) * most) {  // it stops, unless it has come loose again too often
-    const bool surely = c.grip == Grip::brake && c.changes < 4 * most_changes && asked.norm() < 0.5 * most;
-    c.grip = c.changes < most_changes || surely ? Grip::stick : Grip::brake;
+    c.grip = c.changes < most_changes ? Grip::stick : Grip::brake;
     ++c.changes;
     c.slip = slip;
     return true;
