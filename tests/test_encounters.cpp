@@ -1,6 +1,7 @@
 // The search for what could meet: it misses nothing, whatever moves, and does not begin again for what moves elsewhere.
 #include "constraints/encounters.h"
 
+#include <catch2/catch.hpp>
 #include <random>
 #include <set>
 
