@@ -213,9 +213,7 @@ bool Encounters::follow(const VecX& x, const VecX& x_new, double gap) {
   start_off_ += largest_difference(of_start_);
   end_off_ += largest_difference(of_end_);
   const bool again = gap > gap_ || std::max(start_off_, end_off_) > most_room * mean_edge_;
-  if (again) {
-    boxes_->refit(faces_, start_, end_);
-  }
+  if (again) boxes_->refit(faces_, start_, end_);
   const bool listed = (!again || group_patches(gap)) && make_lists(gap, again);
   if (!listed) {
     groups_.clear();

@@ -293,7 +293,7 @@ bool SelfContacts::react(const VecX& v, const VecX& r, const VecX& x_new, double
     v_at_ = v;
   accepted_ = true;
   bool changed = share_of < 1;
-  // Friction is a force only where the energy says whether a solve went too far.
+  // Without a search along the way nothing tells whether a solve went too far: then friction stays a spring.
   constexpr double too_far = 0.9;  // when less of its way is taken
   if (!searches)
     caution_ = 1;

@@ -207,3 +207,18 @@ TEST_CASE("a search among cloth that has exploded gives up, and begins anew", "[
   TwoSheets fresh(Kind::squares, 24, 0.004);
   CHECK(found == fresh.select(sound));
 }
+
+TEST_CASE("particles that were moved from outside are looked at anew", "[approach]") {
+  for (const Kind kind : kinds)
+    for (const int n : {4, 8, 12}) {
+      INFO("mesh " << static_cast<int>(kind) << ", " << n << " vertices along an edge");
+      TwoSheets two(kind, n, 0.006);
+      const VecX before = two.x;
+      two.select(before);  // knows from now on that the sheets are 6 mm apart
+      two.go(before);
+      for (int i = 0; i < two.half; ++i) two.x[3 * i + 1] += 0.0035;
+      two.encounters.forget();
+      TwoSheets fresh(kind, n, 0.0025);
+      CHECK(two.select(two.x).size() == fresh.select(fresh.x).size());
+    }
+}
