@@ -24,8 +24,8 @@
 //            the last step, with its arrival impulse replaced by that of this step: otherwise an impact would
 //            rub twice. A contact that has come loose too often ends as one that is braked. What begins to touch, and
 //            slips, is braked, too; so is what slid when the impulse turned its slip round, with a quarter of the slip.
-//   doubt    where a contact changed more than once, or was let go and held again, r.n changes by half of what a solve
-//            asks for: friction may lift the particle off, or press it on, by more than it takes itself
+//   doubt    where a contact changed more than once, was let go and held again, or went up and down, r.n changes by half
+//            of what a solve asks for: friction may lift a particle off, or press it on, by more than it takes itself
 //   stop     where friction can stop all that slides on a body within a step, and it slows down, the step
 //            begins with it as sticking
 // r = A dv - b [N s] is the impulse of the constraint on the particle.
@@ -54,10 +54,12 @@ struct Contact {
   int known = 0;   // those that hold it, and behind them those that were let go in this step
   std::array<ContactPlane, 3> plane;  // of those that hold, the deepest first
   Grip grip = Grip::stick;
-  int changes = 0;                       // how often the grip has changed within this step
-  int catches = 0;                       // how often a plane that was let go in this step has held it again
-  double normal_impulse = 0;             // sum over the planes [N s], of the last solve
-  double arrival_impulse = 0;            // the part that stops the approach to the planes that hold [N s]
+  int changes = 0;             // how often the grip has changed within this step
+  int catches = 0;             // how often a plane that was let go in this step has held it again
+  double normal_impulse = 0;   // sum over the planes [N s], of the last solve
+  int turns = 0;               // how often it has gone up after down, or down after up, within this step
+  double last_change = 0;      // by how much the last solve changed it [N s]
+  double arrival_impulse = 0;  // the part that stops the approach to the planes that hold [N s]
   Vec3 friction_impulse = Vec3::Zero();  // -mu_k (r.n) t of what slides [N s]
   Vec3 slip = Vec3::Zero();              // s_0 of what slides, s_e of what is braked [m/s]
   Vec3 last_slip = Vec3::Zero();         // the same at the end of the step before [m/s]

@@ -309,9 +309,13 @@ bool ParticleContacts::update_friction(const Bodies& bodies, const StepMotion& s
       std::max(mass, share_of_inertia * step.inertia[static_cast<std::size_t>(c.particle)]);
   const Vec3 slip = tangential(c, v - c.body_velocity());
   const Vec3 given = given_friction(c, mu.kinetic, mass, slip, r), asked = given - inertia * slip;
-  // Friction may press the particle on, or lift it off, by more than it takes itself. Half of the change then settles.
+  // Friction may press the particle on, or lift it off, by more than it takes itself: then the impulse goes up and down from
+  // solve to solve. Half of the change settles.
   const double pressed = normal_impulse(c, r);
-  const bool in_doubt = c.catches > 0 || c.changes > 1;
+  const double change = pressed - c.normal_impulse;
+  c.turns += change * c.last_change < 0;
+  const bool in_doubt = c.catches > 0 || c.changes > 1 || c.turns > 1;
+  c.last_change = change;
   c.normal_impulse = in_doubt ? 0.5 * (c.normal_impulse + pressed) : pressed;
   const double most = mu.kinetic * c.normal_impulse;
   if (c.grip != Grip::stick && step.foresight != Foresight::ahead) {
