@@ -39,6 +39,7 @@ struct Part {
 const Part gallery[] = {
     {"choi-ko-100", 0.5, 1},
     {"choi-ko-200", 0.5, 1},
+    {"dressed-sits", 0.4, 4},     // the poncho has come to the tee
     {"dressed-turn", 1.7, 4},     // the first step and half of the turn
     {"fast-ball", 0.3, 1},        // is thrown back at 0.1 s; the nails come at 0.2 s
     {"flag", 1.1, 1},             // swings against the pole
@@ -52,6 +53,7 @@ const Part gallery[] = {
     {"noh-jung-200", 0.5, 1},
     {"poncho", 0.6, 2},           // has come to the shoulders
     {"poncho-sewn", 0.5, 4},      // is sewn after 0.2 s
+    {"reef-knot", 1.2, 4},        // the bands have come to each other
     {"rotating-ball", 4.8, 1},    // the ball turns from 3 s on, the fastest at 4.5 s
     {"sheet-in-bowl", 0.6, 1},
     {"sheet-on-ball", 0.6, 1},

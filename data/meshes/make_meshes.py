@@ -201,6 +201,39 @@ def nails(places, radius, around, size, thickness):
     return np.array(points), faces
 
 
+def reef_knot(cells, across, width):
+    """Two bands in a loose reef knot, upright on their edges: the ends of the first at low x, those of the second at high x. uv is the flat band,
+    v along it. Quads, row after row of each band."""
+    narrow, wide, middle, end = 0.04, 0.12, 0.1, 0.9  # m: half distances of the legs, where the bight begins, where the band ends
+    x = np.linspace(-end, middle, 2001)
+    t = np.clip((x + middle) / (2 * middle), 0, 1)
+    arc = np.linspace(np.pi / 2, 0, 1001)[1:]
+    leg = np.r_[np.c_[x, narrow + (wide - narrow) * t * t * (3 - 2 * t)], np.c_[middle + wide * np.cos(arc), wide * np.sin(arc)]]
+    plan = np.r_[leg, leg[-2::-1] * [1, -1]]
+    along = np.r_[0, np.cumsum(np.linalg.norm(np.diff(plan, axis=0), axis=1))]
+    # Over the other bight, under its legs, and with its own bight over both of them. The bands stand above each other there.
+    crossing = middle + np.sqrt(wide**2 - narrow**2)
+    half = along[len(leg) - 1]
+    places = np.r_[along[np.searchsorted(x, [-end, -0.5, -crossing, 0])], half - wide * np.arcsin(narrow / wide), half]
+    height = 0.64 * width * np.array([0, 0, 1, -1, 1, 1])
+    z = PchipInterpolator(np.r_[places, 2 * half - places[-2::-1]], np.r_[height, height[-2::-1]])(along)
+    path = np.c_[plan, z]
+    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))]
+    rows = np.linspace(0, length[-1], cells + 1)
+    path = np.stack([np.interp(rows, length, c) for c in path.T], 1)
+    tangent = np.gradient(path, axis=0)
+    tangent /= np.linalg.norm(tangent, axis=1)[:, None]
+    up = np.array([0, 0, 1]) - tangent[:, 2:] * tangent
+    up /= np.linalg.norm(up, axis=1)[:, None]
+    v = np.linspace(-width / 2, width / 2, across + 1)
+    first = (path[:, None] + v[:, None] * up[:, None]).reshape(-1, 3)
+    uv = np.stack(np.broadcast_arrays(v + width / 2, rows[:, None]), -1).reshape(-1, 2)
+    points = np.r_[first, first * [-1, 1, -1]]
+    n, a = len(first), across + 1
+    faces = [[b + r * a + c, b + r * a + c + 1, b + (r + 1) * a + c + 1, b + (r + 1) * a + c] for b in (0, n) for r in range(cells) for c in range(across)]
+    return points, faces, np.r_[uv, uv + [2 * width, 0]]
+
+
 def write_nails():
     heights = [(-0.11, -0.1, 0.15), (0.1, -0.115, 0.11), (-0.09, 0.105, 0.13), (0.115, 0.09, 0.16), (0.01, -0.005, 0.2)]
     points, faces = nails(heights, 0.006, 12, 0.34, 0.02)
@@ -234,6 +267,9 @@ def main():
     points, faces = revolved([(0.70, 0.50), (0.17, 0.0), (0.17, -0.30), (0.20, -0.30), (0.20, -0.02), (0.73, 0.48)], 0.06, 60)
     write("funnel.obj", ["A funnel, closed: its opening is 1.4 m across, its neck 34 cm, which begins at y = 0.",
                          "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
+    points, faces, uv = reef_knot(160, 6, 0.03)
+    write("reef-knot.obj", ["Two bands, 3 cm wide, 160 x 6 quads each, in a loose reef knot along x; uv is what they are flat, in metres.",
+                            "Made by make_meshes.py; CC0 1.0."], points, faces, uv)
     if len(sys.argv) == 3:
         points, faces = read(sys.argv[1])
         write("body.obj", ["CC0 1.0. The base mesh hm08 of MakeHuman (makehumancommunity/makehuman, makehuman/data/3dobjs/base.obj), group",
