@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Makes the meshes of this folder again: sheet-958.obj, tablecloth.obj, poncho.obj, flag.obj, net.obj, sheet-625.obj, dress.obj, nails.obj, sleeve.obj,
-funnel.obj. Not run by the build.
+"""Makes the meshes of this folder again: sheet-958.obj, sheet-2500.obj, tablecloth.obj, poncho.obj, flag.obj, net.obj, sheet-625.obj, dress.obj, nails.obj,
+needle.obj, sleeve.obj, funnel.obj, reef-knot.obj, pocket.obj. Not run by the build.
 
-    python3 make_meshes.py                       the ten generated meshes
+    python3 make_meshes.py                       the generated meshes
     python3 make_meshes.py BODY.obj TEE.obj      body.obj and tee.obj, too, from files in metres (see ../README.md)
 
 Needs numpy and scipy (Debian: python3-scipy). The seeds are fixed: it makes the same files every time.
@@ -102,12 +102,14 @@ def number(value, digits):
     return "0" if text == "-0" else text
 
 
-def write(name, comments, points, faces, uv=None, digits=5):
+def write(name, comments, points, faces, uv=None, digits=5, groups=None):
     lines = [f"# {c}" for c in comments]
     lines += ["v " + " ".join(number(x, digits) for x in p) for p in points]
     if uv is not None:
         lines += ["vt " + " ".join(number(x, digits) for x in p) for p in uv]
-    for face in faces:
+    for k, face in enumerate(faces):
+        if groups is not None and (k == 0 or groups[k] != groups[k - 1]):
+            lines.append(f"g {groups[k]}")
         lines.append("f " + " ".join(f"{i + 1}/{i + 1}" if uv is not None else f"{i + 1}" for i in face))
     (here / name).write_text("\n".join(lines) + "\n")
     print(f"{name}: {len(points)} vertices, {len(faces)} faces")
@@ -234,6 +236,46 @@ def reef_knot(cells, across, width):
     return points, faces, np.r_[uv, uv + [2 * width, 0]]
 
 
+def pocket(cell):
+    """A panel that stands, 40 x 40 quads, with a pocket of 16 x 16 sewn on by three sides and a flap of 16 x 6 by its upper one, in front (+z). Pocket and
+    flap go in waves through what is behind them. Also the faces' groups."""
+    n = 40
+    points = [(cell * (c - n / 2), -cell * r, 0) for r in range(n + 1) for c in range(n + 1)]
+    on_panel = lambda r, c: r * (n + 1) + c
+    faces, groups = [], []
+
+    def piece(name, top, left, rows, columns, sewn, depth):
+        at = {}
+        for r in range(rows + 1):
+            for c in range(columns + 1):
+                if sewn(r, c):
+                    at[r, c] = on_panel(top + r, left + c)
+                else:
+                    at[r, c] = len(points)
+                    x, y, _ = points[on_panel(top + r, left + c)]
+                    points.append((x, y, depth(r, c)))
+        for r in range(rows):
+            for c in range(columns):
+                quad = [at[r, c], at[r + 1, c], at[r + 1, c + 1], at[r, c + 1]]
+                free = [k for k in range(4) if quad[k] >= (n + 1) ** 2]
+                if name != "panel" and len(free) == 1:  # a corner: no triangle of three sewn vertices, which would lie in the panel
+                    k = free[0]
+                    faces.extend([quad[k], quad[(k + 1 + i) % 4], quad[(k + 2 + i) % 4]] for i in (0, 1))
+                    groups.extend([name, name])
+                else:
+                    faces.append(quad)
+                    groups.append(name)
+
+    smooth = lambda t: np.clip(t, 0, 1) ** 2 * (3 - 2 * np.clip(t, 0, 1))
+    piece("panel", 0, 0, n, n, lambda r, c: True, None)
+    # In front of the panel for two cells from each seam; beyond, waves of 6 mm.
+    from_seam = lambda r, c: min(c, 16 - c, 16 - r)
+    piece("pocket", 14, 12, 16, 16, lambda r, c: c in (0, 16) or r == 16,
+          lambda r, c: 0.003 + 0.006 * smooth((from_seam(r, c) - 2) / 3) * np.sin(0.9 * c) * np.cos(0.7 * r))
+    piece("flap", 12, 12, 6, 16, lambda r, c: r == 0, lambda r, c: 0.003 + 0.007 * smooth((r - 1) / 3) * np.sin(0.6 * c + 1))
+    return np.array(points), faces, groups
+
+
 def write_nails():
     heights = [(-0.11, -0.1, 0.15), (0.1, -0.115, 0.11), (-0.09, 0.105, 0.13), (0.115, 0.09, 0.16), (0.01, -0.005, 0.2)]
     points, faces = nails(heights, 0.006, 12, 0.34, 0.02)
@@ -244,6 +286,8 @@ def write_nails():
 def main():
     write_flat("sheet-958.obj", ["Square sheet, 1 m x 1 m, 958 vertices, irregular triangles."],
                *first_good(lambda rng: square(rng, 1.0, 28, 958)))
+    write_flat("sheet-2500.obj", ["Square sheet, 1 m x 1 m, 2500 vertices, irregular triangles."],
+               *first_good(lambda rng: square(rng, 1.0, 46, 2500)))
     write_flat("tablecloth.obj", ["Square cloth, 1.2 m x 1.2 m, 1600 vertices, irregular triangles."],
                *first_good(lambda rng: square(rng, 1.2, 36, 1600)))
     write_flat("poncho.obj", ["Ring, inner radius 0.115 m, outer radius 0.55 m, 1500 vertices, irregular triangles."],
@@ -261,6 +305,9 @@ def main():
     write("dress.obj", ["A dress without straps, 95 cm long, 80 x 45 quads, standing, its hem at y = 0.",
                         "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
     write_nails()
+    points, faces = nails([(0, 0, 0.4)], 0.003, 12, 0.03, 0.02)
+    write("needle.obj", ["A needle, 40 cm long and 6 mm thick where it stands on a block of 3 cm, whose top is at y = 0.",
+                         "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
     points, faces = sleeve(72, 48, 0.2, 0.8)
     write("sleeve.obj", ["A sleeve along x, 80 cm long, 40 cm across, 48 x 72 quads, its middle at the origin, normals out.",
                          "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
@@ -270,6 +317,9 @@ def main():
     points, faces, uv = reef_knot(160, 6, 0.03)
     write("reef-knot.obj", ["Two bands, 3 cm wide, 160 x 6 quads each, in a loose reef knot along x; uv is what they are flat, in metres.",
                             "Made by make_meshes.py; CC0 1.0."], points, faces, uv)
+    points, faces, groups = pocket(0.01)
+    write("pocket.obj", ["A panel, 40 cm x 40 cm, with a pocket and its flap in front (+z), which go through each other and through the panel.",
+                         "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces, groups=groups)
     if len(sys.argv) == 3:
         points, faces = read(sys.argv[1])
         write("body.obj", ["CC0 1.0. The base mesh hm08 of MakeHuman (makehumancommunity/makehuman, makehuman/data/3dobjs/base.obj), group",
