@@ -37,8 +37,11 @@ struct Part {
 
 // clang-format off
 const Part gallery[] = {
+    {"ball-on-floor", 0.8, 2},    // has come to the floor; the ball turns from 1.5 s on
     {"choi-ko-100", 0.5, 1},
     {"choi-ko-200", 0.5, 1},
+    {"dress-on-towel", 0.35, 2},  // the dress has come to the towel
+    {"dressed-sits", 0.4, 4},     // the poncho has come to the tee
     {"dressed-turn", 1.7, 4},     // the first step and half of the turn
     {"fast-ball", 0.3, 1},        // is thrown back at 0.1 s; the nails come at 0.2 s
     {"flag", 1.1, 1},             // swings against the pole
@@ -47,11 +50,14 @@ const Part gallery[] = {
     {"ls-ball-0", 0.7, 10},       // slides over the ball and comes to the floor
     {"ls-ball-09", 0.9, 10},
     {"nails", 0.5, 1},            // hangs over the nails
+    {"needle", 0.3, 1},           // is driven in at 0.1 s and drawn back
     {"net", 0.9, 1},              // the ball comes to it after 0.32 s
     {"noh-jung-100", 0.5, 1},
     {"noh-jung-200", 0.5, 1},
+    {"pocket", 0.4, 4},           // comes apart in 0.3 s
     {"poncho", 0.6, 2},           // has come to the shoulders
     {"poncho-sewn", 0.5, 4},      // is sewn after 0.2 s
+    {"reef-knot", 1.2, 4},        // the bands have come to each other
     {"rotating-ball", 4.8, 1},    // the ball turns from 3 s on, the fastest at 4.5 s
     {"sheet-in-bowl", 0.6, 1},
     {"sheet-on-ball", 0.6, 1},
@@ -65,6 +71,7 @@ const Part gallery[] = {
     {"stack", 0.4, 4},            // half of the ten lie on the cylinder
     {"tablecloth", 0.6, 1},       // hangs over the rims
     {"tablecloth-pull", 1.6, 1},  // and is pulled from 1 s on
+    {"tablecloth-under", 0.7, 4}, // is pulled from 0.5 s on
     {"tee", 0.3, 2},
     {"towel", 0.5, 2},            // falls into folds
 };

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Makes the meshes of this folder again: sheet-958.obj, tablecloth.obj, poncho.obj, flag.obj, net.obj, sheet-625.obj, dress.obj, nails.obj, sleeve.obj,
-funnel.obj. Not run by the build.
+"""Makes the meshes of this folder again: sheet-958.obj, sheet-2500.obj, tablecloth.obj, poncho.obj, flag.obj, net.obj, sheet-625.obj, dress.obj, nails.obj,
+needle.obj, sleeve.obj, funnel.obj, reef-knot.obj, pocket.obj. Not run by the build.
 
-    python3 make_meshes.py                       the ten generated meshes
+    python3 make_meshes.py                       the generated meshes
     python3 make_meshes.py BODY.obj TEE.obj      body.obj and tee.obj, too, from files in metres (see ../README.md)
 
 Needs numpy and scipy (Debian: python3-scipy). The seeds are fixed: it makes the same files every time.
@@ -102,12 +102,14 @@ def number(value, digits):
     return "0" if text == "-0" else text
 
 
-def write(name, comments, points, faces, uv=None, digits=5):
+def write(name, comments, points, faces, uv=None, digits=5, groups=None):
     lines = [f"# {c}" for c in comments]
     lines += ["v " + " ".join(number(x, digits) for x in p) for p in points]
     if uv is not None:
         lines += ["vt " + " ".join(number(x, digits) for x in p) for p in uv]
-    for face in faces:
+    for k, face in enumerate(faces):
+        if groups is not None and (k == 0 or groups[k] != groups[k - 1]):
+            lines.append(f"g {groups[k]}")
         lines.append("f " + " ".join(f"{i + 1}/{i + 1}" if uv is not None else f"{i + 1}" for i in face))
     (here / name).write_text("\n".join(lines) + "\n")
     print(f"{name}: {len(points)} vertices, {len(faces)} faces")
@@ -201,6 +203,79 @@ def nails(places, radius, around, size, thickness):
     return np.array(points), faces
 
 
+def reef_knot(cells, across, width):
+    """Two bands in a loose reef knot, upright on their edges: the ends of the first at low x, those of the second at high x. uv is the flat band,
+    v along it. Quads, row after row of each band."""
+    narrow, wide, middle, end = 0.04, 0.12, 0.1, 0.9  # m: half distances of the legs, where the bight begins, where the band ends
+    x = np.linspace(-end, middle, 2001)
+    t = np.clip((x + middle) / (2 * middle), 0, 1)
+    arc = np.linspace(np.pi / 2, 0, 1001)[1:]
+    leg = np.r_[np.c_[x, narrow + (wide - narrow) * t * t * (3 - 2 * t)], np.c_[middle + wide * np.cos(arc), wide * np.sin(arc)]]
+    plan = np.r_[leg, leg[-2::-1] * [1, -1]]
+    along = np.r_[0, np.cumsum(np.linalg.norm(np.diff(plan, axis=0), axis=1))]
+    # Over the other bight, under its legs, and with its own bight over both of them. The bands stand above each other there.
+    crossing = middle + np.sqrt(wide**2 - narrow**2)
+    half = along[len(leg) - 1]
+    places = np.r_[along[np.searchsorted(x, [-end, -0.5, -crossing, 0])], half - wide * np.arcsin(narrow / wide), half]
+    height = 0.64 * width * np.array([0, 0, 1, -1, 1, 1])
+    z = PchipInterpolator(np.r_[places, 2 * half - places[-2::-1]], np.r_[height, height[-2::-1]])(along)
+    path = np.c_[plan, z]
+    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))]
+    rows = np.linspace(0, length[-1], cells + 1)
+    path = np.stack([np.interp(rows, length, c) for c in path.T], 1)
+    tangent = np.gradient(path, axis=0)
+    tangent /= np.linalg.norm(tangent, axis=1)[:, None]
+    up = np.array([0, 0, 1]) - tangent[:, 2:] * tangent
+    up /= np.linalg.norm(up, axis=1)[:, None]
+    v = np.linspace(-width / 2, width / 2, across + 1)
+    first = (path[:, None] + v[:, None] * up[:, None]).reshape(-1, 3)
+    uv = np.stack(np.broadcast_arrays(v + width / 2, rows[:, None]), -1).reshape(-1, 2)
+    points = np.r_[first, first * [-1, 1, -1]]
+    n, a = len(first), across + 1
+    faces = [[b + r * a + c, b + r * a + c + 1, b + (r + 1) * a + c + 1, b + (r + 1) * a + c] for b in (0, n) for r in range(cells) for c in range(across)]
+    return points, faces, np.r_[uv, uv + [2 * width, 0]]
+
+
+def pocket(cell):
+    """A panel that stands, 40 x 40 quads, with a pocket of 16 x 16 sewn on by three sides and a flap of 16 x 6 by its upper one, in front (+z). Pocket and
+    flap go in waves through what is behind them. Also the faces' groups."""
+    n = 40
+    points = [(cell * (c - n / 2), -cell * r, 0) for r in range(n + 1) for c in range(n + 1)]
+    on_panel = lambda r, c: r * (n + 1) + c
+    faces, groups = [], []
+
+    def piece(name, top, left, rows, columns, sewn, depth):
+        at = {}
+        for r in range(rows + 1):
+            for c in range(columns + 1):
+                if sewn(r, c):
+                    at[r, c] = on_panel(top + r, left + c)
+                else:
+                    at[r, c] = len(points)
+                    x, y, _ = points[on_panel(top + r, left + c)]
+                    points.append((x, y, depth(r, c)))
+        for r in range(rows):
+            for c in range(columns):
+                quad = [at[r, c], at[r + 1, c], at[r + 1, c + 1], at[r, c + 1]]
+                free = [k for k in range(4) if quad[k] >= (n + 1) ** 2]
+                if name != "panel" and len(free) == 1:  # a corner: no triangle of three sewn vertices, which would lie in the panel
+                    k = free[0]
+                    faces.extend([quad[k], quad[(k + 1 + i) % 4], quad[(k + 2 + i) % 4]] for i in (0, 1))
+                    groups.extend([name, name])
+                else:
+                    faces.append(quad)
+                    groups.append(name)
+
+    smooth = lambda t: np.clip(t, 0, 1) ** 2 * (3 - 2 * np.clip(t, 0, 1))
+    piece("panel", 0, 0, n, n, lambda r, c: True, None)
+    # In front of the panel for two cells from each seam; beyond, waves of 6 mm.
+    from_seam = lambda r, c: min(c, 16 - c, 16 - r)
+    piece("pocket", 14, 12, 16, 16, lambda r, c: c in (0, 16) or r == 16,
+          lambda r, c: 0.003 + 0.006 * smooth((from_seam(r, c) - 2) / 3) * np.sin(0.9 * c) * np.cos(0.7 * r))
+    piece("flap", 12, 12, 6, 16, lambda r, c: r == 0, lambda r, c: 0.003 + 0.007 * smooth((r - 1) / 3) * np.sin(0.6 * c + 1))
+    return np.array(points), faces, groups
+
+
 def write_nails():
     heights = [(-0.11, -0.1, 0.15), (0.1, -0.115, 0.11), (-0.09, 0.105, 0.13), (0.115, 0.09, 0.16), (0.01, -0.005, 0.2)]
     points, faces = nails(heights, 0.006, 12, 0.34, 0.02)
@@ -211,6 +286,8 @@ def write_nails():
 def main():
     write_flat("sheet-958.obj", ["Square sheet, 1 m x 1 m, 958 vertices, irregular triangles."],
                *first_good(lambda rng: square(rng, 1.0, 28, 958)))
+    write_flat("sheet-2500.obj", ["Square sheet, 1 m x 1 m, 2500 vertices, irregular triangles."],
+               *first_good(lambda rng: square(rng, 1.0, 46, 2500)))
     write_flat("tablecloth.obj", ["Square cloth, 1.2 m x 1.2 m, 1600 vertices, irregular triangles."],
                *first_good(lambda rng: square(rng, 1.2, 36, 1600)))
     write_flat("poncho.obj", ["Ring, inner radius 0.115 m, outer radius 0.55 m, 1500 vertices, irregular triangles."],
@@ -228,12 +305,21 @@ def main():
     write("dress.obj", ["A dress without straps, 95 cm long, 80 x 45 quads, standing, its hem at y = 0.",
                         "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
     write_nails()
+    points, faces = nails([(0, 0, 0.4)], 0.003, 12, 0.03, 0.02)
+    write("needle.obj", ["A needle, 40 cm long and 6 mm thick where it stands on a block of 3 cm, whose top is at y = 0.",
+                         "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
     points, faces = sleeve(72, 48, 0.2, 0.8)
     write("sleeve.obj", ["A sleeve along x, 80 cm long, 40 cm across, 48 x 72 quads, its middle at the origin, normals out.",
                          "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
     points, faces = revolved([(0.70, 0.50), (0.17, 0.0), (0.17, -0.30), (0.20, -0.30), (0.20, -0.02), (0.73, 0.48)], 0.06, 60)
     write("funnel.obj", ["A funnel, closed: its opening is 1.4 m across, its neck 34 cm, which begins at y = 0.",
                          "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
+    points, faces, uv = reef_knot(160, 6, 0.03)
+    write("reef-knot.obj", ["Two bands, 3 cm wide, 160 x 6 quads each, in a loose reef knot along x; uv is what they are flat, in metres.",
+                            "Made by make_meshes.py; CC0 1.0."], points, faces, uv)
+    points, faces, groups = pocket(0.01)
+    write("pocket.obj", ["A panel, 40 cm x 40 cm, with a pocket and its flap in front (+z), which go through each other and through the panel.",
+                         "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces, groups=groups)
     if len(sys.argv) == 3:
         points, faces = read(sys.argv[1])
         write("body.obj", ["CC0 1.0. The base mesh hm08 of MakeHuman (makehumancommunity/makehuman, makehuman/data/3dobjs/base.obj), group",

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Makes the motion of the scene dressed-turn.toml: the body of body.obj stands, takes two steps while it turns, and stands again.
+"""Makes the motion of the scenes dressed-turn.toml and dressed-sits.toml: the body of body.obj stands, takes two steps while it turns, stands
+again, takes its arms down to its sides and up again, and sits down.
 
-    python3 make_motion.py [BODY.obj] [OUT.pc2]      default: body.obj, ../motions/turn-and-step.pc2
+    python3 make_motion.py [BODY.obj] [OUT.pc2]      default: body.obj, ../motions/man.pc2
 
-30 frames a second, 3.2 s, as a point cache (POINTCACHE2, float32, little endian) of 16 MB. The bones are those of a puppet: legs
+30 frames a second, 7.6 s, as a point cache (POINTCACHE2, float32, little endian) of 37 MB. The bones are those of a puppet: legs
 that swing about the hips and bend at the knees, arms that swing a little against them, a pelvis that goes, turns and bobs. A bone
 takes hold of a vertex by a weight that is harmonic on the mesh between where it is 0 and where it is 1.
 Needs numpy and scipy (Debian: python3-scipy).
@@ -20,7 +21,9 @@ from make_meshes import read
 
 here = pathlib.Path(__file__).resolve().parent
 rate = 30.0                             # Hz
-begin, end, duration = 0.7, 2.7, 3.2    # s: it stands before and after
+begin, end, duration = 0.7, 2.7, 7.6    # s: it stands before and after
+down, up, sit = (3.6, 4.4), (4.8, 5.6), (5.8, 7.0)  # s, from and to
+lowered, seated = np.radians([36, 80])  # of arms, and of hips and knees
 swing, knee, arm = np.radians([18, 35, 10])
 turn = np.radians(60)                   # in all, to its left
 hip = np.array([0.095, 0.92, 0.03])     # m, of its left side, as the other joints
@@ -65,16 +68,24 @@ def swung(points, joint, angle, weight):
     return np.c_[points[:, 0], joint[1] + c * y + s * z, joint[2] - s * y + c * z]
 
 
-def pose(rest, of_side, phase, strength):
-    """About the pelvis; strength fades the gait in and out."""
+def taken_down(points, joint, angle, weight):
+    """As swung, about z: a positive angle takes the arm at x > 0 down."""
+    c, s = np.cos(weight * angle), np.sin(weight * angle)
+    x, y = points[:, 0] - joint[0], points[:, 1] - joint[1]
+    return np.c_[joint[0] + c * x + s * y, joint[1] - s * x + c * y, points[:, 2]]
+
+
+def pose(rest, of_side, phase, strength, lowering, sitting):
+    """About the pelvis; strength fades the gait in and out, lowering and sitting go from 0 to 1."""
     points = rest
     for side, (leg_weight, shin_weight, arm_weight) in zip((1, -1), of_side):
         at = 1.0 if side == 1 else mirrored
         forwards = side * strength * np.sin(phase)
         bent = strength * max(0.0, side * np.cos(phase)) ** 2  # the leg that comes forward
-        points = swung(points, knee_joint * at, -knee * bent, shin_weight)
-        points = swung(points, hip * at, swing * forwards + 0.4 * knee * bent, leg_weight)
+        points = swung(points, knee_joint * at, -knee * bent - seated * sitting, shin_weight)
+        points = swung(points, hip * at, swing * forwards + 0.4 * knee * bent + seated * sitting, leg_weight)
         points = swung(points, shoulder * at, -arm * forwards, arm_weight)
+        points = taken_down(points, shoulder * at, side * lowered * lowering, arm_weight)
     return points
 
 
@@ -93,7 +104,14 @@ def frames(rest, faces):
     heading = turn * s
     step = np.diff(t, prepend=0.0) * speed
     place = np.cumsum(np.c_[step * np.sin(heading), 0 * step, step * np.cos(heading)], 0)
-    poses = [pose(rest, (left, right), phase[k], strength[k]) for k in range(0, len(t), fine)]
+    lowering = smooth((t - down[0]) / (down[1] - down[0])) - smooth((t - up[0]) / (up[1] - up[0]))
+    sitting = smooth((t - sit[0]) / (sit[1] - sit[0]))
+    poses = [pose(rest, (left, right), phase[k], strength[k], lowering[k], sitting[k]) for k in range(0, len(t), fine)]
+    feet = rest[:, 1] < 0.1
+    for k, points in zip(range(0, len(t), fine), poses):  # both feet stay where they are while it sits down
+        if sitting[k] > 0:
+            back = rest[feet].mean(0)[2] - points[feet].mean(0)[2]
+            place[k] += back * np.array([np.sin(heading[k]), 0, np.cos(heading[k])])
     # The lower foot is on the ground, nearly: the bob is smoothed.
     lowest = np.convolve(np.pad([p[:, 1].min() for p in poses], 2, "edge"), np.array([1, 2, 3, 2, 1]) / 9, "valid")
     place[::fine, 1] = lowest[0] - lowest
@@ -105,7 +123,7 @@ def frames(rest, faces):
 
 def main():
     body = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else here / "body.obj"
-    out = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else here.parent / "motions" / "turn-and-step.pc2"
+    out = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else here.parent / "motions" / "man.pc2"
     rest, faces = read(body)
     all_frames = list(frames(rest, faces))
     out.parent.mkdir(parents=True, exist_ok=True)
