@@ -176,7 +176,9 @@ void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX
   const Lowest end = lowest_point(
       Corners(face, x_new), [&](const Vec3& p) { return body.near_end(p); }, offset, likely);
   if (start.distance > offset && end.distance > offset) return;  // the triangle passes by
-  const ContactPlane plane = body.plane(start.point, body.at_start(start.point), body.carried(start.point));
+  const SurfacePoint below = body.at_start(start.point);
+  if (below.covered) return;  // its vertices go with the body
+  const ContactPlane plane = body.plane(start.point, below, body.carried(start.point));
   const double depth = std::max(plane.gap + body.obstacle().margin - offset, -std::max(recovery, offset));
   FaceContact contact{.body = body.number(),
                       .face = f,

@@ -195,7 +195,7 @@ double ParticleContacts::imbalance(const Bodies& bodies, const StepMotion& step,
   for (const Contact& c : trial_) {
     const Vec3 v_end = v.segment<3>(3 * c.particle), held = r.segment<3>(3 * c.particle);
     normal += std::pow(wrong_normal(step, c, mean_velocity(step, c.particle, x_new), held), 2);
-    if (c.active()) friction += std::pow(wrong_friction(bodies, step, c, v_end, held), 2);
+    if (c.active() && !c.clamped) friction += std::pow(wrong_friction(bodies, step, c, v_end, held), 2);
   }
   for (const auto& found : found_) {
     contacts += found.size();
@@ -210,6 +210,7 @@ double ParticleContacts::imbalance(const Bodies& bodies, const StepMotion& step,
 // The square root of the sum of squares of the impulses along the normals that should not be, or are missing.
 double ParticleContacts::wrong_normal(const StepMotion& step, const Contact& c, const Vec3& v,
                                       const Vec3& r) {
+  if (c.clamped) return 0;
   double squares = 0;
   for (int k = c.planes; k < c.known; ++k) squares += std::pow(passing_impulse(step, c, k, v), 2);
   const std::array<double, 3> lambda = multipliers(c, r);
@@ -230,7 +231,7 @@ double ParticleContacts::wrong_friction(const Bodies& bodies, const StepMotion& 
 
 void ParticleContacts::settle(const Bodies& bodies, const StepMotion& step, const VecX& v, const VecX& r) {
   for (Contact& c : trial_) {
-    if (!c.active()) continue;
+    if (!c.active() || c.clamped) continue;
     c.normal_impulse = normal_impulse(c, r.segment<3>(3 * c.particle));
     const double slip = tangential(c, v.segment<3>(3 * c.particle) - c.body_velocity()).norm();
     const double most = friction_of(bodies, c).kinetic * c.normal_impulse;
@@ -242,6 +243,7 @@ bool ParticleContacts::react(const Bodies& bodies, const StepMotion& step, const
                              const VecX& x_new, double noise) {
   bool changed = false;
   for (Contact& c : trial_) {
+    if (c.clamped) continue;
     const double too_small = noise * step.mass(c.particle);
     const Vec3 v_end = v.segment<3>(3 * c.particle), held = r.segment<3>(3 * c.particle);
     if (catch_again(step, c, mean_velocity(step, c.particle, x_new), held, too_small) ||

@@ -41,12 +41,12 @@ SurfacePoint MovingBody::at_start(const Vec3& x) const { return closest(obstacle
 
 SurfacePoint MovingBody::near_start(const Vec3& x) const {
   const SurfacePoint s = at_start(x);
-  return {s.distance, start_.direction_to_world(s.normal)};
+  return {s.distance, start_.direction_to_world(s.normal), s.covered};
 }
 
 SurfacePoint MovingBody::near_end(const Vec3& x) const {
   const SurfacePoint s = closest(obstacle_.shape, end_.to_body(x), 1);
-  return {s.distance, end_.direction_to_world(s.normal)};
+  return {s.distance, end_.direction_to_world(s.normal), s.covered};
 }
 
 Vec3 MovingBody::carried(const Vec3& x) const {
@@ -81,13 +81,15 @@ ContactPlane MovingBody::plane(const Vec3& x, const SurfacePoint& at_start, cons
   const Vec3 n = deforms() ? closest(obstacle_.shape, X, 1).normal : at_start.normal;
   const Vec3 slid = way - n.dot(way) * n;
   const SurfacePoint s = closest(obstacle_.shape, X + slid, 1);
+  // Where the body closes on the particle within the step, the surface at the end is no way out.
+  if (s.covered) return plane_at(x, at_start.normal, at_start.distance - obstacle_.margin);
   return plane_at(x, s.normal, s.distance - s.normal.dot(slid) - obstacle_.margin);
 }
 
 std::optional<ContactPlane> MovingBody::meeting(const Vec3& x0, const Vec3& x1) const {
   const Vec3 X0 = start_.to_body(x0), X1 = end_.to_body(x1);
   const auto hit = first_hit(obstacle_.shape, X0, X1, obstacle_.margin);
-  if (!hit) return std::nullopt;
+  if (!hit || hit->surface.covered) return std::nullopt;
   const SurfacePoint& s = hit->surface;
   const Vec3 way = X1 - drape::carried(obstacle_.shape, X0);  // relative to the surface
   const double gap = -hit->fraction * way.dot(s.normal) + s.distance - obstacle_.margin;
@@ -103,6 +105,7 @@ std::optional<Vec3> MovingBody::stop(const Vec3& x0, Vec3& x1, double start_dist
     end = drape::carried(obstacle_.shape, X0 + hit->fraction * (X1 - X0), hit->fraction);
   }
   const SurfacePoint s = closest(obstacle_.shape, end, 1);
+  if (s.covered) return std::nullopt;  // the body has closed on it
   const double floor = std::min(start_distance, 0.0);
   if (s.distance < floor) end += (floor - s.distance) * s.normal;
   if (end == X1) return std::nullopt;

@@ -68,6 +68,7 @@ class MovingBody {
   // The most by which the distance of a particle from the body can change on its way [m].
   double travel(const Vec3& x0, const Vec3& x1) const;
   ContactPlane plane(const Vec3& x, const SurfacePoint& at_start, const Vec3& x_new) const;
+  ContactPlane plane_at(const Vec3& x, const Vec3& normal, double gap) const;  // normal: in the body's frame
   // How far the way leads away from the plane that moves with the body [m]; negative where it comes nearer.
   double approach(const Vec3& x0, const Vec3& x1, const ContactPlane& plane) const {
     return (x1 - carried(x0)).dot(plane.normal);
@@ -81,7 +82,6 @@ class MovingBody {
 
  private:
   bool deforms() const { return deforming(obstacle_.shape) != nullptr; }
-  ContactPlane plane_at(const Vec3& x, const Vec3& normal, double gap) const;
 
   Obstacle obstacle_;
   int number_;

@@ -20,6 +20,13 @@ bool can_hold(Contact contact, const ContactPlane& plane) {
   return add_or_exchange(contact, Vec3::Zero(), plane);
 }
 
+// The contact of a particle that is at x, where the body overlaps itself.
+Contact clamped(int particle, const MovingBody& body, const SurfacePoint& start, const Vec3& x) {
+  Contact contact{.particle = particle, .planes = 1, .known = 1, .plane = {}, .clamped = true};
+  contact.plane[0] = body.plane_at(x, start.normal, start.distance - body.obstacle().margin);
+  return contact;
+}
+
 // Calls f(particle, chunk) for every particle that is not held.
 template <class F>
 void for_free(const StepMotion& step, const F& f) {
@@ -104,7 +111,7 @@ void ParticleContacts::take_found(double h) {
       contact_of_[c.particle] = static_cast<int>(trial_.size());
       trial_.push_back(c);
       std::array<double, 3> out = {};
-      for (int k = 0; k < c.planes; ++k) {
+      for (int k = 0; k < c.planes && !c.clamped; ++k) {
         const auto p = static_cast<std::size_t>(k);
         out[p] = std::clamp(-c.plane[p].gap, 0.0, recovery_speed_ * h);
       }
@@ -130,6 +137,10 @@ void ParticleContacts::look_for(int particle, const Bodies& bodies, const StepMo
     clearance(o, particle) = start.distance;
     deepest = std::max(deepest, -start.distance);
     if (start.distance > margin + std::max(travel, touching_range(margin))) continue;
+    if (start.covered) {
+      found.push_back(clamped(particle, body, start, x));
+      return;
+    }
     const ContactPlane plane = body.plane(x, start, x + step.h * v);
     const bool touched = knows(before, o);
     if (touched ? plane.gap < touching_range(margin)
@@ -186,6 +197,7 @@ bool ParticleContacts::hold_also(const StepMotion& step, const Vec3& r, Contact&
 
 void ParticleContacts::look_along(int particle, const Bodies& bodies, const StepMotion& step,
                                   const Contact* known, const Vec3& x_new, std::vector<Contact>& found) {
+  if (known && known->clamped) return;
   const Vec3 x = step.place(particle);
   Contact contact{.particle = particle, .plane = {}};
   for (int o = 0; o < static_cast<int>(bodies.size()); ++o) {
@@ -223,6 +235,11 @@ void ParticleContacts::guard(const Bodies& bodies, const StepMotion& step, VecX&
 void ParticleContacts::guard(int particle, const Bodies& bodies, const StepMotion& step, VecX& x_new,
                              VecX& v_new, int& guarded) {
   const Vec3 x = step.place(particle);
+  if (const int known = contact_of_[particle]; known >= 0 && trial_[known].clamped) {
+    for (const MovingBody& body : bodies)
+      clearance(body.number(), particle) = 0;  // it was looked for at one only
+    return;
+  }
   for (int o = 0; o < static_cast<int>(bodies.size()); ++o) {
     const MovingBody& body = bodies[o];
     Vec3 end = x_new.segment<3>(3 * particle);

@@ -72,7 +72,7 @@ bool ParticleContacts::respond(ContactMode mode, const MovingBody& body, const S
   const SurfacePoint start = body.at_start(x);
   clearance(body.number(), contact.particle) = start.distance;
   deepest_[chunk] = std::max(deepest_[chunk], -start.distance);
-  if (start.distance > obstacle.margin + std::max(reach, touch)) return false;
+  if (start.covered || start.distance > obstacle.margin + std::max(reach, touch)) return false;
   const ContactPlane nearest = body.plane(x, start, x_mean);
   if (nearest.gap < touch && changed_by(nearest)) return true;
   if (!(nearest.gap < reach)) return false;

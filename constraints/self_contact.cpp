@@ -20,6 +20,9 @@ constexpr double load_sinks = 0.1, arrival_sinks = 0.5;  // shares of the thickn
 // How much stiffer a contact becomes so, at most: with steps of 10 ms and r = 1 mm it then bears 3000 times the weight of
 // its lighter side.
 constexpr double stiffest = 1000;
+// What is left of its stiffness after a step, at least: where many layers press each other in turn, springs that were stiff
+// while they were pressed and soft before would make energy.
+constexpr double slowest_fall = 0.9;
 
 }  // namespace
 
@@ -178,9 +181,30 @@ void SelfContacts::stiffen(SelfContact& contact, const StepMotion& step) const {
   if (kappa_ < 1) return;
   const double mass = contact.stiffness * step.h * step.h / kappa_;
   const double stops = mass * std::max(0.0, -contact.normal.dot(contact.over(step.v))) / step.h;
-  const double load = std::max(contact.before / load_sinks, stops / arrival_sinks);
   const double sinks = std::max(contact.thickness, 0.1 * both_thicknesses(contact.who));
-  contact.stiffness = std::clamp(load / sinks, contact.stiffness, stiffest * contact.stiffness);
+  double bears = contact.load / (load_sinks * sinks);
+  if (step.last_h > 0) contact.stiff *= step.last_h * step.last_h / (step.h * step.h);
+  if (contact.stiff > 0) bears = std::max(std::sqrt(bears * contact.stiff), slowest_fall * contact.stiff);
+  contact.stiffness = std::clamp(std::max(bears, stops / (arrival_sinks * sinks)), contact.stiffness,
+                                 stiffest * contact.stiffness);
+}
+
+// Makes a contact that let its sides pass on the way to x_new as stiff as what pushes there asks for.
+bool SelfContacts::stiffen_to_hold(SelfContact& contact, const VecX& x_new) const {
+  constexpr double most = 30;  // times as stiff as before
+  const StepMotion& step = surfaces_->step();
+  double inverse = 0;  // 1/m
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double w = contact.weights[k] + contact.of_body[k], mass = step.mass(contact.who.v[k]);
+    if (mass > 0) inverse += w * w / mass;
+  }
+  const double limit = stiffest * kappa_ / (step.h * step.h * inverse);
+  const double sinks = std::max(contact.thickness, 0.1 * both_thicknesses(contact.who));
+  const double wanted = contact.push_at(contact.at(x_new)) / (arrival_sinks * sinks);
+  if (kappa_ < 1 || std::min(wanted, limit) < 1.01 * contact.stiffness) return false;
+  contact.stiffness = std::min({wanted, most * contact.stiffness, limit});
+  contact.active = true;
+  return true;
 }
 
 void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<MovingBody>& bodies,
@@ -329,6 +353,10 @@ void SelfContacts::end_step(const VecX& x_new) {
     const double push = c.push_at(p);
     c.hold = c.rub_at(p, push);
     c.before = push;
+    c.load = std::any_of(c.particles.begin(), c.particles.end(), [&](int v) { return is_stopped(v); })
+                 ? std::max(push, c.push)
+                 : push;
+    c.stiff = c.stiffness;
     pushing_ += push > 0;
   }
   const VecX& ends = surfaces_->with(x_new);

@@ -9,7 +9,9 @@
 //         t = d while |d| <= mu f (it sticks), else mu f d/|d| (it slides)         [Cundall & Strack 1979]
 //     k = kappa m / h^2,  1/m = sum w_k^2 / m_k     as stiff as the time step allows, whatever the mesh: a layer sinks
 //                                                   into the thickness by g h^2 / kappa, 33 um with h = 10 ms
-//   kappa is larger, up to a limit, where the load, or what arrives, would sink in by more than a share of r.
+//   kappa is larger, up to a limit, where the load, or what arrives, would sink in by more than a share of r. It goes half
+//   of the way to what the load asks for in a step, in ratios, and falls by a tenth at most: what shares a load would else
+//   take it by turns.
 //   Within a solve a contact is linear: it acts or not, and friction is a spring weakened to share (t_0 - k s). With such
 //   springs no solve goes too far, but where many contacts slide, each solve takes away only an eighth of the error. So what
 //   slid in the solve before, too, is linearised as the force along d that friction is, with the spring across d
@@ -80,14 +82,16 @@ struct SelfContact {
   double thickness;               // r [m]
   double friction;                // mu
   double before = 0;              // f at the end of the last step [N]
-  Vec3 hold = Vec3::Zero();       // t_0 [N]
-  bool active = false;            // whether it acts in the next solve
-  double push = 0;                // f of the last solve [N]
-  double share = 0;               // of the spring that friction is in the next solve, 0 to 1
-  Vec3 slides = Vec3::Zero();     // d/|d| where friction is a force along d in the next solve, else zero
-  double slide = 0;               // that force [N]
-  double spring = 1;              // what is left there of the spring along d, as a share of the weakened one
-  bool slid = false;  // whether it pushed and slid at the point that the contacts were made for last
+  double load = 0;           // f there, or in the last solve of the step where the guard then stopped it [N]
+  double stiff = 0;          // k of the last step [N/m]; 0: there was no contact
+  Vec3 hold = Vec3::Zero();  // t_0 [N]
+  bool active = false;       // whether it acts in the next solve
+  double push = 0;           // f of the last solve [N]
+  double share = 0;          // of the spring that friction is in the next solve, 0 to 1
+  Vec3 slides = Vec3::Zero();  // d/|d| where friction is a force along d in the next solve, else zero
+  double slide = 0;            // that force [N]
+  double spring = 1;           // what is left there of the spring along d, as a share of the weakened one
+  bool slid = false;           // whether it pushed and slid at the point that the contacts were made for last
 
   // The slope of the energy along a way of p [N]: of the law, and of the linear contact of the solve.
   Vec3 slope(const Vec3& p) const { return -push_at(p) * normal - rub_at(p, push); }
@@ -168,7 +172,8 @@ class SelfContacts {
   bool react(const VecX& v, const VecX& r, const VecX& x_new, double curvature);
   // The velocity of that point [m/s]; null before the first react() of a step.
   const VecX* accepted_velocity() const { return accepted_ ? &v_at_ : nullptr; }
-  // Adds the pairs that would meet on the way to x_new and are no contacts yet; true when there are any.
+  // Adds the pairs that would meet on the way to x_new and are no contacts yet, and makes those stiffer that are; true when
+  // there are any.
   bool meet(const VecX& x_new);
   // Shortens the ways to x_new so that nothing meets; returns how many particles it stopped. on_bodies: the contacts with
   // bodies. in_common: whether what is stopped goes on by a common way, which may lead into a body; without it, everything
@@ -199,7 +204,7 @@ class SelfContacts {
   Vec3 way_with_body(int particle, const StepMotion& step);
   void go_shares(const StepMotion& step, const VecX& x_new, bool in_common);
   void stop(const std::vector<internal::Meeting>& failing, const StepMotion& step, const VecX& x_new,
-            bool by_shares, bool in_common);
+            bool in_common);
   bool let_bodies_yield(const std::vector<internal::Meeting>& failing);
   void stop_tangles(const std::vector<int>& tangles);
   void find_relief(const StepMotion& step, const std::vector<Contact>& on_bodies);
@@ -222,6 +227,7 @@ class SelfContacts {
                                         const Nearest& near) const;
   void take_over(SelfContact& contact, double recovery) const;
   void stiffen(SelfContact& contact, const StepMotion& step) const;
+  bool stiffen_to_hold(SelfContact& contact, const VecX& x_new) const;
   double both_thicknesses(const Encounter& e) const;
   double thickness_of(const Encounter& e) const;
   double friction_of(const Encounter& e) const;
@@ -243,6 +249,7 @@ class SelfContacts {
   std::vector<double> thickness_, friction_;     // m, mu
   std::vector<int> piece_, sheet_;               // the connected piece, and the sheet, that it belongs to
   std::vector<char> stopped_;                    // is_stopped(), by particle of the cloth
+  std::vector<int> stops_;                       // how often its way was shortened in this step
   std::vector<char> pass_;                       // let_pass()
   VecX rest_;                                    // places of the cloth when the faces were added [m]
   std::vector<char> tangled_;                    // whether it was in a tangle there

@@ -15,11 +15,11 @@ using namespace internal;
 
 namespace {
 
-// In so many rounds ways are shortened by shares, and then given up. What still fails then stands still, and after the last
-// round everything does.
-constexpr int rounds_by_shares = 8, rounds_in_common = 24, most_rounds = 40;
+// So often the way of a particle is shortened by shares, and then given up. What still fails after so many rounds stands still,
+// and after the last round everything does.
+constexpr int stops_by_shares = 8, rounds_in_common = 40, most_rounds = 64;
 
-// No two things come nearer than this [m]: places that are written as floats then do not cross, either.
+// No two things end a step nearer than this, or come nearer than half of it on the way [m]: places that are written as floats then do not cross, either.
 double floor_of(const VecX& x, const VecX& x_new) {
   const double largest = std::max(x.lpNorm<Eigen::Infinity>(), x_new.lpNorm<Eigen::Infinity>());
   return 4 * std::sqrt(3.0) * std::ldexp(largest, -24);
@@ -51,11 +51,18 @@ bool SelfContacts::meet(const VecX& of_cloth) {
   const VecX& x_new = surfaces_->with(of_cloth);
   if (!follow_all(step.x, x_new)) return false;
   const auto before = touching_.size();
+  met_.clear();
   const std::vector<Meeting>& met = meetings(step.x, x_new);
   is_proven_ = met.empty();
   if (is_proven_) proven_ = of_cloth;
+  const auto by_pair = [](const SelfContact& a, const Encounter& who) { return a.who < who; };
+  bool stiffer = false;
   for (const Meeting& meeting : met) {
-    if (has_contact(meeting.who)) continue;
+    const auto known = std::lower_bound(touching_.begin(), touching_.end(), meeting.who, by_pair);
+    if (known != touching_.end() && known->who == meeting.who) {
+      stiffer = stiffen_to_hold(*known, x_new) || stiffer;
+      continue;
+    }
     if (const auto contact = contact_of(step, meeting.who, meeting.approach.last)) met_.push_back(*contact);
   }
   for (SelfContact& contact : met_) {
@@ -64,11 +71,15 @@ bool SelfContacts::meet(const VecX& of_cloth) {
     contact.now = contact.at(x_new);
     touching_.push_back(contact);
   }
-  met_.clear();
-  if (touching_.size() == before) return false;
+  if (touching_.size() == before && !stiffer) return false;
   accepted_ = false;
   std::sort(touching_.begin(), touching_.end(),
             [](const SelfContact& a, const SelfContact& b) { return a.who < b.who; });
+  for (const SelfContact& found : met_) {
+    SelfContact& contact = *std::lower_bound(touching_.begin(), touching_.end(), found.who, by_pair);
+    take_over(contact, recovery_);
+    stiffen(contact, step);
+  }
   return true;
 }
 
@@ -156,14 +167,16 @@ void SelfContacts::go_shares(const StepMotion& step, const VecX& x_new, bool in_
 
 // Joins the particles of the pairs to zones, and shortens the way of each against that of its zone.
 void SelfContacts::stop(const std::vector<Meeting>& failing, const StepMotion& step, const VecX& x_new,
-                        bool by_shares, bool in_common) {
+                        bool in_common) {
   shorter_ = way_;
   for (const Meeting& meeting : failing)
     for (int v : meeting.who.v) {
       zone_[zone_of(v)] = zone_of(meeting.who.v[0]);
       if (v >= cloth_particles()) continue;
+      const bool by_shares = stops_[v] < stops_by_shares;
       shorter_[v] = std::min(shorter_[v], by_shares ? 0.9 * meeting.approach.until * way_[v] : 0.0);
     }
+  for (std::size_t i = 0; i < way_.size(); ++i) stops_[i] += shorter_[i] < way_[i];
   way_ = shorter_;
   go_shares(step, x_new, in_common);
 }
@@ -212,7 +225,7 @@ void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_co
         --round;  // fewer particles can be pinched every time
         continue;
       }
-      stop(failing, step, x_new, round < rounds_by_shares, together);
+      stop(failing, step, x_new, together);
       continue;
     }
     if (!crossing()) return;
@@ -255,6 +268,7 @@ int SelfContacts::guard(const std::vector<MovingBody>& bodies, const std::vector
   for (const Contact& contact : on_bodies)
     if (contact.active()) hold_[contact.particle] = Held::by_body;
   std::fill(way_.begin(), way_.end(), 1.0);
+  stops_.assign(way_.size(), 0);
   still_.assign(way_.size(), 0);
   zone_.resize(way_.size());
   std::iota(zone_.begin(), zone_.end(), 0);

@@ -108,8 +108,8 @@ std::optional<SelfContact> SelfContacts::contact_of(const StepMotion& step, cons
   return contact;
 }
 
-// The forces of the last step, and the thickness reached there: of the same pair, or of the contact that the vertex
-// had on the same side.
+// The forces of the last step, and the thickness reached there: of the same pair, or of a contact that the vertex
+// had on the same side and has no more.
 void SelfContacts::take_over(SelfContact& contact, double recovery) const {
   const SelfContact* at = find(last_, contact.who);
   if (!at && !contact.who.edges) {
@@ -122,10 +122,12 @@ void SelfContacts::take_over(SelfContact& contact, double recovery) const {
     while (c != last_.end() && of_vertex(*c) &&
            (c->normal.dot(contact.normal) < same_way || !share_a_particle(c->who, contact.who)))
       ++c;
-    if (c != last_.end() && of_vertex(*c)) at = &*c;
+    if (c != last_.end() && of_vertex(*c) && !has_contact(c->who)) at = &*c;
   }
   if (!at) return;
   contact.before = at->before;
+  contact.load = at->load;
+  contact.stiff = at->stiff;
   contact.hold = across(contact.normal, at->hold);
   contact.thickness =
       std::min(thickness_of(contact.who), std::max(contact.thickness, at->thickness + recovery));
@@ -167,7 +169,8 @@ void SelfContacts::look_at_ends(std::vector<Meeting>::iterator begin,
 }
 
 // A vertex has one contact with each sheet beside it: the nearest, of triangles that share a particle and lie the
-// same way. Two edges that cross are a contact where they are clearly nearer than their ends are to the other sheet, and
+// same way. What pushed the vertex over the inside of a triangle goes on: in a valley two triangles bear it, and would do so by
+// turns. Two edges that cross are a contact where they are clearly nearer than their ends are to the other sheet, and
 // stay one as long as they are near: or a rim would drop and be lifted by turns.
 void SelfContacts::find_contacts(const StepMotion& step) {
   touching_.clear();
@@ -185,6 +188,12 @@ void SelfContacts::find_contacts(const StepMotion& step) {
   const auto add = [&](const Meeting& m) {
     if (const auto contact = contact_of(step, m.who, m.approach.last)) touching_.push_back(*contact);
   };
+  const auto goes_on = [&](const Meeting& m) {
+    const SelfContact* const before = find(last_, m.who);
+    const auto& w = m.approach.last.weights;
+    return before && before->before > 0 &&
+           std::all_of(w.begin() + 1, w.end(), [](double k) { return k < -1e-3; });
+  };
   const auto edges =
       std::partition(found.begin(), found.end(), [](const Meeting& m) { return !m.who.edges; });
   std::sort(found.begin(), edges, [](const Meeting& a, const Meeting& b) { return a.who < b.who; });
@@ -200,6 +209,10 @@ void SelfContacts::find_contacts(const StepMotion& step) {
     nearest_[vertex] = first->approach.last.distance;
     for (; first != last; ++first) {
       bool told = false;
+      if (goes_on(*first)) {
+        add(*first);
+        continue;
+      }
       for (auto c = touching_.rbegin(); c != touching_.rend() && c->who.v[0] == vertex && !told; ++c)
         told = share_a_particle(c->who, first->who) && c->normal.dot(first->approach.last.normal) > same_way;
       if (!told) add(*first);

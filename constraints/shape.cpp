@@ -440,7 +440,7 @@ double largest_displacement(const Shape& shape) {
 Vec3 carried(const Shape& shape, const Vec3& x, double s) {
   const DeformingBody* const body = deforming(shape);
   if (!body || body->surface->largest_displacement() == 0) return x;
-  return body->surface->place(body->surface->anchor(x, s), 1);
+  return body->surface->carried(x, s);
 }
 
 }  // namespace drape

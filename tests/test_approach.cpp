@@ -112,6 +112,27 @@ TEST_CASE("what is proven to stay apart stays apart, and the rest comes near", "
   CHECK(near > 100);
 }
 
+TEST_CASE("two edges that nearly touch are proven apart where they part while they turn", "[approach]") {
+  Random random(3);
+  std::uniform_real_distribution<double> place(0.1, 0.9), number(-1, 1);
+  for (int k = 0; k < 2000; ++k) {
+    const double distance = 1e-7, gap = k % 2 == 0 ? 1e-7 : 4e-7, parted = 1e-4 * place(random),
+                 turned = 5 * parted * number(random);
+    const FourPoints start = {Vec3(-place(random), distance, 0), Vec3(place(random), distance, 0),
+                              Vec3(0, 0, -place(random)), Vec3(0, 0, place(random))};
+    FourPoints end = start;
+    for (int c : {0, 1}) end[c] += Vec3(0.01 * number(random), parted + turned * start[c][0], 0);
+    INFO("pair " << k);
+    const Approach found = approach_from_within(true, start, end, gap);
+    CHECK(found.apart);
+    for (int i = 0; i <= 60; ++i) {
+      const double now = nearest(true, between(start, end, i / 60.0)).distance;
+      CHECK(now > 0.4 * distance);
+    }
+    CHECK(nearest(true, end).distance > 0.99 * distance);
+  }
+}
+
 TEST_CASE("a pair that stands, or goes as one, is apart however near it is", "[approach]") {
   const FourPoints x = {Vec3(0.2, 1e-8, 0.3), Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)};
   CHECK(approach_from_within(false, x, x, 1e-6).apart);

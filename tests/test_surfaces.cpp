@@ -253,6 +253,63 @@ TEST_CASE("bodies that close on folded cloth do not press it through itself, and
   }
 }
 
+TEST_CASE("where a body is pressed into itself, cloth stays between, keeps still, and comes out where it was",
+          "[surfaces]") {
+  for (int n : {12, 17, 23}) {
+    INFO(n << " vertices along an edge");
+    // Two blocks, one mesh, with a sheet hung between them. They close until they overlap by 2 cm, and open again.
+    TriangleMesh body = box({0.2, 0.2, 0.06});
+    const int first = body.vertex_count();
+    const TriangleMesh one = box({0.19, 0.19, 0.06});
+    body.positions.insert(body.positions.end(), one.positions.begin(), one.positions.end());
+    for (const Triangle& t : one.triangles)
+      body.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    const auto frames = std::make_shared<MeshFrames>();
+    const auto at = [&](double apart) {
+      std::vector<Vec3> places = body.positions;
+      for (int i = 0; i < body.vertex_count(); ++i)
+        places[i][2] += (i < first ? 1 : -1) * (0.03 + 0.5 * apart);
+      return places;
+    };
+    for (const auto& [time, apart] : {std::pair(0.0, 0.03), std::pair(0.3, -0.02), std::pair(0.9, -0.02),
+                                      std::pair(1.2, 0.03), std::pair(1.3, 0.03)})
+      frames->add(time, at(apart));
+    TriangleMesh start = body;
+    start.positions = at(0.03);
+    Beside all;
+    all.constraints->add(Obstacle{.shape = DeformingBody{std::make_shared<SurfaceDistance>(start), frames}});
+    TriangleMesh sheet = flat(n, Kind::irregular, 0.3);
+    for (Vec3& x : sheet.positions) x = Vec3(x[0], x[2], 0.001);
+    all.add_sheet(sheet);
+    for (int i = 0; i < sheet.vertex_count(); ++i)
+      if (sheet.positions[i][1] > 0.14) all.constraints->pin(i);
+    all.use("implicit-euler", "auto");
+    double deepest = 0;
+    int pinched = 0;
+    for (int k = 0; k < 200; ++k) {
+      INFO("step " << k);
+      const StepReport report = all.advance(0.01);
+      REQUIRE(report.done);
+      REQUIRE(crossing_count(crossing_contours(unstacked(all.state.x), sheet.triangles)) == 0);
+      deepest = std::max(deepest, report.penetration);
+      pinched = std::max(pinched, report.pinched);
+      if (k == 85) {
+        // What is in between keeps still. Edges that lead out of there are stretched.
+        for (int i = 0; i < sheet.vertex_count(); ++i)
+          if (std::abs(all.state.x[3 * i]) < 0.08 && std::abs(all.state.x[3 * i + 1]) < 0.08)
+            CHECK(all.state.v.segment<3>(3 * i).norm() < 1e-3);
+        CHECK(largest_strain(all.cloths, all.state.x) < 0.6);
+      }
+    }
+    CHECK(pinched > 20);
+    CHECK(deepest >
+          0.05);  // the true depth: the sheet is in the middle of blocks that are 20 cm high and wide
+    CHECK(all.crossings() == 0);
+    for (const double depth : all.constraints->penetration(all.state.x)) CHECK(depth == 0);
+    CHECK(largest_strain(all.cloths, all.state.x) < 0.05);
+  }
+}
+
 TEST_CASE("cloth on the surface of a body has the same bits on any number of threads", "[surfaces]") {
   check_same_bits([] {
     Beside all;

@@ -100,7 +100,7 @@ TEST_CASE("two sheets that pass through each other come apart, and stay so", "[s
         REQUIRE(at_start > 3);
         const Vec3 centre = two.centre();
         int most = 0, clean = 0;
-        for (int k = 0; k < 600 && clean < 20; ++k) {
+        for (int k = 0; k < 700 && clean < 20; ++k) {
           const StepReport report = two.integrator->advance(two.state, 0.01);
           REQUIRE(report.done);
           const int now = two.crossings();

@@ -10,7 +10,8 @@
 namespace drape {
 namespace {
 
-constexpr int most_looks = 50;
+constexpr int most_looks = 100;
+constexpr double least_step = 1e-7;
 
 // The places along the edges a b and c d, 0 to 1, of the points that are nearest to each other.
 //   [Ericson 2005, Real-time collision detection, 5.1.9]
@@ -28,20 +29,28 @@ std::pair<double, double> closest_on_edges(const Vec3& a, const Vec3& b, const V
   return {s, t};
 }
 
+// What must stay between the two sides on the way, and at its end [m].
+struct Gaps {
+  double on_the_way, at_end;
+};
+
 // `found` has the nearest() at s = 0 and the separation there.
-Approach advance(bool edges, const FourPoints& start, const FourPoints& end, double gap, Approach found) {
+Approach advance(bool edges, const FourPoints& start, const FourPoints& end, const Gaps& gaps,
+                 Approach found) {
   double now = found.start;
   FourPoints here = start;
-  for (int look = 0; look < most_looks && now > gap; ++look) {
+  for (int look = 0; look < most_looks && now > gaps.on_the_way; ++look) {
     const double last = separation(edges, end, found.last.normal);
-    if (last > gap) {
+    const bool clear = last > gaps.on_the_way;
+    if (last > gaps.at_end || (clear && separation(edges, end, nearest(edges, end).normal) > gaps.at_end)) {
       found.until = 1;
       found.apart = true;
       return found;
     }
-    const double step = 0.99 * (now - gap) / (now - last) * (1 - found.until);
+    const double from = clear ? gaps.at_end : gaps.on_the_way;
+    const double step = now > from ? 0.99 * (now - from) / (now - last) * (1 - found.until) : 0;
     found.until += step;
-    if (step < 1e-4) break;
+    if (clear || step < least_step) break;
     for (std::size_t k = 0; k < 4; ++k) here[k] = start[k] + found.until * (end[k] - start[k]);
     found.last = nearest(edges, here);
     now = separation(edges, here, found.last.normal);
@@ -98,7 +107,7 @@ double separation(bool edges, const FourPoints& x, const Vec3& n) {
 Approach approach(bool edges, const FourPoints& start, const FourPoints& end, double gap,
                   const Vec3& likely) {
   if (const Approach found = along(edges, start, end, likely, gap); found.apart) return found;
-  return advance(edges, start, end, gap, begin(edges, start));
+  return advance(edges, start, end, {gap, gap}, begin(edges, start));
 }
 
 Approach approach_from_within(bool edges, const FourPoints& start, const FourPoints& end, double gap,
@@ -113,7 +122,10 @@ Approach approach_from_within(bool edges, const FourPoints& start, const FourPoi
     found.apart = true;
     return found;
   }
-  return advance(edges, start, end, std::min(gap, as_near * found.start), found);
+  // From near by only a way whose direction turns leads apart, and none keeps its distance at the start.
+  constexpr double on_the_way = 0.5;
+  const double at_end = std::min(gap, as_near * found.start);
+  return advance(edges, start, end, {on_the_way * at_end, at_end}, found);
 }
 
 }  // namespace drape

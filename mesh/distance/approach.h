@@ -50,8 +50,8 @@ struct Approach {
 // tried first.
 Approach approach(bool edges, const FourPoints& start, const FourPoints& end, double gap,
                   const Vec3& likely = Vec3::Zero());
-// The same; where they start nearer than the gap, they need not go farther apart. Two sides that touch at the start
-// count as apart.
+// The same for the end of the way; on the way half of the gap is enough. Where they start nearer than the gap, they need not
+// go farther apart. Two sides that touch at the start count as apart.
 Approach approach_from_within(bool edges, const FourPoints& start, const FourPoints& end, double gap,
                               const Vec3& likely = Vec3::Zero());
 

@@ -3,6 +3,9 @@
 // the side.
 //   phi(x) = s |x - c|,  s = sign((x - c) . n_c),  n_c the angle-weighted pseudo-normal of the feature at c
 //                         [Baerentzen & Aanaes 2005]
+// Where a closed body overlaps itself, the nearest point c may be on a part of the surface that lies inside. Then x is
+// inside, too (from outside a straight way to the nearest point meets no surface before), and the distance is that to
+// the nearest point that does not lie inside: on a face, or on the line along which two faces meet.
 // A surface at rest is searched with Embree's tree and keeps its normals. A moving surface is searched with
 // our own boxes, and its normals are made for the s that is asked for: normals interpolated between those at
 // the start and at the end of the step could tell the wrong side.
@@ -15,6 +18,7 @@
 
 #include "mesh/base/errors.h"
 #include "mesh/distance/closest_on_triangle.h"
+#include "mesh/distance/covered_faces.h"
 #include "mesh/distance/crossing.h"
 #include "mesh/distance/moving_boxes.h"
 #include "mesh/distance/surface_faces.h"
@@ -76,10 +80,12 @@ struct SurfaceDistance::Tree {
   Vec3 centre = Vec3::Zero();
   double size = 0;  // m, diagonal of the box
   std::optional<TriangleTree> standing;
+  CoveredFaces covered_at_start, covered_at_end;
 
   // The current step; the first call of move() makes it.
   bool moving = false;
   std::vector<Vec3> start, end;
+  std::vector<Vec3> looked_at;  // where covered_at_end is of
   SurfaceMotion motion;
   std::optional<MovingBoxes> boxes;
   std::vector<int> corner_start, corners;  // 3 face + k of the corners at each vertex, ascending
@@ -89,15 +95,37 @@ struct SurfaceDistance::Tree {
   void grow();
   void make_ready();
   void begin_step();
-  Candidate find(const Vec3& x, const SurfacePose<Standing>& pose) const;
-  Candidate find(const Vec3& x, const SurfacePose<Moving>& pose) const;
+  void look_for_covered();
+  const CoveredFaces& covered(double s) const { return s < 0.5 ? covered_at_start : covered_at_end; }
+  static double time_of(const SurfacePose<Standing>&) { return 1; }
+  static double time_of(const SurfacePose<Moving>& pose) { return pose.places().s; }
+  // The nearest point of those faces that take(the point of the face nearest to x) accepts.
+  template <class Take>
+  Candidate find(const Vec3& x, const SurfacePose<Standing>& pose, const Take& take) const;
+  template <class Take>
+  Candidate find(const Vec3& x, const SurfacePose<Moving>& pose, const Take& take) const;
+  // The nearest point of all of the surface. When that is covered, `deep` is set, and it is the nearest that is not.
+  template <class Places>
+  Candidate find(const Vec3& x, const SurfacePose<Places>& pose, bool& deep) const;
+  template <class Places>
+  bool is_covered(const Candidate& c, const SurfacePose<Places>& pose) const;
+  // The same, quicker, and not right where three parts of the body overlap.
+  template <class Places>
+  bool seems_covered(const Candidate& c, const SurfacePose<Places>& pose) const;
+  template <class Places>
+  void offer_lines(const Vec3& x, const std::vector<MeetingLine>& lines, const SurfacePose<Places>& pose,
+                   Candidate& best) const;
   Vec3 vertex_normal(int v, const SurfacePose<Standing>&) const { return vertex_normals[v]; }
   Vec3 vertex_normal(int v, const SurfacePose<Moving>& pose) const;
   template <class Places>
   Vec3 pseudo_normal(const Candidate& c, const SurfacePose<Places>& pose) const;
   template <class Places>
   SurfacePoint answer(const Vec3& x, const Candidate& c, const SurfacePose<Places>& pose) const;
+  template <class Places>
+  SurfacePoint closest(const Vec3& x, const SurfacePose<Places>& pose, Candidate& found) const;
   Vec3 displacement(int face, const Vec3& weights) const;
+  template <class Places>
+  Anchor anchor(const Vec3& x, const Candidate& c, const SurfacePose<Places>& pose) const;
 
   // Calls f(pose) with the configuration of the surface at s.
   template <class F>
@@ -114,6 +142,9 @@ SurfaceDistance::Tree::Tree(const TriangleMesh& given) : mesh(given), surface(su
   const SurfacePose<Standing> pose(surface, {mesh.positions});
   for (int f = 0; f < static_cast<int>(surface.faces.size()); ++f)
     for (int k = 0; k < 3; ++k) vertex_normals[surface.faces[f].v[k]] += pose.angle_weighted(f, k);
+  if (!surface.closed) return;
+  start = end = mesh.positions;
+  begin_step();
 }
 
 void SurfaceDistance::Tree::measure() {
@@ -150,6 +181,7 @@ void SurfaceDistance::Tree::begin_step() {
   motion = {};
   if (!boxes) make_ready();
   boxes->refit(surface.faces, start, end);
+  if (surface.closed) look_for_covered();
   if (!moving) return;
   for (int v : carriers) motion.mean += end[v] - start[v];
   motion.mean /= static_cast<double>(carriers.size());
@@ -159,14 +191,27 @@ void SurfaceDistance::Tree::begin_step() {
   }
 }
 
+// Most steps begin where the last one ended.
+void SurfaceDistance::Tree::look_for_covered() {
+  if (looked_at == start)
+    std::swap(covered_at_start, covered_at_end);
+  else
+    covered_at_start.look(surface.faces, start, *boxes);
+  covered_at_end.look(surface.faces, end, *boxes);
+  looked_at = end;
+}
+
 // The search radius stays a little longer than the best distance, by more than Embree's rounding to float, so
 // that no nearer triangle and no tie is passed over.
-Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Standing>&) const {
+template <class Take>
+Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Standing>&, const Take& take) const {
   Candidate best;
   const std::vector<Vec3>& p = mesh.positions;
   auto offer = [&](int f, float radius) {
     const Triangle& t = surface.faces[f].v;
-    if (!best.offer(f, x, p[t[0]], p[t[1]], p[t[2]])) return radius;
+    Candidate better = best;
+    if (!better.offer(f, x, p[t[0]], p[t[1]], p[t[2]]) || !take(better)) return radius;
+    best = better;
     return static_cast<float>(std::sqrt(best.squared) * (1 + 1e-5) + 1e-6 * size);
   };
   standing->near(x, offer);
@@ -174,19 +219,66 @@ Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Standing>
 }
 
 // Faces that have no area at s are left to their neighbours, unless no other face is there.
-Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Moving>& pose) const {
+template <class Take>
+Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Moving>& pose,
+                                      const Take& take) const {
   Candidate best;
   for (bool flat_ones : {false, true}) {
     boxes->near(x, pose.places().s, [&](int f) {
       Candidate better = best;
       if (better.offer(f, x, pose.corner(f, 0), pose.corner(f, 1), pose.corner(f, 2)) &&
-          (flat_ones || !pose.flat(f)))
+          (flat_ones || !pose.flat(f)) && take(better))
         best = better;
       return best.squared;
     });
     if (best.face >= 0) break;
   }
   return best;
+}
+
+template <class Places>
+Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Places>& pose, bool& deep) const {
+  const Candidate nearest = find(x, pose, [](const Candidate&) { return true; });
+  deep = nearest.face >= 0 && is_covered(nearest, pose);
+  if (!deep) return nearest;
+  Candidate best =
+      find(x, pose, [&](const Candidate& c) { return !seems_covered(c, pose) && !is_covered(c, pose); });
+  offer_lines(x, covered(time_of(pose)).lines(), pose, best);
+  deep = best.face >= 0;
+  return deep ? best : nearest;
+}
+
+// A point of a face that others pass through is looked at where it is at the end of the step, or at its start.
+template <class Places>
+bool SurfaceDistance::Tree::is_covered(const Candidate& c, const SurfacePose<Places>& pose) const {
+  const double s = time_of(pose);
+  const Cover cover = covered(s)[c.face];
+  if (cover != Cover::part) return cover == Cover::all;
+  return covered(s).covers(c.face, c.weights(pose), surface.faces, s < 0.5 ? start : end, *boxes);
+}
+
+// A point of a face is covered where it is behind the nearest of those that pass through the face.
+template <class Places>
+bool SurfaceDistance::Tree::seems_covered(const Candidate& c, const SurfacePose<Places>& pose) const {
+  const CoveredFaces& now = covered(time_of(pose));
+  if (now[c.face] != Cover::part) return now[c.face] == Cover::all;
+  Candidate nearest;
+  for (const int other : now.met_by(c.face))
+    nearest.offer(other, c.point, pose.corner(other, 0), pose.corner(other, 1), pose.corner(other, 2));
+  return nearest.face >= 0 && (c.point - nearest.point).dot(pseudo_normal(nearest, pose)) < 0;
+}
+
+template <class Places>
+void SurfaceDistance::Tree::offer_lines(const Vec3& x, const std::vector<MeetingLine>& lines,
+                                        const SurfacePose<Places>& pose, Candidate& best) const {
+  for (const MeetingLine& line : lines) {
+    const Vec3 from = line.at(0, pose.places()), way = line.at(1, pose.places()) - from;
+    const double length = way.squaredNorm();
+    const double share = length > 0 ? std::clamp(way.dot(x - from) / length, 0.0, 1.0) : 0;
+    const Vec3 point = from + share * way;
+    const double squared = (x - point).squaredNorm();
+    if (squared < best.squared) best = {squared, line.faces[0], on_face, point};
+  }
 }
 
 // The sum of the normals of the faces around a vertex, each weighted by its angle there.
@@ -223,6 +315,16 @@ SurfacePoint SurfaceDistance::Tree::answer(const Vec3& x, const Candidate& c,
   return {d, d < touching ? n : away};
 }
 
+template <class Places>
+SurfacePoint SurfaceDistance::Tree::closest(const Vec3& x, const SurfacePose<Places>& pose,
+                                            Candidate& found) const {
+  bool deep = false;
+  found = find(x, pose, deep);
+  const double d = std::sqrt(found.squared);
+  if (!deep || found.face < 0) return answer(x, found, pose);
+  return {-d, d < touching ? pseudo_normal(found, pose) : Vec3((found.point - x) / d), true};
+}
+
 Vec3 SurfaceDistance::Tree::displacement(int face, const Vec3& weights) const {
   Vec3 sum = Vec3::Zero();
   for (int k = 0; k < 3; ++k) {
@@ -257,15 +359,17 @@ void SurfaceDistance::move(const MeshFrames& frames, double t0, double t1) {
 const SurfaceMotion& SurfaceDistance::motion() const { return tree_->motion; }
 
 SurfacePoint SurfaceDistance::closest(const Vec3& x, double s) const {
-  return tree_->in_pose(s, [&](const auto& pose) { return tree_->answer(x, tree_->find(x, pose), pose); });
+  Candidate found;
+  return tree_->in_pose(s, [&](const auto& pose) { return tree_->closest(x, pose, found); });
 }
 
 SurfacePoint SurfaceDistance::closest(const Vec3& x, double s, Vec3& displacement) const {
   return tree_->in_pose(s, [&](const auto& pose) {
-    const Candidate c = tree_->find(x, pose);
+    Candidate c;
+    const SurfacePoint surface = tree_->closest(x, pose, c);
     const bool moves = tree_->moving && c.face >= 0;
     displacement = moves ? tree_->displacement(c.face, c.weights(pose)) : Vec3(Vec3::Zero());
-    return tree_->answer(x, c, pose);
+    return surface;
   });
 }
 
@@ -284,6 +388,11 @@ std::optional<double> SurfaceDistance::first_crossing(const Vec3& x0, const Vec3
     const int count = crossings(x, ways, tolerance, found);
     for (int i = 0; i < count; ++i) {
       if (found[i] < from || found[i] >= first) continue;
+      if (tree.covered(found[i])[f] != Cover::none && tree.in_pose(found[i], [&](const auto& pose) {
+            const Vec3 point = x.at(found[i]);
+            return tree.is_covered({0, f, on_face, point}, pose);
+          }))
+        continue;
       const double steep = steepness(x, ways, found[i]);
       if (tree.surface.closed ? steep < -grazing : std::abs(steep) > grazing) first = found[i];
     }
@@ -291,7 +400,7 @@ std::optional<double> SurfaceDistance::first_crossing(const Vec3& x0, const Vec3
   };
   if (tree.boxes)
     tree.boxes->along(x0, x1, from, ask);
-  else  // the surface has never moved
+  else  // the surface has never moved, and is not closed
     for (int f = 0; f < static_cast<int>(tree.surface.faces.size()); ++f) ask(f);
   return first <= 1 ? std::optional(first) : std::nullopt;
 }
@@ -315,12 +424,31 @@ bool SurfaceDistance::stays_clear(const Vec3& x0, const Vec3& x1, double margin)
   return clear;
 }
 
+template <class Places>
+SurfaceDistance::Anchor SurfaceDistance::Tree::anchor(const Vec3& x, const Candidate& c,
+                                                      const SurfacePose<Places>& pose) const {
+  if (c.face < 0) throw InputError("an anchor must be at a finite place");
+  const Mat3 axes = frame(pose.corner(c.face, 0), pose.corner(c.face, 1), pose.corner(c.face, 2));
+  return {surface.faces[c.face].v, c.weights(pose), axes.transpose() * (x - c.point)};
+}
+
 SurfaceDistance::Anchor SurfaceDistance::anchor(const Vec3& x, double s) const {
   return tree_->in_pose(s, [&](const auto& pose) {
-    const Candidate c = tree_->find(x, pose);
-    if (c.face < 0) throw InputError("an anchor must be at a finite place");
-    const Mat3 axes = frame(pose.corner(c.face, 0), pose.corner(c.face, 1), pose.corner(c.face, 2));
-    return Anchor{tree_->surface.faces[c.face].v, c.weights(pose), axes.transpose() * (x - c.point)};
+    return tree_->anchor(x, tree_->find(x, pose, [](const Candidate&) { return true; }), pose);
+  });
+}
+
+Vec3 SurfaceDistance::carried(const Vec3& x, double s) const {
+  return tree_->in_pose(s, [&](const auto& pose) {
+    const Candidate one = tree_->find(x, pose, [](const Candidate&) { return true; });
+    const Vec3 end = place(tree_->anchor(x, one, pose), 1);
+    if (!tree_->is_covered(one, pose)) return end;
+    const Vec3 normal = pose.plain_normal(one.face);
+    const Candidate other = tree_->find(x, pose, [&](const Candidate& c) {
+      return pose.plain_normal(c.face).dot(normal) < 0 && tree_->seems_covered(c, pose);
+    });
+    if (other.face < 0) return end;
+    return Vec3(0.5 * (end + place(tree_->anchor(x, other, pose), 1)));
   });
 }
 

@@ -6,7 +6,9 @@
 //              from the surface to the point
 //
 // A surface is closed when every edge has exactly two triangles and the surface has two sides. Each connected
-// piece is wound outwards on its own, so the inner wall of a hollow body counts as a second body.
+// piece is wound outwards on its own. Where a closed surface overlaps itself (an arm in the torso), and where one piece
+// lies in another (the inner wall of a hollow body), what is inside any of them is inside, and its distance is that to
+// the surface of all of them together (mesh/distance/covered_faces.h).
 //
 // After move(start, end) every vertex goes straight from its start to its end while s [-] goes from 0 to 1,
 // and every question is about the surface at a given s. Which triangles are neighbours and which side is
@@ -28,6 +30,8 @@ namespace drape {
 struct SurfacePoint {
   double distance;  // m, negative inside
   Vec3 normal;      // unit vector, the gradient of the distance: it points outwards
+  // The nearest triangle of the surface lies inside, too: the point is where the body overlaps itself, or beside that.
+  bool covered = false;
 };
 
 // How far the vertices that belong to a triangle move during a step [m]. All values are 0 for a surface at
@@ -84,6 +88,9 @@ class SurfaceDistance {
   };
   Anchor anchor(const Vec3& x, double s = 0) const;
   Vec3 place(const Anchor& anchor, double s) const;
+  // Where the surface carries a point that is beside it at s, until s = 1. Where the body overlaps itself, two parts of
+  // the surface carry it, and it goes the mean of their ways.
+  Vec3 carried(const Vec3& x, double s) const;
 
   bool closed() const;
   // True when the closed mesh was wound with its normals inwards; it is turned round on construction.

@@ -5,25 +5,20 @@
 #include <compare>
 #include <numeric>
 
-#include "mesh/base/predicates.h"
 #include "mesh/distance/moving_boxes.h"
+#include "mesh/distance/passing_edges.h"
 
 namespace drape {
 namespace {
 
 using internal::Face;
 using internal::MovingBoxes;
-using internal::orient3d;
 
 struct PairPassage : Passage {
   int pair;  // place in the list of pairs
 
   auto where() const { return std::array{a, b, through}; }
 };
-
-bool share_a_vertex(const Triangle& s, const Triangle& t) {
-  return std::any_of(s.begin(), s.end(), [&](int v) { return std::find(t.begin(), t.end(), v) != t.end(); });
-}
 
 class Search {
  public:
@@ -33,7 +28,7 @@ class Search {
   // Adds the pair when the triangles cross.
   void look_at(int first, int second) {
     const Triangle &s = triangles_[first], &t = triangles_[second];
-    if (share_a_vertex(s, t) || !boxes_touch(s, t)) return;
+    if (internal::share_a_vertex(s, t) || !internal::boxes_touch(x_, s, t)) return;
     const auto before = passages_.size();
     look_through(first, second);
     look_through(second, first);
@@ -45,39 +40,15 @@ class Search {
   std::vector<CrossingContour> contours();
 
  private:
-  bool boxes_touch(const Triangle& s, const Triangle& t) const {
-    for (int k = 0; k < 3; ++k) {
-      const auto [s_low, s_high] = std::minmax({x_[s[0]][k], x_[s[1]][k], x_[s[2]][k]});
-      const auto [t_low, t_high] = std::minmax({x_[t[0]][k], x_[t[1]][k], x_[t[2]][k]});
-      if (s_high < t_low || t_high < s_low) return false;
-    }
-    return true;
-  }
-
   // Finds the edges of one triangle that pass through the other.
   void look_through(int of, int through) {
-    const Triangle &s = triangles_[of], &t = triangles_[through];
-    std::array<int, 3> side;
-    for (std::size_t k = 0; k < 3; ++k) side[k] = orient3d(x_[t[0]], x_[t[1]], x_[t[2]], x_[s[k]]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (side[k] * side[(k + 1) % 3] >= 0) continue;
-      const int a = std::min(s[k], s[(k + 1) % 3]), b = std::max(s[k], s[(k + 1) % 3]);
-      bool left = false, right = false;  // of the edge there is a side of the triangle
-      for (std::size_t e = 0; e < 3; ++e) {
-        const int turn = orient3d(x_[a], x_[b], x_[t[e]], x_[t[(e + 1) % 3]]);
-        left = left || turn > 0;
-        right = right || turn < 0;
-      }
-      if (left != right) passages_.push_back({{a, b, of, through}, static_cast<int>(pairs_.size())});
-    }
+    internal::passing_edges(x_, triangles_[of], triangles_[through], [&](int a, int b) {
+      passages_.push_back({{a, b, of, through}, static_cast<int>(pairs_.size())});
+    });
   }
 
-  Vec3 place_of(const Passage& passage) const {
-    const Triangle& t = triangles_[passage.through];
-    const Vec3 normal = (x_[t[1]] - x_[t[0]]).cross(x_[t[2]] - x_[t[0]]);
-    const double from = normal.dot(x_[passage.a] - x_[t[0]]), to = normal.dot(x_[passage.b] - x_[t[0]]);
-    const double share = from == to ? 0.5 : std::clamp(from / (from - to), 0.0, 1.0);
-    return x_[passage.a] + share * (x_[passage.b] - x_[passage.a]);
+  Vec3 place_of(const Passage& p) const {
+    return x_[p.a] + internal::share_of_way(x_, p.a, p.b, triangles_[p.through]) * (x_[p.b] - x_[p.a]);
   }
 
   const std::vector<Vec3>& x_;

@@ -23,6 +23,13 @@ Bdf::Bdf(System& system, Constraints& constraints, std::unique_ptr<LinearSolver>
   if (order != 1 && order != 2) throw InputError("bdf order = " + std::to_string(order) + ": it is 1 or 2");
 }
 
+namespace {
+
+// How often a step is halved because its contacts do not settle. What remains is told by the report.
+constexpr int max_unsettled_halvings = 2;
+
+}  // namespace
+
 StepReport Bdf::advance(State& state, double h) {
   check_step(system_, state, h);
   StepReport report;
@@ -150,12 +157,15 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
   }
   if (k().order_2() && makes_energy(state, contacts, piece.h)) {
     ++report.rescues;
-    return attempt(state, {piece.h, false, piece.shortest}, report);  // taken again by order 1
+    return attempt(state, {piece.h, piece.halvings, piece.shortest, true}, report);  // taken again by order 1
   }
   // A shorter step lets the cloth weigh less on the bodies. When even the shortest piece is too long, the
   // report says so.
   if (!contacts.bodies_agree() && !piece.shortest)
     return fail(report, "the motion of a body that reacts and that of the cloth do not agree");
+  // What couples the contacts through the cloth goes with the square of the step, so they settle in a shorter one.
+  if (piece.halvings < max_unsettled_halvings && !piece.shortest && imbalance_ > contact_tolerance(options_))
+    return fail(report, "the contacts have not settled");
   finish(state, contacts, report);
   return true;
 }

@@ -9,9 +9,10 @@
 namespace drape {
 
 struct Piece {
-  double h;       // s
-  bool whole;     // the piece is all of the step
-  bool shortest;  // the piece will not be halved
+  double h;              // s
+  int halvings;          // of the step, which this piece is a part of; 0: the piece is all of the step
+  bool shortest;         // the piece will not be halved
+  bool order_1 = false;  // the piece is taken by order 1, whatever the integrator
 };
 
 // attempt(piece) takes `state` on by the piece, or returns false and leaves the state as it is. `before` is
@@ -24,7 +25,7 @@ void take_in_pieces(System& system, State& state, double h, int max_halvings, St
   int halvings = 0, left = 1;
   report.substeps = 0;
   while (left > 0) {
-    if (attempt(Piece{std::ldexp(h, -halvings), halvings == 0, halvings == max_halvings})) {
+    if (attempt(Piece{std::ldexp(h, -halvings), halvings, halvings == max_halvings})) {
       --left;
       ++report.substeps;
       continue;

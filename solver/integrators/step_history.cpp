@@ -15,8 +15,8 @@ void StepHistory::begin(const State& state, const Piece& piece, const ContactSte
   const double h = piece.h;
   // BDF2 is stable as long as each step is less than 1 + sqrt(2) times the last.
   //                                                                   [Hairer, Norsett & Wanner, III.5]
-  const bool smooth = piece.whole && last_h_ > 0 && h <= 2 * last_h_ && state.x.size() == end_.x.size() &&
-                      state.x == end_.x && state.v == end_.v;
+  const bool smooth = piece.halvings == 0 && !piece.order_1 && last_h_ > 0 && h <= 2 * last_h_ &&
+                      state.x.size() == end_.x.size() && state.x == end_.x && state.v == end_.v;
   k_.h = h;
   k_.ahead = order_ == 2 && smooth ? h / last_h_ : 0;
   k_.back = k_.ahead * k_.ahead / (1 + 2 * k_.ahead);
