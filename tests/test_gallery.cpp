@@ -44,6 +44,7 @@ const Part gallery[] = {
     {"dressed-sits", 0.4, 4},     // the poncho has come to the tee
     {"dressed-turn", 1.7, 4},     // the first step and half of the turn
     {"fast-ball", 0.3, 1},        // is thrown back at 0.1 s; the nails come at 0.2 s
+    {"fifty-sheets", 0.12, 4},    // the lowest lie on the cylinder
     {"flag", 1.1, 1},             // swings against the pole
     {"funnel", 0.5, 2},           // all three lie in the funnel
     {"layers", 0.5, 2},           // all three have come to each other

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Makes the meshes of this folder again: sheet-958.obj, sheet-2500.obj, tablecloth.obj, poncho.obj, flag.obj, net.obj, sheet-625.obj, dress.obj, nails.obj,
-needle.obj, sleeve.obj, funnel.obj, reef-knot.obj, pocket.obj. Not run by the build.
+needle.obj, sleeve.obj, funnel.obj, reef-knot.obj, fifty-sheets.obj, pocket.obj. Not run by the build.
 
     python3 make_meshes.py                       the generated meshes
     python3 make_meshes.py BODY.obj TEE.obj      body.obj and tee.obj, too, from files in metres (see ../README.md)
@@ -236,6 +236,20 @@ def reef_knot(cells, across, width):
     return points, faces, np.r_[uv, uv + [2 * width, 0]]
 
 
+def pile(count, cells, side, distance, turn):
+    """`count` square sheets of `cells` x `cells` quads, one over the other, each turned by `turn` against the one below. Normals up."""
+    s = np.linspace(-side / 2, side / 2, cells + 1)
+    z, x = (c.ravel() for c in np.meshgrid(s, s, indexing="ij"))
+    a = cells + 1
+    of_one = [[r * a + c, (r + 1) * a + c, (r + 1) * a + c + 1, r * a + c + 1] for r in range(cells) for c in range(cells)]
+    points, faces = [], []
+    for k in range(count):
+        cosine, sine = np.cos(k * turn), np.sin(k * turn)
+        points += list(zip(cosine * x + sine * z, 0 * x + k * distance, cosine * z - sine * x))
+        faces += [[k * a * a + i for i in f] for f in of_one]
+    return np.array(points), faces
+
+
 def pocket(cell):
     """A panel that stands, 40 x 40 quads, with a pocket of 16 x 16 sewn on by three sides and a flap of 16 x 6 by its upper one, in front (+z). Pocket and
     flap go in waves through what is behind them. Also the faces' groups."""
@@ -317,6 +331,9 @@ def main():
     points, faces, uv = reef_knot(160, 6, 0.03)
     write("reef-knot.obj", ["Two bands, 3 cm wide, 160 x 6 quads each, in a loose reef knot along x; uv is what they are flat, in metres.",
                             "Made by make_meshes.py; CC0 1.0."], points, faces, uv)
+    points, faces = pile(50, 10, 0.3, 0.005, np.radians(7))
+    write("fifty-sheets.obj", ["Fifty sheets, 30 cm x 30 cm, 10 x 10 quads each, one over the other, 5 mm apart, each turned by 7 degrees.",
+                               "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
     points, faces, groups = pocket(0.01)
     write("pocket.obj", ["A panel, 40 cm x 40 cm, with a pocket and its flap in front (+z), which go through each other and through the panel.",
                          "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces, groups=groups)
