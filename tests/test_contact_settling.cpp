@@ -133,6 +133,39 @@ TEST_CASE("contacts settle within the tolerance in nearly every step, in few sol
   }
 }
 
+TEST_CASE("a step whose contacts do not settle is taken in two pieces or four, and says what is left",
+          "[contact]") {
+  for (const std::string name : {"implicit-euler", "bdf2"})
+    for (const Landing& landing : landings()) {
+      INFO(name << ", " << landing.name);
+      int cut = 0;
+      for (const int most : {1, 30}) {
+        FallingCloth cloth(landing, 0.3);
+        const StepOptions options{.tolerance = 1e-4, .max_contact_solves = most};
+        const auto stepper =
+            make_integrator(name, cloth.system, cloth.constraints, make_linear_solver("auto"), options);
+        int pieces = 0, unsettled = 0, whole = 0;
+        for (int n = 0; n < 60; ++n) {
+          const double start = cloth.state.time;
+          const StepReport report = stepper->advance(cloth.state, 0.01);
+          REQUIRE(report.done);
+          CHECK(cloth.state.time == start + 0.01);
+          CHECK(
+              (report.substeps == 1 || report.substeps == 2 || report.substeps == 3 || report.substeps == 4));
+          CHECK(report.converged == settled(report, options));
+          if (!settled(report, options)) CHECK(report.substeps >= 3);
+          pieces += report.substeps > 1;
+          unsettled += !settled(report, options);
+          whole += report.substeps == 1;
+        }
+        if (most == 1) cut = pieces;
+        if (most == 30) CHECK(pieces < cut);
+        CHECK(whole > 0);
+      }
+      CHECK(cut > 5);
+    }
+}
+
 TEST_CASE("in the energy of a step friction takes mu N times the slip, whatever it was linearised at",
           "[contact]") {
   System system(std::vector<double>{0.01});

@@ -18,7 +18,7 @@ const std::array samples = {Vec3(0.9, 0.05, 0.05), Vec3(0.05, 0.9, 0.05), Vec3(0
 constexpr double bent_little = 0.7;          // cosine of the angle between normals of a cluster
 constexpr double off_the_edge = 1e-6;        // where the neighbour of a triangle has no solid angle
 constexpr double far =
-    3;  // radii of a group: from there on it counts as one, and w is right within a few percent
+    2;  // radii of a group: from there on it counts as one, and w is right within a few percent
 
 // The solid angle of a triangle seen from the origin, positive when its normal points away from there.
 //                                                             [Van Oosterom & Strackee 1983, eq. 8]

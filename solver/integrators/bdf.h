@@ -29,7 +29,7 @@ class Bdf final : public Integrator {
 
   std::string_view name() const override { return history_.order() == 1 ? "implicit-euler" : "bdf2"; }
   // A step that fails (not finite, no convergence) is taken again in halves, those again in halves, and so
-  // on, at most max_halvings times.
+  // on, at most max_halvings times. So is one whose contacts do not settle, at most twice.
   StepReport advance(State& state, double h) override;
 
   StepOptions& options() { return options_; }
