@@ -6,6 +6,7 @@
 #include "mesh/distance/closest_on_triangle.h"
 #include "mesh/triangles/generate.h"
 #include "tests/shapes.h"
+#include "tests/together.h"
 
 using namespace drape;
 using namespace drape::test;
@@ -53,16 +54,7 @@ double distance_to(const std::vector<Polygon>& polygons, const Vec3& x) {
 struct Overlap {
   std::vector<TriangleMesh> parts;
 
-  TriangleMesh mesh() const {
-    TriangleMesh all;
-    for (const TriangleMesh& part : parts) {
-      const int first = all.vertex_count();
-      all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
-      for (const Triangle& t : part.triangles)
-        all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-    }
-    return all;
-  }
+  TriangleMesh mesh() const { return together(parts); }
   std::vector<Polygon> exposed() const {
     std::vector<Polygon> all;
     for (std::size_t k = 0; k < parts.size(); ++k) {

@@ -6,6 +6,7 @@
 #include "solver/assembly/assembly.h"
 #include "tests/allocations.h"
 #include "tests/integrators.h"
+#include "tests/together.h"
 
 using namespace drape;
 using namespace drape::test;
@@ -19,17 +20,6 @@ int crossings(const TriangleMesh& mesh, const VecX& x, bool as_floats) {
   if (as_floats)
     for (Vec3& p : places) p = p.cast<float>().cast<double>();
   return crossing_count(crossing_contours(places, mesh.triangles));
-}
-
-TriangleMesh together(const std::vector<TriangleMesh>& meshes) {
-  TriangleMesh all;
-  for (const TriangleMesh& mesh : meshes) {
-    const int first = all.vertex_count();
-    all.positions.insert(all.positions.end(), mesh.positions.begin(), mesh.positions.end());
-    for (const Triangle& t : mesh.triangles)
-      all.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-  }
-  return all;
 }
 
 enum class Kind { squares, equilateral, irregular };

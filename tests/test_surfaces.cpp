@@ -5,6 +5,7 @@
 #include "tests/integrators.h"
 #include "tests/same_bits.h"
 #include "tests/sheets.h"
+#include "tests/together.h"
 
 using namespace drape;
 using namespace drape::test;
@@ -258,12 +259,8 @@ TEST_CASE("where a body is pressed into itself, cloth stays between, keeps still
   for (int n : {12, 17, 23}) {
     INFO(n << " vertices along an edge");
     // Two blocks, one mesh, with a sheet hung between them. They close until they overlap by 2 cm, and open again.
-    TriangleMesh body = box({0.2, 0.2, 0.06});
-    const int first = body.vertex_count();
-    const TriangleMesh one = box({0.19, 0.19, 0.06});
-    body.positions.insert(body.positions.end(), one.positions.begin(), one.positions.end());
-    for (const Triangle& t : one.triangles)
-      body.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    const TriangleMesh body = together({box({0.2, 0.2, 0.06}), box({0.19, 0.19, 0.06})});
+    const int first = body.vertex_count() / 2;
     const auto frames = std::make_shared<MeshFrames>();
     const auto at = [&](double apart) {
       std::vector<Vec3> places = body.positions;

@@ -17,8 +17,8 @@ const std::array samples = {Vec3(0.9, 0.05, 0.05), Vec3(0.05, 0.9, 0.05), Vec3(0
                             in_the_middle};  // points of a triangle
 constexpr double bent_little = 0.7;          // cosine of the angle between normals of a cluster
 constexpr double off_the_edge = 1e-6;        // where the neighbour of a triangle has no solid angle
-constexpr double far =
-    2;  // radii of a group: from there on it counts as one, and w is right within a few percent
+// From so many of its radii on a group counts as one; w is then right within a few percent.
+constexpr double far = 2;
 
 // The solid angle of a triangle seen from the origin, positive when its normal points away from there.
 //                                                             [Van Oosterom & Strackee 1983, eq. 8]

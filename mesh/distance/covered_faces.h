@@ -63,8 +63,7 @@ class CoveredFaces {
     int first, count;              // of cluster_faces_, and of face_boxes_
     Eigen::AlignedBox3f box = {};  // m
     Vec3 axis = Vec3::Zero();      // about which the normals are
-    double spread =
-        2;  // -cos(2 a), a being the largest angle between a normal and the axis; 2: over 90 degrees
+    double spread = 2;             // -cos(2 a), a: the largest angle of a normal to it; 2: over 90 degrees
   };
   void make_clusters(const std::vector<Face>& faces, const std::vector<Vec3>& x, const MovingBoxes& boxes);
   void make_neighbours(const std::vector<Face>& faces);
@@ -78,11 +77,12 @@ class CoveredFaces {
   double winding(const Vec3& from, const std::array<int, 2>& without, const std::vector<Face>& faces,
                  const std::vector<Vec3>& x, const MovingBoxes& boxes) const;
 
-  // Made once, for the surface as it is when it is looked at first.
+  // Made once, for the surface as it is when it is looked at first. What is found later depends on it where the surface
+  // meets itself within a few triangles.
   std::vector<Cluster> clusters_;
   std::vector<int> cluster_faces_, group_start_;  // the clusters of a group stand side by side
-  std::vector<int> neighbour_start_,
-      neighbours_;          // of a cluster: itself, and those that share a vertex with it
+  // Of a cluster: itself, and those that share a vertex with it.
+  std::vector<int> neighbour_start_, neighbours_;
   bool in_pieces_ = false;  // the surface is not connected
   // Of the last look.
   std::vector<Eigen::AlignedBox3f> face_boxes_;  // rounded outwards [m]

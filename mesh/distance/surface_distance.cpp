@@ -85,7 +85,8 @@ struct SurfaceDistance::Tree {
   // The current step; the first call of move() makes it.
   bool moving = false;
   std::vector<Vec3> start, end;
-  std::vector<Vec3> looked_at;  // where covered_at_end is of
+  bool changes = false;         // whether the surface is not the same at the start and at the end
+  std::vector<Vec3> looked_at;  // the places of the vertices that covered_at_end is of [m]
   SurfaceMotion motion;
   std::optional<MovingBoxes> boxes;
   std::vector<int> corner_start, corners;  // 3 face + k of the corners at each vertex, ascending
@@ -96,7 +97,10 @@ struct SurfaceDistance::Tree {
   void make_ready();
   void begin_step();
   void look_for_covered();
-  const CoveredFaces& covered(double s) const { return s < 0.5 ? covered_at_start : covered_at_end; }
+  // As the surface is at the nearer end of the step.
+  const CoveredFaces& covered(double s) const {
+    return changes && s < 0.5 ? covered_at_start : covered_at_end;
+  }
   static double time_of(const SurfacePose<Standing>&) { return 1; }
   static double time_of(const SurfacePose<Moving>& pose) { return pose.places().s; }
   // The nearest point of those faces that take(the point of the face nearest to x) accepts.
@@ -145,6 +149,7 @@ SurfaceDistance::Tree::Tree(const TriangleMesh& given) : mesh(given), surface(su
   if (!surface.closed) return;
   start = end = mesh.positions;
   begin_step();
+  covered_at_start = covered_at_end;  // with the clusters of the surface at rest
 }
 
 void SurfaceDistance::Tree::measure() {
@@ -191,14 +196,14 @@ void SurfaceDistance::Tree::begin_step() {
   }
 }
 
-// Most steps begin where the last one ended.
+// Most steps begin where the last one ended, and a body that stands is looked at once.
 void SurfaceDistance::Tree::look_for_covered() {
-  if (looked_at == start)
-    std::swap(covered_at_start, covered_at_end);
-  else
-    covered_at_start.look(surface.faces, start, *boxes);
-  covered_at_end.look(surface.faces, end, *boxes);
+  changes = start != end;
+  if (looked_at != start) covered_at_end.look(surface.faces, start, *boxes);
   looked_at = end;
+  if (!changes) return;
+  std::swap(covered_at_start, covered_at_end);
+  covered_at_end.look(surface.faces, end, *boxes);
 }
 
 // The search radius stays a little longer than the best distance, by more than Embree's rounding to float, so
