@@ -263,12 +263,13 @@ clang() {
 bench() {
   get_for_build
   configure_program
-  compile release drape_bench drape_bench_contact drape_bench_motion drape_bench_pattern drape_bench_solvers
+  compile release drape_bench drape_bench_contact drape_bench_motion drape_bench_pattern drape_bench_positions drape_bench_solvers
   build/release/drape_bench "$@"
   [[ $# -eq 0 ]] || return 0
   build/release/drape_bench_contact
   build/release/drape_bench_motion 32 100 200 400  # half an hour
   build/release/drape_bench_pattern
+  build/release/drape_bench_positions
   fabrics
   build/release/drape_bench_solvers 32 100
 }

@@ -137,6 +137,7 @@ void ContactStep::respond(ContactMode mode, const VecX& x, const VecX& v, const 
   for (bool again = true; again; moved = moved || again) {
     constraints_->contacts_.respond(mode, constraints_->bodies_, step, x, v, x_new, v_new);
     clear_impulses();
+    constraints_->step_.work += constraints_->self_.push_bodies(constraints_->bodies_, x_new);
     constraints_->contacts_.each_response([&](const ContactResponse& r) {
       constraints_->step_.work += r.body_velocity.dot(r.impulse);
       constraints_->bodies_[r.body].push(-r.impulse, r.place, r.approach);
@@ -154,6 +155,14 @@ void ContactStep::respond(ContactMode mode, const VecX& x, const VecX& v, const 
     x_new.segment<3>(3 * pin.particle) = step.place(pin.particle) + step.h * velocity;
     v_new.segment<3>(3 * pin.particle) = velocity;
   }
+}
+
+double ContactStep::mobility_of(const MovingPin& pin) const {
+  if (pin.body < 0) return 0;
+  const ReactingBody* body = constraints_->bodies_[pin.body].reacting();
+  if (!body) return 0;
+  const Mat3 mobility = body->mobility(constraints_->step_.place(pin.particle));
+  return mobility.trace() - 2 / body->mass();
 }
 
 void ContactStep::count_face_impulse(double duration, const VecX& x, const VecX& v) {

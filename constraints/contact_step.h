@@ -97,6 +97,9 @@ class ContactStep {
   // pulled [N s]: the impulse on each pin of what carries it, besides the one that brings it to its velocity.
   void respond(ContactMode mode, const VecX& x, const VecX& v, const VecX& pulled, VecX& x_new, VecX& v_new,
                double noise);
+  // How easily an impulse moves a pin [m/s per N s]: not at all, or, where a body that reacts carries it, at most as the
+  // body gives way there.
+  double mobility_of(const MovingPin& pin) const;
   // Counts what the faces did in a stage of an explicit step, which applies the force at x, v for this
   // duration [s].
   void count_face_impulse(double duration, const VecX& x, const VecX& v);

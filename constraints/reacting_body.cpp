@@ -51,6 +51,13 @@ Mat3 ReactingBody::world_inertia(const Pose& pose) const {
 
 Vec3 ReactingBody::spin() const { return world_inertia(pose_).inverse() * L_; }
 
+Mat3 ReactingBody::mobility(const Vec3& place) const {
+  const Vec3 r = place - centre();
+  Mat3 cross;
+  cross << 0, -r[2], r[1], r[2], 0, -r[0], -r[1], r[0], 0;
+  return Mat3::Identity() / body_.mass - cross * world_inertia(pose_).inverse() * cross;
+}
+
 Pose ReactingBody::moved() const {
   const Vec3 c = pose_.to_world(body_.centre) + h_ * q_.head<3>();
   const Mat3 R = turned_by(h_ / radius_ * q_.tail<3>()) * pose_.rotation;
@@ -105,7 +112,9 @@ bool ReactingBody::correct(Pose& end, double noise) {
   if (corrections_ == most_corrections || d.norm() <= near) return false;
   if (relaxation_ == 0) {
     const double Z = J_.norm() / std::max(approach_, h_ * body_.gravity.norm() + 1e-12);
-    relaxation_ = 1 / (1 + Z / body_.mass);
+    // How fast the point where it is pushed gives way to a unit of the impulse: 1/m where that is the centre of mass.
+    const double spins = T_.dot(world_inertia(pose_).inverse() * T_) / std::max(J_.squaredNorm(), 1e-300);
+    relaxation_ = 1 / (1 + Z * (1 / body_.mass + spins));
   }
   if (known_) {  // the newest change comes first, and the oldest falls out
     changes_ = std::min(changes_ + 1, most_changes);

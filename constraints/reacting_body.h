@@ -12,8 +12,8 @@
 //                                                       [Degroote, Bathe & Vierendeels 2009, IQN-ILS]
 // As long as the same contacts hold, d is linear in the six unknowns q, so that a few solves are enough. That
 // is so even for a ball much lighter than the cloth that it meets, which the impulses alone (q <- q') would
-// throw back and forth ever farther. a = 1/(1 + Z/m), where Z = |J| / the speed that J took away is the
-// cloth's share of the inertia [kg]; later in the same contact, a is what the last step found. q starts from
+// throw back and forth ever farther. a = 1/(1 + Z (1/m + T.I^-1 T / |J|^2)), where Z = |J| / the speed that J took away
+// is the cloth's share of the inertia [kg]; later in the same contact, a is what the last step found. q starts from
 // what the impulses of the last step would give, which is right at once for a body at rest. The body gets the
 // impulses of the last solve, so that momentum is kept; only where d has not become small it gets the motion
 // that was prescribed, and the step is not `converged`. Contact between two such bodies, or of one with an
@@ -52,6 +52,11 @@ class ReactingBody {
   Vec3 momentum() const { return body_.mass * v_; }
   Vec3 angular_momentum() const { return L_; }  // about its centre of mass
   Vec3 centre() const { return pose_.to_world(body_.centre); }
+
+  double mass() const { return body_.mass; }
+  // The velocity that an impulse gives the point `place` of the body: 1/m - [r] I^-1 [r], r from its centre of mass
+  // [m/s per N s].
+  Mat3 mobility(const Vec3& place) const;
 
   Pose begin_step(double h);  // returns where the body is expected at the end of the step
   // Sum up the impulses of a solve on the body, from zero. approach: the speed that the impulse takes away

@@ -24,6 +24,10 @@ constexpr double stiffest = 1000;
 // while they were pressed and soft before would make energy.
 constexpr double slowest_fall = 0.9;
 
+// How fast a contact that has become thinner than its cloth may thicken [m/s]: so slowly that what it lifts flies no farther
+// than where the contact still holds it.
+double lift_speed(double thickness) { return std::sqrt(2 * 9.81 * 0.5 * thickness); }
+
 }  // namespace
 
 Vec3 SelfContact::rub_at(const Vec3& p, double normal_force) const {
@@ -223,7 +227,7 @@ void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<Movi
   std::sort(touching_.begin(), touching_.end(),
             [](const SelfContact& a, const SelfContact& b) { return a.who < b.who; });
   for (SelfContact& c : touching_) {
-    take_over(c, recovery);
+    take_over(c, std::min(recovery, step.h * lift_speed(thickness_of(c.who))));
     c.push = c.before;
     stiffen(c, step);
     const Vec3 p = c.now = c.at(ahead_);

@@ -14,13 +14,10 @@ using namespace internal;
 
 namespace {
 
-constexpr double likely_acceleration =
-    10;                           // m/s^2: what a step may add to a motion before a contact is found late
 constexpr double same_way = 0.5;  // the cosine from which two normals belong to one contact
 
-double reach_about(double thickness, double h) {
-  return thickness + std::min(likely_acceleration * h * h, 0.5 * thickness);
-}
+// What is lifted flies no farther than this (self_contact.cpp), and a contact goes on while it does.
+double reach_about(double thickness) { return 1.5 * thickness; }
 
 Vec3 across(const Vec3& n, const Vec3& a) { return a - n.dot(a) * n; }
 
@@ -141,7 +138,7 @@ bool SelfContacts::follow_all(const VecX& x, const VecX& x_new) {
 // The pairs that come within the thickness, and a little more, on the way to ahead_.
 std::vector<Meeting>& SelfContacts::near_ones(const StepMotion& step, Encounters& encounters,
                                               double thickest) {
-  const double reach = reach_about(thickest, step.h), more = reach - thickest;
+  const double reach = reach_about(thickest), more = reach - thickest;
   const auto inside = [](double w) { return std::abs(w) > 1e-3 && std::abs(w) < 1 - 1e-3; };
   return encounters.select(
       step.x, ahead_, reach,
@@ -175,8 +172,8 @@ void SelfContacts::look_at_ends(std::vector<Meeting>::iterator begin,
 void SelfContacts::find_contacts(const StepMotion& step) {
   touching_.clear();
   const double thickest = *std::max_element(thickness_.begin(), thickness_.begin() + cloth_particles());
-  reach_ = reach_about(thickest, step.h);
-  body_reach_ = reach_about(surfaces_->thickest(), step.h);
+  reach_ = reach_about(thickest);
+  body_reach_ = reach_about(surfaces_->thickest());
   if (!follow_all(step.x, ahead_)) return;
   std::vector<Meeting>& found = found_;
   found = near_ones(step, *encounters_, thickest);

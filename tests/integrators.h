@@ -21,9 +21,10 @@ struct Traits {
   bool grows_undamped;      // unstable on a vibration without damping, however short the step
   double momentum_kept_to;  // relative, of cloth and a body that reacts together
 };
-inline constexpr std::array<Traits, 12> traits = {{
+inline constexpr std::array<Traits, 13> traits = {{
     {"implicit-euler", 1, false, true, true, false, 1e-6},
     {"bdf2", 2, false, true, true, false, 0.1},
+    {"pbd", 1, false, true, false, false, 2e-3},
     {"explicit-euler", 1, true, false, false, true, 1e-6},
     {"symplectic-euler", 1, true, false, false, false, 1e-6},
     {"midpoint", 2, true, false, false, true, 1e-6},
@@ -42,6 +43,8 @@ inline const Traits& traits_of(std::string_view name) {
 }
 inline int order_of(std::string_view name) { return traits_of(name).order; }
 inline bool is_explicit(std::string_view name) { return traits_of(name).is_explicit; }
+// Whether it answers contact after the motion, and in no other way.
+inline bool only_responds(std::string_view name) { return name == "pbd"; }
 inline bool bears_stiff(std::string_view name) { return traits_of(name).bears_stiff; }
 
 inline std::vector<std::string> integrator_names() {

@@ -239,6 +239,7 @@ TEST_CASE("every number stands under its own name", "[compare]") {
   run.time_step = 0.1, run.end = 0.2, run.steps = 1, run.steps_cut = 2, run.steps_not_converged = 3;
   run.linear_iterations = 4, run.wall_ms = 0.3, run.max_distance = 0.4, run.rms_distance = 0.5;
   run.energy_drift = 0.6, run.energy_error = 0.7, run.same_run_distance = 0.8;
+  run.strain = 0.9, run.strain_error = 0.95;
   run.failure = "step 2: no";
   comparison.rows = {row};
   comparison.runs = {run};
@@ -278,7 +279,9 @@ TEST_CASE("every number stands under its own name", "[compare]") {
                                                    {"rms_distance", 0.5},
                                                    {"energy_drift", 0.6},
                                                    {"energy_error", 0.7},
-                                                   {"same_run_distance", 0.8}};
+                                                   {"same_run_distance", 0.8},
+                                                   {"strain", 0.9},
+                                                   {"strain_error", 0.95}};
   for (const auto& [key, value] : of_run) {
     INFO(key);
     CHECK(one[key] == value);

@@ -102,6 +102,8 @@ TEST_CASE("a rotor loses spin as its scheme does, and momentum stays", "[integra
       CHECK(spin() / before == Approx(0.99661).epsilon(1e-3));
     else if (name == "sb-implicit")  // as implicit Euler of that h to second order: 1/sqrt(1 + 2 h w^2 t)
       CHECK(spin() / before == Approx(1 / std::sqrt(1.05)).epsilon(2e-3));
+    else if (name == "pbd")  // as implicit Euler of its substeps
+      CHECK(spin() / before == Approx(1 / std::sqrt(1 + 0.5 / options.projection.substeps)).epsilon(1e-4));
     else if (name == "symplectic-euler")
       CHECK(spin() / before == Approx(1).epsilon(1e-12));
     else if (name == "explicit-euler")

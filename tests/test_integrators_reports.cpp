@@ -37,8 +37,9 @@ class Counting final : public LinearSolver {
 
 std::vector<std::string> implicit_names() {
   std::vector<std::string> names = integrator_names();
-  std::erase_if(
-      names, [](const std::string& n) { return is_explicit(n) || n == "cvode-adams" || n == "arkode-erk"; });
+  std::erase_if(names, [](const std::string& n) {
+    return is_explicit(n) || n == "cvode-adams" || n == "arkode-erk" || n == "pbd";
+  });
   return names;
 }
 

@@ -143,10 +143,14 @@ TEST_CASE("both forms give the same bits with 1, 2 and 7 threads", "[response]")
 TEST_CASE("each integrator has its contact mode, and says which it cannot take", "[response]") {
   for (const std::string& name : integrator_names()) {
     INFO(name);
-    CHECK(contact_mode(name, ContactMode::constraint) == ContactMode::constraint);
-    CHECK(contact_mode(name, {}) == (is_explicit(name) ? ContactMode::velocity : ContactMode::constraint));
+    const bool responds = is_explicit(name) || only_responds(name);
+    if (only_responds(name))
+      CHECK_THROWS_WITH(contact_mode(name, ContactMode::constraint), Contains("velocity"));
+    else
+      CHECK(contact_mode(name, ContactMode::constraint) == ContactMode::constraint);
+    CHECK(contact_mode(name, {}) == (responds ? ContactMode::velocity : ContactMode::constraint));
     for (const ContactMode mode : {ContactMode::velocity, ContactMode::restitution}) {
-      if (is_explicit(name)) {
+      if (responds) {
         CHECK(contact_mode(name, mode) == mode);
         continue;
       }
@@ -188,7 +192,10 @@ TEST_CASE("a scene chooses the contact mode and a body its restitution", "[respo
 
 TEST_CASE("a step with a response allocates nothing", "[response]") {
   if (!counts_allocations()) return;
-  for (const ContactMode mode : {ContactMode::velocity, ContactMode::restitution}) {
+  for (const auto& [name, mode] : {std::pair{"symplectic-euler", ContactMode::velocity},
+                                   {"symplectic-euler", ContactMode::restitution},
+                                   {"pbd", ContactMode::velocity},
+                                   {"pbd", ContactMode::restitution}}) {
     const TriangleMesh mesh = grid(11, 11, 0.3, 0.3);
     System system(lumped_mass(mesh, 0.3));
     system.add(noh_jung(mesh, {.area_density = 0.3, .stretch = 10, .bend = 1e-6, .damping = 0.03}));
@@ -197,8 +204,9 @@ TEST_CASE("a step with a response allocates nothing", "[response]") {
     constraints.add(Obstacle{.shape = Sphere{{0, -0.105, 0}, 0.1}, .restitution = 0.3});
     constraints.add(Obstacle{.shape = Plane{{0, -0.01, 0}, {0, 1, 0}}, .restitution = 0.3});
     State state = at_rest(mesh);
-    auto stepper = make_integrator("symplectic-euler", system, constraints, make_linear_solver("mpcg"),
-                                   StepOptions{.contact = mode});
+    StepOptions options{.contact = mode};
+    options.projection = {.substeps = 2, .iterations = 2};
+    auto stepper = make_integrator(name, system, constraints, make_linear_solver("mpcg"), options);
     for (int n = 0; n < 200; ++n) REQUIRE(stepper->advance(state, 4e-4).done);
     const long before = allocations();
     int contacts = 0;

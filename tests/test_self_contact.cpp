@@ -166,6 +166,28 @@ Layers pile_of(int layers, int n, double apart, double above, bool cuts = true) 
 
 }  // namespace
 
+TEST_CASE("layers come to rest in steps of any length, whose rims lie across each other", "[self-contact]") {
+  for (const std::string name : {"implicit-euler", "pbd"})
+    for (const Kind kind : kinds)
+      for (const double h : {0.01, 0.004, 0.001}) {
+        INFO(name << ", steps of " << 1000 * h << " ms, kind " << static_cast<int>(kind));
+        Layers layers({sheet(7, 0.3, {0, 0, 0}, kind), sheet(7, 0.3, {0.011, 0.0015, 0.007}, kind)});
+        layers.use(name, "mpcg", {.tolerance = 1e-4, .projection = {.substeps = 2}});
+        layers.hold(0);
+        while (layers.state.time < 0.4) REQUIRE(layers.advance(h).done);
+        double fastest = 0;
+        for (int n = 0; n < 5; ++n) {
+          REQUIRE(layers.advance(h).done);
+          fastest = std::max(fastest, layers.speed());
+        }
+        CHECK(fastest < 1e-4);
+        for (int i = 49; i < layers.state.particles(); ++i) {
+          CHECK(layers.state.x[3 * i + 1] > r - 2e-4);
+          CHECK(layers.state.x[3 * i + 1] < 1.2 * r);  // rims stick out
+        }
+      }
+}
+
 TEST_CASE("a pile of many layers makes no energy, and comes to rest", "[self-contact]") {
   for (bool cuts : {false, true}) {
     INFO((cuts ? "three kinds of triangles" : "vertices above vertices"));

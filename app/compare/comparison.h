@@ -77,6 +77,7 @@ struct IntegratorRow {
   bool reference = false;
   std::optional<double> max_distance, rms_distance;  // m, distance of the vertices from the reference run
   std::optional<double> energy_error;                // J, energy at the end minus that of the reference run
+  std::optional<double> strain, strain_error;        // largest of an edge at the end; less the reference's
   std::optional<double> same_run_distance;  // m, largest distance from the same run with the reference solver
   DiffersBy differs_by = DiffersBy::time_integration;
 };

@@ -65,6 +65,8 @@ Json::Members members_of(const IntegratorRow& row, const Comparison& comparison)
                        {"differs_by", name(row.differs_by)},
                        {"inner_steps", row.inner_steps},
                        {"inner_rejected", row.inner_rejected},
+                       {"strain", optional_json(row.strain)},
+                       {"strain_error", optional_json(row.strain_error)},
                        {"verdict", verdict_of(row, comparison)}};
 }
 

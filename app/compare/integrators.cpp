@@ -64,7 +64,10 @@ Run run_one(const Scene& scene, const std::string& integrator, double h, const S
     run.row.end = simulation.state.time;
     run.end_energy = simulation.system->total_energy(simulation.state);
     run.row.energy_drift = run.end_energy - start;
-    if (run.row.failure.empty()) run.x = vertices_of(simulation);
+    if (run.row.failure.empty()) {
+      run.x = vertices_of(simulation);
+      run.row.strain = largest_strain(simulation.cloths, simulation.state.x);
+    }
   } catch (const std::exception& error) {  // a row, and the others go on
     run.row.failure = one_line(error.what());
   }
@@ -122,6 +125,7 @@ void measure_distances(std::vector<Run>& runs, const CompareOptions& options, co
     run.row.max_distance = d.max;
     run.row.rms_distance = d.rms;
     run.row.energy_error = run.end_energy - reference->end_energy;
+    run.row.strain_error = *run.row.strain - *reference->row.strain;
     for (const Run& other : runs)
       if (run.row.solver != solver && other.row.solver == solver && other.x.size() > 0 &&
           other.row.integrator == run.row.integrator && other.row.time_step == run.row.time_step)

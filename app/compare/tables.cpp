@@ -59,16 +59,16 @@ std::string name_of(const IntegratorRow& run) {
 ReportTable table_of_runs(const Comparison& comparison) {
   ReportTable table;
   table.title = "integrators, " + rounded(comparison.run_duration, 4) + " s from the same start";
-  table.header = {"integrator",     "time step s", "solver",    "steps",      "wall ms",
-                  "iterations",     "distance m",  "rms m",     "same run m", "drift J",
-                  "energy error J", "state",       "differs by"};
+  table.header = {"integrator",     "time step s",  "solver", "steps",      "wall ms",
+                  "iterations",     "distance m",   "rms m",  "same run m", "drift J",
+                  "energy error J", "strain error", "state",  "differs by"};
   for (const IntegratorRow& row : comparison.runs) {
     table.rows.push_back({row.integrator, rounded(row.time_step, 4), row.solver, std::to_string(row.steps),
                           milliseconds(row.wall_ms), std::to_string(row.linear_iterations),
                           optional_number(row.max_distance, 3), optional_number(row.rms_distance, 3),
                           optional_number(row.same_run_distance, 2), rounded(row.energy_drift, 3),
-                          optional_number(row.energy_error, 3), row.failure.empty() ? "done" : "failed",
-                          std::string(name(row.differs_by))});
+                          optional_number(row.energy_error, 3), optional_number(row.strain_error, 2),
+                          row.failure.empty() ? "done" : "failed", std::string(name(row.differs_by))});
     const std::string who = name_of(row);
     if (row.reference) table.notes.push_back("the reference: " + who);
     if (row.steps_cut + row.steps_not_converged > 0)

@@ -1,6 +1,8 @@
 // Integrators: a system, its constraints and a linear solver, and the step.
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "app/base/words.h"
 #include "app/python/arrays.h"
 #include "app/python/in_use.h"
@@ -24,6 +26,21 @@ std::optional<ContactMode> contact_mode_of(const std::optional<std::string>& wor
   throw py::value_error("contact: there is no '" + *word + "'; " + suggestion(*word, known));
 }
 
+Links links_of(const std::string& word) {
+  Names known;
+  for (const LinksInfo& info : link_kinds) {
+    if (word == info.name) return info.links;
+    known.emplace_back(info.name);
+  }
+  throw py::value_error("links: there is no '" + word + "'; " + suggestion(word, known));
+}
+
+std::string_view name_of(Links links) {
+  return std::find_if(link_kinds.begin(), link_kinds.end(),
+                      [&](const LinksInfo& info) { return info.links == links; })
+      ->name;
+}
+
 void check(const StepOptions& o) {
   const auto require = [](bool fulfilled, const char* text) {
     if (!fulfilled) throw py::value_error(text);
@@ -36,6 +53,10 @@ void check(const StepOptions& o) {
   require(contact_tolerance(o) > 0, "contact_tolerance: expected a number greater than zero");
   require(o.max_contact_solves >= 1, "max_contact_solves: expected 1 or more");
   require(o.max_halvings >= 0, "max_halvings: expected 0 or more");
+  require(o.projection.substeps >= 1, "substeps: expected 1 or more");
+  require(o.projection.iterations >= 1, "iterations: expected 1 or more");
+  require(o.projection.alpha >= 0 && o.projection.alpha <= 1,
+          "alpha: expected a share of the way, from 0 to 1");
 }
 
 // An integrator with all that it refers to.
@@ -94,7 +115,8 @@ void add_options(py::module_& m) {
   py::class_<StepOptions>(m, "StepOptions", "How a step is taken.")
       .def(py::init([](int newton_iterations, double newton_tolerance, double tolerance,
                        int max_linear_iterations, const std::optional<std::string>& contact,
-                       std::optional<double> contact_tolerance, int max_contact_solves, int max_halvings) {
+                       std::optional<double> contact_tolerance, int max_contact_solves, int max_halvings,
+                       int substeps, int iterations, const std::string& links, double alpha) {
              StepOptions options;
              options.newton_iterations = newton_iterations;
              options.newton_tolerance = newton_tolerance;
@@ -104,6 +126,8 @@ void add_options(py::module_& m) {
              options.contact_tolerance = contact_tolerance;
              options.max_contact_solves = max_contact_solves;
              options.max_halvings = max_halvings;
+             options.projection = {
+                 .substeps = substeps, .iterations = iterations, .links = links_of(links), .alpha = alpha};
              check(options);
              return options;
            }),
@@ -111,12 +135,17 @@ void add_options(py::module_& m) {
            "newton_tolerance"_a = usual.newton_tolerance, "tolerance"_a = usual.tolerance,
            "max_linear_iterations"_a = usual.max_linear_iterations, "contact"_a = py::none(),
            "contact_tolerance"_a = py::none(), "max_contact_solves"_a = usual.max_contact_solves,
-           "max_halvings"_a = usual.max_halvings,
+           "max_halvings"_a = usual.max_halvings, "substeps"_a = usual.projection.substeps,
+           "iterations"_a = usual.projection.iterations,
+           "links"_a = std::string(name_of(usual.projection.links)), "alpha"_a = usual.projection.alpha,
            "newton_iterations: linear solves per step, 1 is Baraff & Witkin's step; tolerance: relative "
            "residual of\n"
            "each; contact: 'constraint', 'velocity', 'restitution' or None, what the integrator does best; "
            "contact_tolerance:\n"
-           "of the impulses of contacts, relative to the weight; None: ten times tolerance.")
+           "of the impulses of contacts, relative to the weight; None: ten times tolerance.\n"
+           "Of 'pbd': substeps of a step, iterations in a substep; links 'compliance', 'length' or "
+           "'squared-length', the\n"
+           "last two draw every link the share alpha of the way to its length.")
       .def_readonly("newton_iterations", &StepOptions::newton_iterations, "linear solves per step")
       .def_readonly("newton_tolerance", &StepOptions::newton_tolerance, "of the nonlinear residual")
       .def_readonly("tolerance", &StepOptions::tolerance, "of the linear solve")
@@ -126,6 +155,13 @@ void add_options(py::module_& m) {
           "of the impulses of contacts that are wrong, relative to the weight")
       .def_readonly("max_contact_solves", &StepOptions::max_contact_solves)
       .def_readonly("max_halvings", &StepOptions::max_halvings, "of a step that failed")
+      .def_property_readonly(
+          "substeps", [](const StepOptions& o) { return o.projection.substeps; }, "of 'pbd', in a step")
+      .def_property_readonly(
+          "iterations", [](const StepOptions& o) { return o.projection.iterations; },
+          "of 'pbd', in a substep")
+      .def_property_readonly("links", [](const StepOptions& o) { return name_of(o.projection.links); })
+      .def_property_readonly("alpha", [](const StepOptions& o) { return o.projection.alpha; })
       .def("__repr__", [](const StepOptions& o) {
         return "StepOptions(newton_iterations=" + std::to_string(o.newton_iterations) +
                ", tolerance=" + rounded(o.tolerance, 6) + ")";

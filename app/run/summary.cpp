@@ -35,7 +35,13 @@ std::string hints(const RunRecord& record, const Output& output) {
   if (record.steps_cut > 0)
     text += "hint: " + counted(record.steps_cut, "step") + " had to be taken in up to " +
             std::to_string(record.substeps_max) + " pieces: a smaller time step is steadier\n";
-  if (record.steps_not_converged > 0)
+  if (record.steps_not_converged > 0 && record.integrator == "pbd")
+    text +=
+        "hint: pbd ends its substeps after as many iterations as were asked for, and the cloth stretches "
+        "more than its "
+        "stiffness says: residual in steps.csv says by which share of the weight, and more substeps make it "
+        "less\n";
+  else if (record.steps_not_converged > 0)
     text += "hint: " + counted(record.steps_not_converged, "step") +
             " ended before the solve reached its tolerance or the contacts had settled (by up to " +
             rounded(100 * record.contact_residual, 2) + " % of the weight)\n";

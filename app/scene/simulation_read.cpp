@@ -45,6 +45,23 @@ void read_step(Table& table, StepOptions& step) {
   table.read("max_inner_steps", step.max_inner_steps, 1, "of these, in one step; more is a failure");
 }
 
+void read_projection(Table& table, ProjectionOptions& projection) {
+  table.read("substeps", projection.substeps, 1, "of `pbd`: into how many it cuts a step");
+  table.read(
+      "iterations", projection.iterations, 1,
+      "of `pbd`: how often it takes every spring in a substep; more substeps do better than more of these");
+  std::string word(link_kinds.front().name);
+  table.read(
+      "links", word, names_of(link_kinds),
+      "of `pbd`, for springs that stretch. compliance: by their stiffness; length, squared-length: drawn to "
+      "their length without stiffness, the second without a square root");
+  for (const LinksInfo& info : link_kinds)
+    if (word == info.name) projection.links = info.links;
+  table.read("alpha", projection.alpha, dimension::number, Range::not_negative,
+             "of `pbd`: the share of the way, from 0 to 1, by which links are drawn to their length");
+  if (projection.alpha > 1) table.fail("alpha", "expected a share of the way, from 0 to 1");
+}
+
 void read_contact(Table& table, SimulationOptions& options) {
   std::string word;
   table.read("contact", word, names_of(contact_modes()),
@@ -81,6 +98,7 @@ SimulationOptions read_simulation(const Table* given) {
                   "what solves the system of a step, NAME or NAME+PRECONDITIONER");
   read_contact(table, options);
   read_step(table, options.step);
+  read_projection(table, options.step.projection);
   table.read("recovery_speed", options.contact.recovery_speed, dimension::speed, Range::positive,
              "at which what starts inside a body is brought out");
   table.read("threads", options.threads, 1,

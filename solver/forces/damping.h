@@ -32,6 +32,13 @@ struct Damper {
   static Vec3 pull(const Common& damper, const Rest&, const Vec3& d, const auto& velocity) {
     return coefficient(damper, d) * velocity();
   }
+  static Vec3 alone(const Common& damper, const Rest&, const Vec3& p, const Vec3& free, double W, double h,
+                    const auto& velocity) {
+    const Vec3 v_free = velocity() - (p - free) / h;
+    const double l2 = p.squaredNorm(), factor = -h * damper.k_d / (1 + W * h * damper.k_d);
+    if (damper.kind == DampingKind::relative) return factor * v_free;
+    return l2 == 0 ? Vec3(Vec3::Zero()) : Vec3(factor * p.dot(v_free) / l2 * p);
+  }
   static VectorResponse linearised(const Common& damper, const Rest&, const Vec3& d, const auto& velocity,
                                    const auto&, double c, Stiffness) {
     const Mat3 cD = c * coefficient(damper, d);

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "solver/forces/substep.h"
 #include "solver/matrix/block_matrix.h"
 
 namespace drape {
@@ -73,6 +74,13 @@ class Force {
   //   A += c D + c^2 K,  b += c (f - K y).        solver/integrators/bdf.h explains c [s] and y [m].
   virtual void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,
                               BlockMatrix& A, VecX& b) const = 0;
+
+  // In a substep of the integrator "pbd" (solver/forces/substep.h):
+  virtual bool projects() const { return false; }  // whether it has a form for this
+  // To be called when a substep begins, after begin_step().
+  virtual void begin_substep(int /*particles*/) {}
+  // Takes every element in turn, once.
+  virtual void project(Substep&) {}
 };
 
 }  // namespace drape

@@ -120,6 +120,10 @@ PlateEnergy quadratic_hinges(const TriangleMesh& mesh, const std::vector<RestCor
   each_hinge(slopes, corners, stiffness, [&](const Hinge& hinge, double k, double, double) {
     Functional s;
     for (int t : {hinge.tc, hinge.td}) slopes.add_inward(t, hinge, 1, s);
+    PlatePart& part = energy.parts.emplace_back();
+    part.stiffness(0, 0) = k;
+    for (std::size_t i = 0; i < s.vertices.size(); ++i)
+      part.shares.push_back({s.vertices[i], {s.weights[i], 0, 0}});
     for (std::size_t i = 0; i < s.vertices.size(); ++i)
       for (std::size_t j = i + 1; j < s.vertices.size(); ++j) {
         const auto [low, high] = std::minmax(s.vertices[i], s.vertices[j]);

@@ -10,6 +10,7 @@ namespace drape {
 
 struct LinearSpring {
   static constexpr const char* name = "spring";
+  static constexpr bool link_pushes = true;
   struct Rest {
     double L;  // m
     double k;  // N/m

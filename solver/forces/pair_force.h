@@ -6,6 +6,7 @@
 //     static Tension tension(const Rest&, double l);    // t = dE/dl [N], dt/dl [N/m]
 //     static double chord(const Rest&, double l);       // stiffer where a step would overshoot, else 0 [N/m]
 //     static double stiffest(const Rest&, double l);    // >= dt/dl: of a parabola above E(l)          [N/m]
+//     static constexpr bool link_pushes;                // of a link of the length Rest::L only: whether it pushes, too
 //   };
 // With d = x_i - x_j, l = |d|, n = d/l:
 //   f_i = -t n - k_d ((v_i - v_j) . n) n,   f_j = -f_i
@@ -17,6 +18,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "solver/forces/stencil_force.h"
 
@@ -25,6 +27,11 @@ namespace drape {
 struct Tension {
   double t;   // N, positive: it pulls the particles together
   double dt;  // N/m
+};
+
+template <class Spring>
+concept LinkOfLength = requires {
+  Spring::link_pushes;
 };
 
 template <class Spring>
@@ -72,6 +79,28 @@ struct AlongDistance {
     response.block = (c * c * (along - across) + c * k_d) * (n * n.transpose()).eval();
     response.block.diagonal().array() += c * c * across;
     return response;
+  }
+
+  // For a pair whose distance is l, and would be l_free without its own impulse: the impulse when it acts alone, along the
+  // way it would lie, is this times that way [kg/s]. The new distance is found by one step of Newton's method from l
+  // (solver/forces/substep.h), with the chord to the rest length where the pair pushes. drag: the speed at which l grows [m/s].
+  [[gnu::always_inline]] static double alone_along(double k_d, const Rest& r, double l, double l_free,
+                                                   double drag, double W, double h) {
+    Tension law = Spring::tension(r, l);
+    if (law.dt == 0) {
+      if (l == l_free) return 0;             // slack
+      law = Spring::tension(r, l = l_free);  // slack by its own pull only
+    }
+    const double k = law.t < 0 ? std::max(law.dt, law.t / (l - r.L)) : law.dt;
+    const double block = h * h * k + h * k_d;
+    return -(h * (law.t + k_d * drag) + block * (l_free - l) / h) / ((1 + W * block) * l_free);
+  }
+
+  // By which share a link of the squared length l2 is too long; 0 of one that is slack and does not push.
+  static double too_long(const Rest& r, double l2, bool squared) requires LinkOfLength<Spring> {
+    const double L2 = r.L * r.L;
+    if (!Spring::link_pushes && l2 <= L2) return 0;
+    return squared ? (l2 - L2) / (l2 + L2) : 1 - r.L / std::sqrt(l2);
   }
 };
 

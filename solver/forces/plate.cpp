@@ -127,6 +127,18 @@ void add_pairs(const BendingTriangle& bending, std::vector<PlatePair>& pairs) {
                          bending.vertices[static_cast<std::size_t>(j)], -K(i, j)});
 }
 
+PlatePart part_of(const BendingTriangle& bending) {
+  PlatePart part;
+  const Eigen::Index rows = bending.rows.rows();  // at most 3
+  part.stiffness.topLeftCorner(rows, rows) = bending.stiffness;
+  for (Eigen::Index v = 0; v < bending.rows.cols(); ++v) {
+    Vec3 weights = Vec3::Zero();
+    weights.head(rows) = bending.rows.col(v);
+    part.shares.push_back({bending.vertices[static_cast<std::size_t>(v)], weights});
+  }
+  return part;
+}
+
 // The rest slopes are those of the mesh, rows X; a triangle among others in its plane has none.
 void add_bent(const TriangleMesh& mesh, const Triangle& triangle, const RestCorners& corners,
               double rest_angle, const BendingTriangle& bending, std::vector<BentTriangle>& all) {
@@ -172,6 +184,7 @@ PlateEnergy plate_energy(const TriangleMesh& mesh, const std::vector<RestCorners
   MorleyPlate(mesh, corners, stiffness).each([&](int t, const BendingTriangle& bending) {
     const auto number = static_cast<std::size_t>(t);
     add_pairs(bending, energy.pairs);
+    energy.parts.push_back(part_of(bending));
     if (rest_angle > 0)
       add_bent(mesh, mesh.triangles[number], corners[number], rest_angle, bending, energy.bent);
   });

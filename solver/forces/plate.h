@@ -51,8 +51,20 @@ struct BentTriangle {
 // One entry for each pair of vertices, sorted.
 std::vector<PlatePair> summed(std::vector<PlatePair> pairs);
 
+// A part of the energy, E = 1/2 sum_kl Z_kl d_k . d_l, with the vectors (d_0, d_1, d_2) = sum over shares of x_v weights^T.
+// The parts together are the pairs; what rests bent is not among them.
+struct PlatePart {
+  struct Share {
+    int vertex;
+    Vec3 weights;  // 1/m; their sum over the shares is zero
+  };
+  std::vector<Share> shares;
+  Mat3 stiffness = Mat3::Zero();  // Z [N m]
+};
+
 struct PlateEnergy {
   std::vector<PlatePair> pairs;    // sorted by (i, j)
+  std::vector<PlatePart> parts;    // the same energy, triangle by triangle or hinge by hinge
   std::vector<BentTriangle> bent;  // empty where the plate rests flat
   // Sums over the pairs of |k| d [N] and of |k| d^2 [J], with d [m] the distance of the pair in the mesh: how large the
   // terms of the energy are that cancel where cloth is flat.

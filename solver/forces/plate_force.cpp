@@ -27,7 +27,7 @@ Slopes slopes_at(const BentTriangle& t, const At& at) {
 }  // namespace
 
 PlateForce::PlateForce(const PlateEnergy& plate, double time, int first)
-    : time_(time), pull_(plate.pull), size_(plate.size), bent_(plate.bent) {
+    : time_(time), pull_(plate.pull), size_(plate.size), bent_(plate.bent), parts_(plate.parts, time, first) {
   pairs_.reserve(plate.pairs.size());
   for (const PlatePair& p : plate.pairs) pairs_.push_back({first + p.i, first + p.j, p.k, -1});
   for (BentTriangle& t : bent_) {
@@ -177,6 +177,20 @@ void PlateForce::add_linearised(const VecX& x, const VecX& v, const VecX& y, dou
     add(d.slot, factor * d.k);
   });
   if (!bent_.empty()) add_bent([&](int i) { return Vec3(x.segment<3>(3 * i) + y.segment<3>(3 * i)); }, c, b);
+}
+
+// The bent triangles hardly stiffen the plate, so their impulse is simply that of their force at x.
+void PlateForce::project(Substep& substep) {
+  parts_.run(substep);
+  if (bent_.empty()) return;
+  if (substep.first) bent_impulse_.setZero(substep.x.size());
+  bent_now_.setZero(substep.x.size());
+  add_bent(rows_of(substep.x), substep.h, bent_now_);
+  for (Eigen::Index i = 0; i < substep.x.size() / 3; ++i) {
+    const Vec3 change = bent_now_.segment<3>(3 * i) - bent_impulse_.segment<3>(3 * i);
+    substep.x.segment<3>(3 * i) += substep.h * substep.mobility[static_cast<std::size_t>(i)] * change;
+  }
+  bent_impulse_.swap(bent_now_);
 }
 
 }  // namespace drape

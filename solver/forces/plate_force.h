@@ -14,6 +14,7 @@
 #include "solver/forces/chunk_schedule.h"
 #include "solver/forces/force.h"
 #include "solver/forces/plate.h"
+#include "solver/forces/plate_parts.h"
 
 namespace drape {
 
@@ -31,6 +32,9 @@ class PlateForce final : public Force {
   void add_force(const VecX& x, const VecX& v, VecX& f) const override;
   void add_linearised(const VecX& x, const VecX& v, const VecX& y, double c, Stiffness stiffness,
                       BlockMatrix& A, VecX& b) const override;
+  bool projects() const override { return true; }
+  void begin_substep(int particles) override { parts_.colour(particles); }
+  void project(Substep& substep) override;
 
  private:
   struct Pair {
@@ -54,6 +58,8 @@ class PlateForce final : public Force {
   std::vector<Diagonal> diagonal_;
   std::vector<BentTriangle> bent_;
   ChunkSchedule schedule_, diagonal_schedule_;
+  PlateParts parts_;              // of the integrator "pbd", as is the rest
+  VecX bent_impulse_, bent_now_;  // on each particle, of the bent triangles [N s]
 };
 
 }  // namespace drape

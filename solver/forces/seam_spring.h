@@ -14,6 +14,7 @@ namespace drape {
 
 struct SeamSpring {
   static constexpr const char* name = "seam";
+  static constexpr bool link_pushes = false;
   struct Rest : TensionSpring::Rest {
     double L_0;  // m
   };

@@ -39,6 +39,16 @@ struct SelfLaw {
             .block = c * c * contact->stiffness * (along + contact->share * across),
             .acts = true};
   }
+  // Coulomb's law as it is, for the gap and the slip without the contact.
+  static Vec3 alone(const Common&, const Rest& c, const Vec3&, const Vec3& free, double W, double h,
+                    const auto&) {
+    const Vec3 p = free + c->carried;
+    const double gives_way = 1 + h * h * W * c->stiffness;
+    const double push = c->push_at(p) / gives_way, most = c->friction * push;
+    const Vec3 drag = c->drag_at(p) / gives_way;
+    const double size = drag.norm();
+    return h * (push * c->normal + (size <= most ? drag : Vec3(most / size * drag)));
+  }
 };
 
 class SelfContactForce final : public StencilForce<SelfLaw> {

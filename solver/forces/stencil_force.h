@@ -39,35 +39,10 @@
 
 #include "solver/forces/chunk_schedule.h"
 #include "solver/forces/force.h"
+#include "solver/forces/stencil_laws.h"
+#include "solver/forces/stencil_projection.h"
 
 namespace drape {
-
-template <int n>
-using Points = Eigen::Matrix<double, 3, n>;
-template <int n>
-using Blocks = Eigen::Matrix<double, 3 * n, 3 * n>;
-
-// The impulse c (dE/dp + K s) + c D v [N s], with s the shift, and the block c D + c^2 K [kg], which is
-// symmetric to the last bit.
-struct VectorResponse {
-  Vec3 impulse = Vec3::Zero();
-  Mat3 block = Mat3::Zero();
-  bool acts = false;  // false: both are zero
-};
-
-using Slopes = Eigen::Matrix<double, 3, 2>;
-struct SlopeBlocks {
-  Mat3 uu, uv, vv;  // uu and vv are symmetric
-};
-
-template <class Law>
-concept VectorLaw = requires(const typename Law::Rest& rest) {
-  Law::weights(rest);
-};
-template <class Law>
-concept SlopeLaw = requires(const typename Law::Rest& rest) {
-  Law::slope_weights(rest);
-};
 
 template <class Law>
 class StencilForce : public Force {
@@ -95,6 +70,7 @@ class StencilForce : public Force {
   template <class F>
   void change_rest(const F& change) {
     for (Element& e : elements_) change(e.rest);
+    rest_changed_ = true;
   }
 
   std::string_view name() const override { return Law::name; }
@@ -106,6 +82,16 @@ class StencilForce : public Force {
   }
   bool changes() const override { return static_cast<bool>(find_); }
   bool begin_step(const StepStart& start) override { return find_ && find_(start, elements_); }
+
+  bool projects() const override { return true; }
+  void begin_substep(int particles) override {
+    if (find_ || to_take_)
+      projection_.take(elements_, particles, !find_);
+    else if (rest_changed_)
+      projection_.take_rest(elements_);
+    to_take_ = rest_changed_ = false;
+  }
+  void project(Substep& substep) override { projection_.run(common_, substep); }
 
   void bind(const BlockLayout& layout) override {
     const auto row = [&](int i) { return layout.base.row_of()[i]; };
@@ -120,6 +106,7 @@ class StencilForce : public Force {
                        [&](const Element& a, const Element& b) { return rows(a) < rows(b); });
       schedule_.bind(layout.base, static_cast<int>(elements_.size()),
                      [&](int e) { return rows(elements_[e])[0]; });
+      to_take_ = true;
     }
     for (Element& e : elements_) {
       auto slot = e.slots.begin();
@@ -234,6 +221,7 @@ class StencilForce : public Force {
   template <class F>
   void change_elements(const F& change) {
     for (Element& e : elements_) change(e);
+    rest_changed_ = true;
   }
   // The vector sum w_k x_k of an element.
   static Vec3 at(const Element& e, const VecX& all) {
@@ -345,6 +333,8 @@ class StencilForce : public Force {
   Common common_;
   Finder find_;  // empty: the stencils stand
   ChunkSchedule schedule_;
+  StencilProjection<Law> projection_;
+  bool to_take_ = true, rest_changed_ = false;  // since the projection took the elements
 };
 
 }  // namespace drape

@@ -11,6 +11,7 @@ namespace drape {
 
 struct TensionSpring {
   static constexpr const char* name = "stretch";
+  static constexpr bool link_pushes = false;
   struct Rest {
     double L;  // m
     double k;  // N/m

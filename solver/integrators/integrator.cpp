@@ -7,6 +7,7 @@
 #include "mesh/base/stopwatch.h"
 #include "solver/integrators/bdf.h"
 #include "solver/integrators/explicit.h"
+#include "solver/integrators/pbd.h"
 #include "solver/integrators/sundials_integrators.h"
 
 namespace drape {
@@ -37,7 +38,8 @@ void end_step(ContactStep& contacts, VecX& x, VecX& v, StepReport& report) {
 std::vector<IntegratorInfo> integrators() {
   std::vector<IntegratorInfo> all = {
       {"implicit-euler", "Baraff & Witkin's implicit step, 1 to n Newton iterations (default)"},
-      {"bdf2", "backward differences of order 2, 1 to n Newton iterations"}};
+      {"bdf2", "backward differences of order 2, 1 to n Newton iterations"},
+      {"pbd", "position-based: substeps in which every spring is taken in turn"}};
   for (const Tableau& tableau : tableaux()) all.push_back({tableau.name, tableau.summary});
 #ifdef DRAPE_HAVE_SUNDIALS
   all.push_back({"newton-kinsol", "the equation of implicit Euler solved by SUNDIALS KINSOL"});
@@ -47,17 +49,25 @@ std::vector<IntegratorInfo> integrators() {
 }
 
 ContactMode contact_mode(std::string_view integrator, std::optional<ContactMode> asked) {
+  if (integrator == "pbd") {
+    if (asked == ContactMode::constraint)
+      throw InputError(
+          "contact = \"constraint\": pbd solves no system that could hold contacts; take contact = "
+          "\"velocity\" or \"restitution\"");
+    return asked.value_or(ContactMode::velocity);
+  }
   std::string names;
   for (const Tableau& tableau : tableaux()) {
     if (integrator == tableau.name) return asked.value_or(ContactMode::velocity);
     names += (names.empty() ? "" : ", ") + std::string(tableau.name);
   }
   if (asked.value_or(ContactMode::constraint) != ContactMode::constraint)
-    throw InputError("contact = \"" + std::string(name(*asked)) + "\": " + std::string(integrator) +
-                     " holds contacts as constraints while it solves for a step, and a velocity that is "
-                     "changed afterwards is not its solution; take contact = \"constraint\", or one of the "
-                     "explicit integrators: " +
-                     names);
+    throw InputError(
+        "contact = \"" + std::string(name(*asked)) + "\": " + std::string(integrator) +
+        " holds contacts as constraints while it solves for a step, and a velocity that is "
+        "changed afterwards is not its solution; take contact = \"constraint\", or pbd or one of the "
+        "explicit integrators: " +
+        names);
   return ContactMode::constraint;
 }
 
@@ -68,6 +78,7 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, System& syste
   if (name == "implicit-euler")
     return std::make_unique<Bdf>(system, constraints, std::move(solver), options, 1);
   if (name == "bdf2") return std::make_unique<Bdf>(system, constraints, std::move(solver), options, 2);
+  if (name == "pbd") return std::make_unique<Pbd>(system, constraints, options, contact);
   for (const Tableau& tableau : tableaux())
     if (name == tableau.name)
       return std::make_unique<Explicit>(tableau, system, constraints, options, contact);

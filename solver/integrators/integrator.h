@@ -39,6 +39,7 @@ struct StepOptions {
   std::optional<double> absolute_tolerance_position = {};  // m
   std::optional<double> absolute_tolerance_velocity = {};  // m/s
   int max_inner_steps = 5000;                              // most inner steps in a step; more is a failure
+  ProjectionOptions projection = {};                       // of "pbd"
 };
 
 // Why and where a step failed.
