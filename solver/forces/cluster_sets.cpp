@@ -23,7 +23,7 @@ ParticleSets sets_of_faces(const TriangleMesh& mesh) {
 }
 
 ParticleSets sets_of_cells(const Lattice& lattice) {
-  const auto [nx, ny, nz] = lattice.cells;
+  const int nx = lattice.cells[0], ny = lattice.cells[1], nz = lattice.cells[2];
   const auto corner = [&](int x, int y, int z) {
     return lattice.particle[static_cast<std::size_t>(x) +
                             static_cast<std::size_t>(nx + 1) *
