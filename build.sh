@@ -52,7 +52,7 @@ for_quick_tests=(catch2 libtinyobjloader-dev libstb-dev)
 for_tests=("${for_quick_tests[@]}" "${for_docs[@]}"
   "${for_python[@]}" python3-scipy python3-matplotlib python3-venv python3-pip python3-setuptools python3-wheel mypy)
 for_browser_tests=(chromium-headless-shell)
-for_export_tests=(python3-numpy python3-vtk9 blender chromium-headless-shell nodejs npm)  # readers of what is exported
+for_export_tests=(python3-numpy python3-meshio python3-vtk9 blender chromium-headless-shell nodejs npm)  # readers of what is exported, writers of what is read
 for_format=(clang-format)
 for_lint=(clang-tidy)
 for_clang=(clang)
