@@ -77,6 +77,8 @@ class Force {
 
   // In a substep of the integrator "pbd" (solver/forces/substep.h):
   virtual bool projects() const { return false; }  // whether it has a form for this
+  // True when it has no stiffness for the matrix of an implicit step, so that add_linearised() leaves it out.
+  virtual bool only_projects() const { return false; }
   // To be called when a substep begins, after begin_step().
   virtual void begin_substep(int /*particles*/) {}
   // Takes every element in turn, once.

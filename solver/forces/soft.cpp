@@ -11,14 +11,12 @@
 namespace drape {
 namespace {
 
-using Springs = std::vector<PairForce<LinearSpring>::Element>;
-
 void add_springs(const Lattice& lattice, const std::vector<LatticePair>& pairs, double k, bool by_cells,
-                 int first, Springs& springs) {
+                 int first, std::vector<SoftSpring>& springs) {
   if (k == 0) return;
   for (const LatticePair& pair : pairs) {
     const double L = (lattice.positions[pair.i] - lattice.positions[pair.j]).norm();
-    springs.push_back({first + pair.i, first + pair.j, {L, by_cells ? k * pair.cells : k}});
+    springs.push_back({first + pair.i, first + pair.j, L, by_cells ? k * pair.cells : k});
   }
 }
 
@@ -59,23 +57,31 @@ std::vector<std::unique_ptr<Force>> soft_body(const Lattice& lattice, const Soft
     shear = 6.0 / 35 * *material.young * a[0];
     bend = 0;
   }
-  Springs springs;
+  std::vector<SoftSpring> springs;
   const bool by_cells = material.young.has_value();
   add_springs(lattice, lattice.structural, structural, by_cells, first_particle, springs);
   add_springs(lattice, lattice.shear, shear, by_cells, first_particle, springs);
   add_springs(lattice, lattice.bend, bend, by_cells, first_particle, springs);
+  return forces_of(springs, material);
+}
+
+std::vector<std::unique_ptr<Force>> forces_of(const std::vector<SoftSpring>& springs,
+                                              const SoftMaterial& material) {
   std::vector<std::unique_ptr<Force>> forces;
   if (springs.empty()) return forces;
   const bool axial = material.damping_kind == DampingKind::axial;
   if (material.damping > 0 && !axial) {
     std::vector<PairDamping::Element> damped;
     damped.reserve(springs.size());
-    for (const auto& s : springs) damped.push_back({s.particles});
+    for (const SoftSpring& s : springs) damped.push_back({{s.i, s.j}});
     forces.push_back(
         std::make_unique<PairDamping>(std::move(damped), material.damping, material.damping_kind));
   }
+  std::vector<PairForce<LinearSpring>::Element> elements;
+  elements.reserve(springs.size());
+  for (const SoftSpring& s : springs) elements.push_back({{s.i, s.j}, {s.L, s.k}});
   forces.push_back(
-      std::make_unique<PairForce<LinearSpring>>(std::move(springs), axial ? material.damping : 0));
+      std::make_unique<PairForce<LinearSpring>>(std::move(elements), axial ? material.damping : 0));
   return forces;
 }
 

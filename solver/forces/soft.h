@@ -38,6 +38,15 @@ void check(const SoftMaterial& material);
 std::vector<double> masses(const Lattice& lattice, const SoftMaterial& material,
                            std::optional<double> volume = {});
 
+struct SoftSpring {
+  int i, j;  // particles of the system
+  double L;  // m
+  double k;  // N/m
+};
+// These springs, and their damping as the material has it.
+std::vector<std::unique_ptr<Force>> forces_of(const std::vector<SoftSpring>& springs,
+                                              const SoftMaterial& material);
+
 // The springs and the damping of a body whose particle 0 is the particle `first_particle` of the system.
 std::vector<std::unique_ptr<Force>> soft_body(const Lattice& lattice, const SoftMaterial& material,
                                               int first_particle = 0);

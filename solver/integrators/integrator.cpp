@@ -71,10 +71,25 @@ ContactMode contact_mode(std::string_view integrator, std::optional<ContactMode>
   return ContactMode::constraint;
 }
 
+namespace {
+
+// Explicit methods need the force alone.
+void require_stiffness(std::string_view integrator, const System& system) {
+  for (const Tableau& tableau : tableaux())
+    if (integrator == tableau.name) return;
+  for (const auto& force : system.forces())
+    if (force->only_projects())
+      throw InputError("integrator \"" + std::string(integrator) + "\": the force '" +
+                       std::string(force->name()) + "' has no stiffness for a matrix; take \"pbd\"");
+}
+
+}  // namespace
+
 std::unique_ptr<Integrator> make_integrator(std::string_view name, System& system, Constraints& constraints,
                                             std::unique_ptr<LinearSolver> solver,
                                             const StepOptions& options) {
   const ContactMode contact = contact_mode(name, options.contact);
+  if (name != "pbd") require_stiffness(name, system);
   if (name == "implicit-euler")
     return std::make_unique<Bdf>(system, constraints, std::move(solver), options, 1);
   if (name == "bdf2") return std::make_unique<Bdf>(system, constraints, std::move(solver), options, 2);
