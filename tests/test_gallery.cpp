@@ -38,7 +38,6 @@ struct Part {
 // clang-format off
 const Part gallery[] = {
     {"ball-on-floor", 0.8, 2},    // has come to the floor; the ball turns from 1.5 s on
-    {"boxes-stack", 0.8, 2},      // stand, and the sheet has come to them
     {"choi-ko-100", 0.5, 1},
     {"choi-ko-200", 0.5, 1},
     {"dress-on-towel", 0.35, 2},  // the dress has come to the towel
@@ -54,7 +53,6 @@ const Part gallery[] = {
     {"nails", 0.5, 1},            // hangs over the nails
     {"needle", 0.3, 1},           // is driven in at 0.1 s and drawn back
     {"net", 0.9, 1},              // the ball comes to it after 0.32 s
-    {"net-on-table", 2.6, 4},     // is let down from 1 s to 2.5 s
     {"noh-jung-100", 0.5, 1},
     {"noh-jung-200", 0.5, 1},
     {"pocket", 0.4, 4},           // comes apart in 0.3 s
