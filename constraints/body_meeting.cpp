@@ -65,7 +65,7 @@ void BodyMeeting::begin_step(Bodies& bodies, double h, double recovery_speed) {
   sweep_until_settled();
   give(bodies);
   for (std::size_t k = 0; k < bodies.size(); ++k)
-    if (movers_[k].meets) bodies[k].expect(apart_[k].first, apart_[k].second);
+    if (movers_[k].meets && movers_[k].reacts) bodies[k].expect(apart_[k].first, apart_[k].second);
 }
 
 void BodyMeeting::find(const Bodies& bodies, double h) {
