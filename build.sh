@@ -44,7 +44,7 @@ die() {
 
 required=(g++ cmake ninja-build libeigen3-dev libspectra-dev libembree-dev libtoml11-dev libcli11-dev nlohmann-json3-dev libudunits2-dev libcsv-dev
   libboost-dev libsvgpp-dev libpugixml-dev libpng-dev libfreetype-dev fonts-dejavu-core zlib1g-dev)
-optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev)
+optional=(libsuitesparse-dev libopenblas0-pthread libsundials-dev libopenvdb-dev libbullet-dev)
 for_viewer=(nodejs npm)
 for_docs=(python3 python3-sphinx python3-myst-parser furo doxygen linkchecker)
 for_python=(python3-dev pybind11-dev python3-numpy)

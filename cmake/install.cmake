@@ -20,7 +20,7 @@ install(EXPORT drapeAppTargets NAMESPACE drape:: DESTINATION ${package_dir})
 set(data_dir ${CMAKE_INSTALL_DATADIR}/drape)
 
 # As 0 or 1, so that the file reads if(NOT 0).
-foreach(name BUILD_SHARED_LIBS DRAPE_HAVE_CHOLMOD DRAPE_HAVE_OPENVDB DRAPE_HAVE_SUNDIALS)
+foreach(name BUILD_SHARED_LIBS DRAPE_HAVE_BULLET DRAPE_HAVE_CHOLMOD DRAPE_HAVE_OPENVDB DRAPE_HAVE_SUNDIALS)
   if(${name})
     set(${name} 1)
   else()
@@ -34,6 +34,9 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/drapeConfigVersion.
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/drapeConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/drapeConfigVersion.cmake
         DESTINATION ${package_dir})
 install(FILES cmake/FindUDUNITS2.cmake cmake/FindLIBCSV.cmake DESTINATION ${package_dir})
+if(DRAPE_HAVE_BULLET)
+  install(FILES cmake/FindBULLET64.cmake DESTINATION ${package_dir})
+endif()
 if(DRAPE_HAVE_CHOLMOD)
   install(FILES cmake/FindCHOLMOD.cmake DESTINATION ${package_dir})
 endif()

@@ -9,6 +9,7 @@ namespace drape {
 
 void Constraints::add(Obstacle obstacle) {
   bodies_.emplace_back(std::move(obstacle), static_cast<int>(bodies_.size()));
+  meeting_.add(bodies_);
   step_.held.clear();  // so that prepare() makes all that is known of the particles anew
 }
 
@@ -65,6 +66,7 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
   step_.v = v;
   step_.inertia = masses;
   for (MovingBody& body : bodies_) body.begin_step(t, h);
+  meeting_.begin_step(bodies_, h, options_.recovery_speed);
   pins_.move(bodies_, step_);
   if (!bodies_.empty()) {
     contacts_.open();

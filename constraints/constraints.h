@@ -5,6 +5,7 @@
 
 #include <string_view>
 
+#include "constraints/body_meeting.h"
 #include "constraints/face_contact.h"
 #include "constraints/particle_contacts.h"
 #include "constraints/pin_set.h"
@@ -64,6 +65,10 @@ class Constraints {
   // How deep each particle is inside a body [m]; 0 where it is outside. Meant for the start and the end of a
   // run.
   std::vector<double> penetration(const VecX& x) const;
+  // Pairs of bodies, one of which reacts at least, that start inside each other by more than `margin` [m].
+  std::vector<BodyMeeting::Overlap> overlapping_bodies(double margin) {
+    return meeting_.overlaps(bodies_, margin);
+  }
 
  private:
   friend class ContactStep;
@@ -75,6 +80,7 @@ class Constraints {
   ParticleContacts contacts_;
   FaceContacts faces_;
   SelfContacts self_;
+  BodyMeeting meeting_;
   StepMotion step_;  // the step under way, and what is known from the last one
   VecX x_new_;       // scratch
 };

@@ -24,6 +24,11 @@ void MovingBody::begin_step(double t, double h) {
   turns_ = start_.rotation != end_.rotation;
 }
 
+void MovingBody::expect(const Vec3& u, const Vec3& w) {
+  end_ = reacting_->expect(u, w);
+  turns_ = start_.rotation != end_.rotation;
+}
+
 bool MovingBody::end_step() {
   now_ = end_;
   return !reacting_ || reacting_->end_step(end_);
@@ -67,6 +72,13 @@ Vec3 MovingBody::carried(const Mark& mark) const {
 
 double MovingBody::travel(const Vec3& x0, const Vec3& x1) const {
   return (end_.to_body(x1) - start_.to_body(x0)).norm() + largest_displacement(obstacle_.shape);
+}
+
+double MovingBody::fastest_carried(const Vec3& X, double reach) const {
+  const double turn = (end_.rotation - start_.rotation).norm();
+  return ((end_.to_world(X) - start_.to_world(X)).norm() + turn * reach +
+          largest_displacement(obstacle_.shape)) /
+         h_;
 }
 
 ContactPlane MovingBody::plane_at(const Vec3& x, const Vec3& normal, double gap) const {

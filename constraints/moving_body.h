@@ -26,8 +26,9 @@ class MovingBody {
 
   const Obstacle& obstacle() const { return obstacle_; }
   int number() const { return number_; }
-  double step() const { return h_; }         // length of the step under way [s]
-  const Pose& pose() const { return now_; }  // at the end of the last completed step
+  double step() const { return h_; }            // length of the step under way [s]
+  const Pose& pose() const { return now_; }     // at the end of the last completed step
+  const Pose& start() const { return start_; }  // when the step under way begins
   // The state of a body that reacts; null when it does not react.
   const ReactingBody* reacting() const { return reacting_ ? &*reacting_ : nullptr; }
 
@@ -55,6 +56,11 @@ class MovingBody {
   void push(const Vec3& impulse, const Vec3& place, double approach = 0);
   bool correct(double noise) { return reacting_ && reacting_->correct(end_, noise); }
 
+  // Impulse [N s] and moment [N m s] of other bodies on this one, which reacts (constraints/body_meeting.h).
+  void meet(const Vec3& impulse, const Vec3& moment) { reacting_->meet(impulse, moment); }
+  // See ReactingBody::expect.
+  void expect(const Vec3& u, const Vec3& w);
+
   // Signed distance at the end of the last completed step [m].
   double distance(const Vec3& x) const { return closest(obstacle_.shape, now_.to_body(x), 1).distance; }
 
@@ -65,6 +71,8 @@ class MovingBody {
   Vec3 carried(const Vec3& x) const;
   Vec3 carried(const Mark& mark) const;
   Vec3 velocity(const Vec3& x) const { return (carried(x) - x) / h_; }
+  // The most that a point within `reach` [m] of X, in the body's frame, moves in this step, over the time [m/s].
+  double fastest_carried(const Vec3& X, double reach) const;
   // The most by which the distance of a particle from the body can change on its way [m].
   double travel(const Vec3& x0, const Vec3& x1) const;
   ContactPlane plane(const Vec3& x, const SurfacePoint& at_start, const Vec3& x_new) const;

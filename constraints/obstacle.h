@@ -5,9 +5,10 @@
 //             the straight edges between them stay clear of a curved body
 //   motion    where the body is at each time; the shape is given in the body's own frame, which is the
 //             world's where nothing moves
-//   restitution  which part of the normal velocity an impact gives back [-]; only the contact mode
-//                "restitution" uses it (constraints/response.h)
-//   rigid     the body's mass, when it falls and the cloth pushes it (constraints/reacting_body.h)
+//   restitution  which part of the normal velocity an impact gives back [-]; for the cloth only the contact mode
+//                "restitution" uses it (constraints/response.h), for other bodies it always counts
+//   rigid     the body's mass, when it falls and is pushed by the cloth (constraints/reacting_body.h) and by other bodies
+//             (constraints/body_meeting.h)
 #pragma once
 
 #include <optional>

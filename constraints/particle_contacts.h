@@ -30,13 +30,15 @@ struct ContactFriction {
 
 struct ContactReport {
   int contacts = 0;
-  int guarded = 0;        // particles that were stopped at a surface after the solve, outside the equations
-  bool converged = true;  // the motion of bodies that react agrees with the impulses on them
-  double deepest = 0;     // how deep the deepest particle was inside a body when the step began [m]
-  int self_contacts = 0;  // pairs of cloth and cloth that push each other
-  int self_guarded = 0;   // particles whose way was shortened so that no cloth passes through cloth
-  int tangled = 0;        // particles where cloth passes through cloth
-  int pinched = 0;        // particles that a body could not be kept off
+  int guarded = 0;          // particles that were stopped at a surface after the solve, outside the equations
+  bool converged = true;    // the motion of bodies that react agrees with the impulses on them
+  double deepest = 0;       // how deep the deepest particle was inside a body when the step began [m]
+  int self_contacts = 0;    // pairs of cloth and cloth that push each other
+  int self_guarded = 0;     // particles whose way was shortened so that no cloth passes through cloth
+  int tangled = 0;          // particles where cloth passes through cloth
+  int pinched = 0;          // particles that a body could not be kept off
+  int body_contacts = 0;    // points at which bodies press on each other
+  double body_overlap = 0;  // how deep bodies were inside each other when the step began [m]
 };
 
 // An impulse of a body on a particle, see constraints/response.h.

@@ -59,14 +59,18 @@ Mat3 ReactingBody::mobility(const Vec3& place) const {
 }
 
 Pose ReactingBody::moved() const {
-  const Vec3 c = pose_.to_world(body_.centre) + h_ * q_.head<3>();
-  const Mat3 R = turned_by(h_ / radius_ * q_.tail<3>()) * pose_.rotation;
+  const Vec6 q = meets_ ? Vec6(q_ + y_) : q_;
+  const Vec3 c = pose_.to_world(body_.centre) + h_ * q.head<3>();
+  const Mat3 R = turned_by(h_ / radius_ * q.tail<3>()) * pose_.rotation;
   return {R, c - R * body_.centre};
 }
 
 Pose ReactingBody::begin_step(double h) {
   const double share = last_h_ > 0 ? h / last_h_ : 0;  // of the impulses of the last step
   h_ = h;
+  meets_ = false;
+  J_ = share * last_J_;
+  T_ = share * last_T_;
   q_.head<3>() = v_ + h * body_.gravity + share * last_J_ / body_.mass;
   q_.tail<3>() = radius_ * (world_inertia(pose_).inverse() * (L_ + share * last_T_));
   q_free_.head<3>() = v_ + h * body_.gravity;
@@ -93,7 +97,22 @@ ReactingBody::Vec6 ReactingBody::difference() const {
   Vec6 d;
   d.head<3>() = v_ + h_ * body_.gravity + J_ / body_.mass;
   d.tail<3>() = radius_ * (world_inertia(pose_).inverse() * (L_ + T_));
+  if (meets_) d += met_;
   return d - q_;
+}
+
+void ReactingBody::meet(const Vec3& impulse, const Vec3& moment) {
+  meets_ = true;
+  A_ = moment;
+  met_.head<3>() = impulse / body_.mass;
+  met_.tail<3>() = radius_ * (inverse_inertia() * moment);
+}
+
+Pose ReactingBody::expect(const Vec3& u, const Vec3& w) {
+  y_.head<3>() = u;
+  y_.tail<3>() = radius_ * w;
+  q_ += met_;
+  return moved();
 }
 
 double ReactingBody::change() const { return (h_ * body_.gravity).norm() + J_.norm() / body_.mass; }
@@ -101,8 +120,9 @@ double ReactingBody::change() const { return (h_ * body_.gravity).norm() + J_.no
 // The cloth can throw the body back at twice the speed at which they met, and no faster.
 void ReactingBody::stay_in_reach() {
   const double reach = 2 * (meeting_ + (h_ * body_.gravity).norm());
-  const Vec6 away = q_ - q_free_;
-  if (away.norm() > reach) q_ = q_free_ + reach / away.norm() * away;
+  const Vec6 alone = meets_ ? Vec6(q_free_ + met_) : q_free_;
+  const Vec6 away = q_ - alone;
+  if (away.norm() > reach) q_ = alone + reach / away.norm() * away;
 }
 
 bool ReactingBody::correct(Pose& end, double noise) {
@@ -153,11 +173,13 @@ bool ReactingBody::end_step(const Pose& end) {
   const bool converged = this->converged();
   const Vec6 q = converged ? Vec6(q_ + d) : q_;
   v_ = q.head<3>();
-  L_ = converged ? Vec3(L_ + T_) : Vec3(world_inertia(pose_) * q.tail<3>() / radius_);
+  const Vec3 T = meets_ ? Vec3(T_ + A_) : T_;
+  L_ = converged ? Vec3(L_ + T) : Vec3(world_inertia(pose_) * q.tail<3>() / radius_);
   pose_ = end;
   last_h_ = h_;
   last_J_ = J_;
   last_T_ = T_;
+  last_P_ = meets_ ? Vec3(body_.mass * met_.head<3>()) : Vec3::Zero();
   return converged;
 }
 

@@ -16,8 +16,9 @@
 // is the cloth's share of the inertia [kg]; later in the same contact, a is what the last step found. q starts from
 // what the impulses of the last step would give, which is right at once for a body at rest. The body gets the
 // impulses of the last solve, so that momentum is kept; only where d has not become small it gets the motion
-// that was prescribed, and the step is not `converged`. Contact between two such bodies, or of one with an
-// obstacle, is not looked for.
+// that was prescribed, and the step is not `converged`.
+// What other bodies do to it changes q' too: the impulse P and its moment A about c are those of
+// constraints/body_meeting.h, found for the motion that q' would be without them.
 // m [kg], I [kg m^2] about c in the body's frame, c [m], v, u [m/s], w [rad/s], J [N s], T [N m s], h [s].
 #pragma once
 
@@ -52,6 +53,9 @@ class ReactingBody {
   Vec3 momentum() const { return body_.mass * v_; }
   Vec3 angular_momentum() const { return L_; }  // about its centre of mass
   Vec3 centre() const { return pose_.to_world(body_.centre); }
+  // What cloth and other bodies gave it in that step [N s].
+  const Vec3& impulse_of_cloth() const { return last_J_; }
+  const Vec3& impulse_of_bodies() const { return last_P_; }
 
   double mass() const { return body_.mass; }
   // The velocity that an impulse gives the point `place` of the body: 1/m - [r] I^-1 [r], r from its centre of mass
@@ -67,6 +71,19 @@ class ReactingBody {
   // noise [N s]: what in the impulses may be round-off.
   bool correct(Pose& end, double noise = 0);
   bool converged(double share = well) const;
+
+  // What other bodies do to it. The motion without that, by gravity and by the impulses of the cloth, of which there are
+  // those of the last step before the first solve:
+  Vec3 free_velocity() const { return v_ + h_ * body_.gravity + J_ / body_.mass; }
+  Vec3 free_spin() const { return inverse_inertia() * (L_ + T_); }
+  double mass() const { return body_.mass; }
+  Mat3 inverse_inertia() const { return world_inertia(pose_).inverse(); }  // at the start of the step
+  const Vec3& gravity() const { return body_.gravity; }
+  // Impulse P [N s] and moment A [N m s] of the other bodies in this step.
+  void meet(const Vec3& impulse, const Vec3& moment);
+  // Takes P and A into the prescribed motion before the first solve, and moves the body besides by u [m/s] and w [rad/s]
+  // for the step, which its velocity does not keep. Returns the pose at the end of the step.
+  Pose expect(const Vec3& u, const Vec3& w);
   bool end_step(const Pose& end);  // false: not converged
 
  private:
@@ -86,13 +103,17 @@ class ReactingBody {
   Vec3 v_, L_;
   double last_h_ = 0;                                   // length of the last completed step [s]
   Vec3 last_J_ = Vec3::Zero(), last_T_ = Vec3::Zero();  // impulse [N s] and its moment [N m s] in that step
+  Vec3 last_P_ = Vec3::Zero();                          // impulse of other bodies [N s]
 
   // These belong to the step under way.
   double h_ = 0;
   Vec3 J_ = Vec3::Zero(), T_ = Vec3::Zero();
-  double relaxation_ = 0;  // a above; 0: nothing touches the body
-  double approach_ = 0;    // the largest approach of the last solve [m/s]
-  double meeting_ = 0;     // the approach at the start of the step [m/s]
+  bool meets_ = false;                          // another body
+  Vec3 A_ = Vec3::Zero();                       // moment of what other bodies do
+  Vec6 met_ = Vec6::Zero(), y_ = Vec6::Zero();  // what they change of q', and of the pose alone
+  double relaxation_ = 0;                       // a above; 0: nothing touches the body
+  double approach_ = 0;                         // the largest approach of the last solve [m/s]
+  double meeting_ = 0;                          // the approach at the start of the step [m/s]
   Vec6 q_ = Vec6::Zero(), q_free_ = Vec6::Zero();
   bool known_ = false;  // last_q_ and last_d_ are those of a solve before
   Vec6 last_q_ = Vec6::Zero(), last_d_ = Vec6::Zero();

@@ -86,8 +86,9 @@ void add_obstacles(py::module_& m) {
            "rigid"_a = py::none(),
            "friction: Coulomb's coefficient, or a pair (static, kinetic); margin [m]: the cloth comes to "
            "rest this\n"
-           "far outside; motion: where it is when; restitution: 0 to 1, with the contact mode 'restitution' "
-           "only;\n"
+           "far outside; motion: where it is when; restitution: 0 to 1, of cloth with the contact mode "
+           "'restitution' "
+           "only, of bodies always;\n"
            "rigid: its mass, when it reacts")
       .def_property_readonly(
           "friction", [](const Obstacle& o) { return std::pair(o.friction.statics, o.friction.kinetic); },

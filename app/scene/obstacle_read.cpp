@@ -155,8 +155,8 @@ ObstacleEntry read_obstacle(Table& table, const fs::path& folder) {
   table.read("margin", entry.obstacle.margin, dimension::length, Range::not_negative,
              "distance that the cloth keeps");
   table.read("restitution", entry.obstacle.restitution, dimension::number, Range::not_negative,
-             "0 to 1: the part of the normal velocity that an impact gives back; with contact = "
-             "\"restitution\" only");
+             "0 to 1: the part of the normal velocity that an impact gives back; of cloth with contact = "
+             "\"restitution\" only, of bodies always");
   if (entry.obstacle.restitution > 1) table.fail("restitution", "expected a number from 0 to 1");
   entry.obstacle.motion = read_motion(table, folder, middle(entry), entry.source).value_or(Motion());
   read_rigid(table, entry, middle(entry));

@@ -76,6 +76,17 @@ void warn_of_crossed_bodies(const Scene& scene, Simulation& simulation) {
     }
 }
 
+void warn_of_overlapping_bodies(const Scene& scene, Simulation& simulation) {
+  constexpr double negligible = 1e-5;  // m
+  const auto called = [&](int body) {
+    return body_name(simulation.constraints->bodies()[body].obstacle(), scene.obstacles[body].name);
+  };
+  for (const BodyMeeting::Overlap& pair : simulation.constraints->overlapping_bodies(negligible))
+    simulation.messages.push_back("warning: " + called(pair.a) + " and " + called(pair.b) + " start " +
+                                  rounded(1000 * pair.depth, 3) +
+                                  " mm inside each other: they are moved apart slowly (recovery_speed)");
+}
+
 // Woven and knitted cloth weighs 10 to 1000 g/m^2.
 void warn_if_heavy(const ClothEntry& entry, Names& messages) {
   constexpr double heaviest = 10;  // kg/m^2
@@ -194,6 +205,9 @@ void warn_of_restitution(const Scene& scene, Names& messages) {
   const SimulationOptions& options = scene.simulation;
   const ContactMode mode = contact_mode(options.integrator, options.step.contact);
   if (mode == ContactMode::restitution) return;
+  const auto reacts = [](const ObstacleEntry& entry) { return entry.obstacle.rigid.has_value(); };
+  if (scene.obstacles.size() > 1 && std::any_of(scene.obstacles.begin(), scene.obstacles.end(), reacts))
+    return;  // bodies that meet spring back in any mode
   for (const ObstacleEntry& entry : scene.obstacles)
     if (entry.obstacle.restitution > 0)
       messages.push_back("warning: " + body_name(entry.obstacle, entry.name) +
@@ -239,6 +253,7 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
   for (const SoftEntry& soft : scene.softs) tell_of_self_contact(soft, simulation.messages);
   warn_of_vertices_inside(scene, simulation);
   warn_of_crossed_bodies(scene, simulation);
+  warn_of_overlapping_bodies(scene, simulation);
   warn_if_coarse(scene, simulation);
   warn_of_restitution(scene, simulation.messages);
   warn_of_time(scene.simulation, simulation.messages);

@@ -31,6 +31,8 @@ void end_step(ContactStep& contacts, VecX& x, VecX& v, StepReport& report) {
   report.self_guarded += contact.self_guarded;
   report.tangled = contact.tangled;
   report.pinched = contact.pinched;
+  report.body_contacts = contact.body_contacts;
+  report.body_overlap = std::max(report.body_overlap, contact.body_overlap);
   report.converged = report.converged && contact.converged;
   report.penetration = std::max(report.penetration, contact.deepest);
 }

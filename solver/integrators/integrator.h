@@ -72,6 +72,8 @@ struct StepReport {
   int self_guarded = 0;         // particles whose way was shortened so that no cloth passes through cloth
   int tangled = 0;              // particles where cloth passes through cloth, and is brought apart
   int pinched = 0;              // particles that a body may pass, because it could not be kept off them
+  int body_contacts = 0;        // points at which bodies press on each other at the end
+  double body_overlap = 0;      // m: how far bodies were inside each other at the start
   double contact_residual = 0;  // how far they were from settled in the worst of the pieces, see StepOptions
   double penetration = 0;       // m: how far the deepest particle was inside a body at the start
   double assemble_ms = 0, solve_ms = 0, collide_ms = 0, step_ms = 0;
