@@ -76,7 +76,6 @@ class ReactingBody {
   // those of the last step before the first solve:
   Vec3 free_velocity() const { return v_ + h_ * body_.gravity + J_ / body_.mass; }
   Vec3 free_spin() const { return inverse_inertia() * (L_ + T_); }
-  double mass() const { return body_.mass; }
   Mat3 inverse_inertia() const { return world_inertia(pose_).inverse(); }  // at the start of the step
   const Vec3& gravity() const { return body_.gravity; }
   // Impulse P [N s] and moment A [N m s] of the other bodies in this step.
