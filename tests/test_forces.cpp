@@ -11,7 +11,7 @@
 #include "solver/forces/damping.h"
 #include "solver/forces/linear_spring.h"
 #include "solver/forces/noh_jung.h"
-#include "solver/forces/rope.h"
+#include "solver/forces/rope_laws.h"
 #include "solver/forces/seam_spring.h"
 #include "solver/forces/soft.h"
 #include "tests/places.h"

@@ -48,7 +48,7 @@ TEST_CASE("a rope without stiffness hangs as a catenary, in the limit of fine se
     std::array<double, 3> errors{};
     for (std::size_t k = 0; k < 3; ++k) {
       const int segments = 10 << k;
-      Rope rope(folded(span, segments), {.mass_per_length = 0.1, .stretch = 1e7, .bend = 0});
+      Rope rope(folded(span, segments), {.mass_per_length = 0.1, .stretch = 1e5, .bend = 0});
       rope.hold({0, segments});
       rope.settle();
       errors[k] = std::abs(-rope.at(segments / 2).y() - sag);
@@ -189,21 +189,20 @@ TEST_CASE("a rope in free flight keeps momentum, and angular momentum with the t
     momentum -= p_0;
     turning -= L_0;
   };
-  for (const Traits& t : traits) {
-    const auto names = integrator_names();
-    if (std::find(names.begin(), names.end(), t.name) == names.end()) continue;
-    CAPTURE(t.name);
+  for (const std::string& name : integrator_names()) {
+    const Traits& t = traits_of(name);
+    CAPTURE(name);
     Vec3 p, L;
     double gained;
-    flight(t.name, 1e-4, p, L, gained);
+    flight(name, 2e-4, p, L, gained);
     CHECK(p.norm() < (t.order > 0 ? 1e-10 : 1e-4));
     CHECK(L.norm() < (t.order == 1 ? 2e-3 : 2e-4));
     if (!t.is_explicit && t.order == 1) CHECK(gained < 1e-12);
   }
   Vec3 p, coarse, fine;
   double gained;
-  flight("implicit-euler", 5e-5, p, coarse, gained);
-  flight("implicit-euler", 1.25e-5, p, fine, gained);
+  flight("implicit-euler", 1e-4, p, coarse, gained);
+  flight("implicit-euler", 2.5e-5, p, fine, gained);
   CHECK(coarse.norm() / fine.norm() > 3);
   flight("implicit-euler", 1e-2, p, coarse, gained);
   CHECK(gained < 1e-12);  // J, of 0.1

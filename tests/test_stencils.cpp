@@ -8,7 +8,7 @@
 #include "solver/forces/damping.h"
 #include "solver/forces/linear_spring.h"
 #include "solver/forces/pair_force.h"
-#include "solver/forces/rope.h"
+#include "solver/forces/rope_laws.h"
 #include "solver/forces/woven.h"
 #include "solver/integrators/newton_matrix.h"
 #include "tests/dense.h"

@@ -4,6 +4,7 @@
 
 #include "mesh/base/errors.h"
 #include "solver/forces/require.h"
+#include "solver/forces/rope_laws.h"
 
 namespace drape {
 namespace {

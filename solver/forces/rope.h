@@ -3,8 +3,9 @@
 //   stretch  E = EA / (2 L) (l - L)^2              of two neighbours, and damped along them by C_s / L
 //   bend     E = B / (2 d) |p|^2,  p = (x_0 - x_1) / a + (x_2 - x_1) / b,  d = (a + b) / 2      of three neighbours
 // L, a, b [m]: lengths of segments at rest; l [m]: length now; EA [N]: stretch; B [N m^2]: bend; C_s [N s] and
-// C_b [N m^2 s]: what damps them. p / d is the curvature, to second order in the length of the segments as long as
-// they hardly stretch, and E is quadratic in the positions: its Hessian is constant and positive semidefinite.
+// C_b [N m^2 s]: what damps them, the latter the rate of |p|, so that no rope resists being turned as a whole. p / d is
+// the curvature, to second order in the length of the segments as long as they hardly stretch. E is quadratic in the
+// positions: its Hessian is constant and positive semidefinite. The laws: solver/forces/rope_laws.h.
 //                                                              [Bergou et al. 2006]
 // A turn by the angle t between two segments has |p| = 2 sin(t/2): a rope that is folded over in one particle resists
 // with at most 2 B / d. Where the tension changes along the rope, p has a part along it, too, which makes tensions wrong by a
@@ -19,7 +20,8 @@
 #include <span>
 #include <vector>
 
-#include "solver/forces/linear_spring.h"
+#include "mesh/base/vectors.h"
+#include "solver/forces/force.h"
 
 namespace drape {
 
@@ -42,38 +44,5 @@ std::vector<double> rope_masses(const std::vector<Vec3>& points, const RopeMater
 // system. Throws InputError when there are fewer than two points, or when two that follow each other are at one place.
 std::vector<std::unique_ptr<Force>> rope_forces(const std::vector<Vec3>& points,
                                                 std::span<const int> particles, const RopeMaterial& material);
-
-struct RopeStretch : LinearSpring {
-  static constexpr const char* name = "stretch";
-  static double damper(double C_s, const Rest& r) { return C_s / r.L; }  // N s/m
-};
-
-struct RopeBend {
-  static constexpr const char* name = "bend";
-  static constexpr int particles = 3;
-  struct Rest {
-    double a, b;  // m
-    double k, c;  // B / d [N m], C_b / d [N m s]
-  };
-  struct Common {};
-
-  static std::array<double, 3> weights(const Rest& r) { return {1 / r.a, -1 / r.a - 1 / r.b, 1 / r.b}; }
-
-  static double energy(const Common&, const Rest& r, const Vec3& p) { return 0.5 * r.k * p.squaredNorm(); }
-  static double dissipation(const Common&, const Rest& r, const Vec3&, const auto& velocity) {
-    return r.c == 0 ? 0 : 0.5 * r.c * velocity().squaredNorm();
-  }
-  static Vec3 pull(const Common&, const Rest& r, const Vec3& p, const auto& velocity) {
-    return r.c == 0 ? Vec3(r.k * p) : Vec3(r.k * p + r.c * velocity());
-  }
-  static VectorResponse linearised(const Common&, const Rest& r, const Vec3& p, const auto& velocity,
-                                   const auto& shift, double c, Stiffness) {
-    VectorResponse response{.acts = true};
-    response.impulse = c * r.k * (p + shift());
-    if (r.c > 0) response.impulse += c * r.c * velocity();
-    response.block = (c * c * r.k + c * r.c) * Mat3::Identity();
-    return response;
-  }
-};
 
 }  // namespace drape
