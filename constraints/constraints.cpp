@@ -1,8 +1,10 @@
 #include "constraints/constraints.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "constraints/contact_step.h"
+#include "mesh/base/errors.h"
 #include "mesh/base/parallel.h"
 
 namespace drape {
@@ -30,7 +32,24 @@ void Constraints::pin_along(const std::vector<int>& particles, const Motion& mot
   step_.held.clear();
 }
 
+void Constraints::set_radius(int particle, double radius) {
+  if (!(radius >= 0) || !std::isfinite(radius))
+    throw InputError("radius = " + std::to_string(radius) + " m: a radius is finite and not negative");
+  const auto i = static_cast<std::size_t>(particle);
+  if (step_.radius.size() <= i) step_.radius.resize(i + 1, 0.0);
+  step_.radius[i] = radius;
+}
+
 void Constraints::merge(const std::vector<int>& particle_of) {
+  if (!step_.radius.empty()) {
+    std::vector<double> radius;
+    for (std::size_t i = 0; i < particle_of.size(); ++i) {
+      const auto to = static_cast<std::size_t>(particle_of[i]);
+      if (radius.size() <= to) radius.resize(to + 1, 0.0);
+      radius[to] = std::max(radius[to], step_.radius_of(static_cast<int>(i)));
+    }
+    step_.radius = std::move(radius);
+  }
   pins_.renumber(particle_of);
   faces_.renumber(particle_of);
   self_.renumber(particle_of);
@@ -91,7 +110,7 @@ std::vector<double> Constraints::penetration(const VecX& x) const {
   for_chunks(n, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
       for (const MovingBody& body : bodies_)
-        depth[i] = std::max(depth[i], -body.distance(x.segment<3>(3 * i)));
+        depth[i] = std::max(depth[i], radius_of(i) - body.distance(x.segment<3>(3 * i)));
   });
   return depth;
 }

@@ -32,9 +32,15 @@ class Constraints {
   void pin_to_body(const std::vector<int>& particles, int body, const VecX& x);
   void pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x);
 
+  // The particle is the middle of something that is as thick as a ball of this radius [m], such as a rope: it rests at
+  // the radius and the margin outside of a body. A particle of a cloth has the radius 0. Throws InputError when the
+  // radius is negative or not finite.
+  void set_radius(int particle, double radius);
+  double radius_of(int particle) const { return step_.radius_of(particle); }
+
   // Several particles become one: particle i gets the number particle_of[i]. The new particle is pinned if
   // any of its parts was, in the way of the lowest-numbered part that was pinned. Contacts are found anew;
-  // bodies stay as they are.
+  // bodies stay as they are. The new particle has the largest radius of its parts.
   void merge(const std::vector<int>& particle_of);
 
   // Adds the triangles of the cloth, so that corners and rims of bodies do not come through between the
@@ -62,8 +68,8 @@ class Constraints {
                                        double t, double h, Foresight foresight = Foresight::ahead,
                                        double kappa = implicit_kappa);
 
-  // How deep each particle is inside a body [m]; 0 where it is outside. Meant for the start and the end of a
-  // run.
+  // How deep each particle, or the ball of its radius, is inside a body [m]; 0 where it is outside. Meant for the
+  // start and the end of a run.
   std::vector<double> penetration(const VecX& x) const;
   // Pairs of bodies, one of which reacts at least, that start inside each other by more than `margin` [m].
   std::vector<BodyMeeting::Overlap> overlapping_bodies(double margin) {

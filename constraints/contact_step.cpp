@@ -61,11 +61,15 @@ void ContactStep::receive(const VecX& v, const VecX& r, const VecX& x_end) {
 }
 
 void ContactStep::receive_pin(const MovingPin& pin, const Vec3& impulse) {
+  const StepMotion& step = constraints_->step_;
   const Vec3 velocity = constraints_->pins_.velocity(pin.particle);
-  if (pin.body < 0)
-    constraints_->step_.work += velocity.dot(impulse);
-  else
-    push(pin.body, pin.particle, velocity, velocity, impulse);
+  constraints_->step_.work += velocity.dot(impulse);
+  if (pin.body < 0) return;
+  // A pin pulls at a body that it has not run into: the body may become as fast as the pull itself makes it.
+  MovingBody& body = constraints_->bodies_[pin.body];
+  const double by_pull = body.reacting() ? impulse.norm() / body.obstacle().rigid->mass : 0;
+  const double approach = (velocity - step.velocity(pin.particle)).norm();
+  body.push(-impulse, step.place(pin.particle) + step.h * velocity, std::max(approach, by_pull));
 }
 
 void ContactStep::receive_faces(const VecX& v) {

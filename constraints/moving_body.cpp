@@ -85,8 +85,10 @@ ContactPlane MovingBody::plane_at(const Vec3& x, const Vec3& normal, double gap)
   return {number_, end_.direction_to_world(normal), gap, velocity(x)};
 }
 
-ContactPlane MovingBody::plane(const Vec3& x, const SurfacePoint& at_start, const Vec3& x_new) const {
-  if (!turns_ && !deforms()) return plane_at(x, at_start.normal, at_start.distance - obstacle_.margin);
+ContactPlane MovingBody::plane(const Vec3& x, const SurfacePoint& at_start, const Vec3& x_new,
+                               double radius) const {
+  const double offset = obstacle_.margin + radius;
+  if (!turns_ && !deforms()) return plane_at(x, at_start.normal, at_start.distance - offset);
   // Where the particle will be in the body's frame: a particle that slides on a turning body does not turn
   // with it, and the tilt of the normal would drive it round.
   const Vec3 X = drape::carried(obstacle_.shape, start_.to_body(x)), way = end_.to_body(x_new) - X;
@@ -94,31 +96,32 @@ ContactPlane MovingBody::plane(const Vec3& x, const SurfacePoint& at_start, cons
   const Vec3 slid = way - n.dot(way) * n;
   const SurfacePoint s = closest(obstacle_.shape, X + slid, 1);
   // Where the body closes on the particle within the step, the surface at the end is no way out.
-  if (s.covered) return plane_at(x, at_start.normal, at_start.distance - obstacle_.margin);
-  return plane_at(x, s.normal, s.distance - s.normal.dot(slid) - obstacle_.margin);
+  if (s.covered) return plane_at(x, at_start.normal, at_start.distance - offset);
+  return plane_at(x, s.normal, s.distance - s.normal.dot(slid) - offset);
 }
 
-std::optional<ContactPlane> MovingBody::meeting(const Vec3& x0, const Vec3& x1) const {
+std::optional<ContactPlane> MovingBody::meeting(const Vec3& x0, const Vec3& x1, double radius) const {
   const Vec3 X0 = start_.to_body(x0), X1 = end_.to_body(x1);
-  const auto hit = first_hit(obstacle_.shape, X0, X1, obstacle_.margin);
+  const double offset = obstacle_.margin + radius;
+  const auto hit = first_hit(obstacle_.shape, X0, X1, offset);
   if (!hit || hit->surface.covered) return std::nullopt;
   const SurfacePoint& s = hit->surface;
   const Vec3 way = X1 - drape::carried(obstacle_.shape, X0);  // relative to the surface
-  const double gap = -hit->fraction * way.dot(s.normal) + s.distance - obstacle_.margin;
+  const double gap = -hit->fraction * way.dot(s.normal) + s.distance - offset;
   return plane_at(x0, s.normal, std::max(gap, 0.0));
 }
 
-std::optional<Vec3> MovingBody::stop(const Vec3& x0, Vec3& x1, double start_distance) const {
+std::optional<Vec3> MovingBody::stop(const Vec3& x0, Vec3& x1, double start_distance, double radius) const {
   const Vec3 X0 = start_.to_body(x0), X1 = end_.to_body(x1);
   Vec3 end = X1;
-  if (start_distance >= 0) {
-    const auto hit = first_hit(obstacle_.shape, X0, X1, 0);
+  if (start_distance >= radius) {
+    const auto hit = first_hit(obstacle_.shape, X0, X1, radius);
     if (!hit) return std::nullopt;
     end = drape::carried(obstacle_.shape, X0 + hit->fraction * (X1 - X0), hit->fraction);
   }
   const SurfacePoint s = closest(obstacle_.shape, end, 1);
   if (s.covered) return std::nullopt;  // the body has closed on it
-  const double floor = std::min(start_distance, 0.0);
+  const double floor = std::min(start_distance, radius);
   if (s.distance < floor) end += (floor - s.distance) * s.normal;
   if (end == X1) return std::nullopt;
   x1 = end_.to_world(end);

@@ -75,18 +75,19 @@ class MovingBody {
   double fastest_carried(const Vec3& X, double reach) const;
   // The most by which the distance of a particle from the body can change on its way [m].
   double travel(const Vec3& x0, const Vec3& x1) const;
-  ContactPlane plane(const Vec3& x, const SurfacePoint& at_start, const Vec3& x_new) const;
+  // radius [m]: of the particle (Constraints::set_radius), here and below.
+  ContactPlane plane(const Vec3& x, const SurfacePoint& at_start, const Vec3& x_new, double radius = 0) const;
   ContactPlane plane_at(const Vec3& x, const Vec3& normal, double gap) const;  // normal: in the body's frame
   // How far the way leads away from the plane that moves with the body [m]; negative where it comes nearer.
   double approach(const Vec3& x0, const Vec3& x1, const ContactPlane& plane) const {
     return (x1 - carried(x0)).dot(plane.normal);
   }
-  // The plane in which the way first meets the surface offset by the margin.
-  std::optional<ContactPlane> meeting(const Vec3& x0, const Vec3& x1) const;
+  // The plane in which the way first meets the surface offset by the margin and the radius.
+  std::optional<ContactPlane> meeting(const Vec3& x0, const Vec3& x1, double radius = 0) const;
   // Moves x1 to where the way ends if the surface stops it, and returns the normal there; returns nothing
-  // when the way is free. A particle that was outside does not end inside or behind the body, and one that
-  // was `depth` inside (start_distance = -depth) does not end deeper.
-  std::optional<Vec3> stop(const Vec3& x0, Vec3& x1, double start_distance) const;
+  // when the way is free. A particle that was farther off than its radius does not end nearer or behind
+  // the body, and one that was nearer (start_distance, negative inside) does not end nearer still.
+  std::optional<Vec3> stop(const Vec3& x0, Vec3& x1, double start_distance, double radius = 0) const;
 
  private:
   bool deforms() const { return deforming(obstacle_.shape) != nullptr; }

@@ -21,9 +21,10 @@ bool can_hold(Contact contact, const ContactPlane& plane) {
 }
 
 // The contact of a particle that is at x, where the body overlaps itself.
-Contact clamped(int particle, const MovingBody& body, const SurfacePoint& start, const Vec3& x) {
+Contact clamped(int particle, const MovingBody& body, const SurfacePoint& start, const Vec3& x,
+                double radius) {
   Contact contact{.particle = particle, .planes = 1, .known = 1, .plane = {}, .clamped = true};
-  contact.plane[0] = body.plane_at(x, start.normal, start.distance - body.obstacle().margin);
+  contact.plane[0] = body.plane_at(x, start.normal, start.distance - body.obstacle().margin - radius);
   return contact;
 }
 
@@ -126,28 +127,29 @@ void ParticleContacts::look_for(int particle, const Bodies& bodies, const StepMo
   const Vec3 x = step.place(particle), v = step.velocity(particle);
   const int old = committed_of_[particle];
   const Contact* before = old < 0 ? nullptr : &committed_[old];
+  const double radius = step.radius_of(particle);
   Contact contact{.particle = particle, .plane = {}};
   for (int o = 0; o < static_cast<int>(bodies.size()); ++o) {
     const MovingBody& body = bodies[o];
-    const double margin = body.obstacle().margin;
+    const double margin = body.obstacle().margin, offset = margin + radius;
     const Vec3 x_new = step.foresight == Foresight::ahead ? Vec3(x + step.h * v) : body.carried(x);
     const double travel = body.travel(x, x_new);
-    if (clearance(o, particle) > margin + std::max(travel, touching_range(margin))) continue;
+    if (clearance(o, particle) > offset + std::max(travel, touching_range(margin))) continue;
     const SurfacePoint start = body.at_start(x);
     clearance(o, particle) = start.distance;
-    deepest = std::max(deepest, -start.distance);
-    if (start.distance > margin + std::max(travel, touching_range(margin))) continue;
+    deepest = std::max(deepest, radius - start.distance);
+    if (start.distance > offset + std::max(travel, touching_range(margin))) continue;
     if (start.covered) {
-      found.push_back(clamped(particle, body, start, x));
+      found.push_back(clamped(particle, body, start, x, radius));
       return;
     }
-    const ContactPlane plane = body.plane(x, start, x + step.h * v);
+    const ContactPlane plane = body.plane(x, start, x + step.h * v, radius);
     const bool touched = knows(before, o);
     if (touched ? plane.gap < touching_range(margin)
                 : plane.gap < 0 && plane.gap + body.approach(x, x_new, plane) < 0) {
       add_deepest(contact, plane);
     } else if (plane.gap < travel) {
-      if (const auto met = body.meeting(x, x_new)) add_deepest(contact, *met);
+      if (const auto met = body.meeting(x, x_new, radius)) add_deepest(contact, *met);
     }
   }
   if (!contact.active()) return;
@@ -199,12 +201,13 @@ void ParticleContacts::look_along(int particle, const Bodies& bodies, const Step
                                   const Contact* known, const Vec3& x_new, std::vector<Contact>& found) {
   if (known && known->clamped) return;
   const Vec3 x = step.place(particle);
+  const double radius = step.radius_of(particle);
   Contact contact{.particle = particle, .plane = {}};
   for (int o = 0; o < static_cast<int>(bodies.size()); ++o) {
     const MovingBody& body = bodies[o];
     if (knows(known, o)) continue;
-    if (clearance(o, particle) > body.obstacle().margin + body.travel(x, x_new)) continue;
-    const auto met = body.meeting(x, x_new);
+    if (clearance(o, particle) > body.obstacle().margin + radius + body.travel(x, x_new)) continue;
+    const auto met = body.meeting(x, x_new, radius);
     if (met && (!known || can_hold(*known, *met))) add_deepest(contact, *met);
   }
   if (!contact.active()) return;
@@ -235,6 +238,7 @@ void ParticleContacts::guard(const Bodies& bodies, const StepMotion& step, VecX&
 void ParticleContacts::guard(int particle, const Bodies& bodies, const StepMotion& step, VecX& x_new,
                              VecX& v_new, int& guarded) {
   const Vec3 x = step.place(particle);
+  const double radius = step.radius_of(particle);
   if (const int known = contact_of_[particle]; known >= 0 && trial_[known].clamped) {
     for (const MovingBody& body : bodies)
       clearance(body.number(), particle) = 0;  // it was looked for at one only
@@ -245,8 +249,8 @@ void ParticleContacts::guard(int particle, const Bodies& bodies, const StepMotio
     Vec3 end = x_new.segment<3>(3 * particle);
     const double travel = body.travel(x, end), clear = clearance(o, particle);
     clearance(o, particle) = std::max(0.0, clear - travel);
-    if (clear >= travel) continue;
-    const auto normal = body.stop(x, end, clear);
+    if (clear - radius >= travel) continue;
+    const auto normal = body.stop(x, end, clear, radius);
     if (!normal) continue;
     x_new.segment<3>(3 * particle) = end;
     const double inward = (v_new.segment<3>(3 * particle) - body.velocity(x)).dot(*normal);

@@ -48,6 +48,10 @@ std::vector<int> chosen(const PinGroup& rule, const TriangleMesh& mesh) {
                    (known.empty() ? "it has no groups" : "its groups are: " + known));
 }
 
+std::vector<int> chosen(const PinEnd& rule, const TriangleMesh& mesh) {
+  return {rule.last ? mesh.vertex_count() - 1 : 0};
+}
+
 }  // namespace
 
 std::vector<int> select(const PinRule& rule, const TriangleMesh& mesh) {

@@ -1,5 +1,5 @@
 // Rules that choose the vertices of a cloth that are held: by number, by a box in space, by a group of the
-// OBJ file.
+// OBJ file, or as the end of a rope.
 #pragma once
 
 #include <string>
@@ -19,7 +19,10 @@ struct PinBox {
 struct PinGroup {
   std::string name;
 };
-using PinRule = std::variant<PinVertices, PinBox, PinGroup>;
+struct PinEnd {
+  bool last = false;  // of a line of vertices, such as a rope: its last vertex, or its first
+};
+using PinRule = std::variant<PinVertices, PinBox, PinGroup, PinEnd>;
 
 // Returns the vertices that the rule selects, ascending. Throws InputError when there are none; the message
 // names what there is to choose from.

@@ -55,7 +55,8 @@ bool ParticleContacts::respond(ContactMode mode, const MovingBody& body, const S
   const Vec3 x = step.place(contact.particle), x_mean = x + h * velocities.mean;
   const double reach = std::max(body.travel(x, x_mean), body.travel(x, x + h * velocities.end));
   const double touch = touching_range(obstacle.margin);
-  if (clearance(body.number(), contact.particle) > obstacle.margin + std::max(reach, touch)) return false;
+  const double radius = step.radius_of(contact.particle), offset = obstacle.margin + radius;
+  if (clearance(body.number(), contact.particle) > offset + std::max(reach, touch)) return false;
   const Vec3 before = velocities.end;
   const auto changed_by = [&](const ContactPlane& plane) {
     const bool changed = mode == ContactMode::velocity
@@ -71,12 +72,12 @@ bool ParticleContacts::respond(ContactMode mode, const MovingBody& body, const S
   };
   const SurfacePoint start = body.at_start(x);
   clearance(body.number(), contact.particle) = start.distance;
-  deepest_[chunk] = std::max(deepest_[chunk], -start.distance);
-  if (start.covered || start.distance > obstacle.margin + std::max(reach, touch)) return false;
-  const ContactPlane nearest = body.plane(x, start, x_mean);
+  deepest_[chunk] = std::max(deepest_[chunk], radius - start.distance);
+  if (start.covered || start.distance > offset + std::max(reach, touch)) return false;
+  const ContactPlane nearest = body.plane(x, start, x_mean, radius);
   if (nearest.gap < touch && changed_by(nearest)) return true;
   if (!(nearest.gap < reach)) return false;
-  const auto met = body.meeting(x, x_mean);
+  const auto met = body.meeting(x, x_mean, radius);
   return met && changed_by(*met);
 }
 

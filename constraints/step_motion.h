@@ -26,9 +26,13 @@ struct StepMotion {
   std::vector<double> masses;   // kg
   std::vector<double> inertia;  // kg, see ContactStep::set_inertia
   std::vector<char> held;       // per particle: it is pinned, or it has no mass
+  std::vector<double> radius;   // m, see Constraints::set_radius; particles beyond its end have none
 
   bool is_held(int particle) const { return held[particle] != 0; }
   double mass(int particle) const { return masses[particle]; }
+  double radius_of(int particle) const {
+    return static_cast<std::size_t>(particle) < radius.size() ? radius[particle] : 0;
+  }
   Vec3 place(int particle) const { return x.segment<3>(3 * particle); }
   Vec3 velocity(int particle) const { return v.segment<3>(3 * particle); }
 };

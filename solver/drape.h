@@ -20,6 +20,7 @@
 #include "solver/forces/choi_ko.h"
 #include "solver/forces/noh_jung.h"
 #include "solver/forces/pair_force.h"
+#include "solver/forces/rope.h"
 #include "solver/forces/soft.h"
 #include "solver/forces/stencil_force.h"
 #include "solver/forces/woven.h"

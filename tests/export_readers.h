@@ -67,13 +67,15 @@ inline Places read_mdd(const std::string& text) {
 struct ReadPolygons {
   std::vector<Vec3> places;
   std::vector<std::array<float, 2>> uv;
-  std::vector<std::vector<int>> faces;
+  std::vector<std::vector<int>> faces;  // of a .vtp file without faces, its lines
+  std::vector<std::array<int, 2>> edges;
 };
 
 inline ReadPolygons read_ply(const std::string& text) {
   const Bytes bytes{text};
   const bool has_uv = text.find("property float t\n") != text.npos;
   const int vertices = number_behind(text, "element vertex "), faces = number_behind(text, "element face ");
+  const int edges = text.find("element edge ") == text.npos ? 0 : number_behind(text, "element edge ");
   std::size_t at = behind(text, "end_header\n");
   ReadPolygons read;
   for (int i = 0; i < vertices; ++i) {
@@ -90,6 +92,7 @@ inline ReadPolygons read_ply(const std::string& text) {
     read.faces.emplace_back();
     for (std::uint64_t k = 0; k < corners; ++k, at += 4) read.faces.back().push_back(bytes.integer(at));
   }
+  for (int e = 0; e < edges; ++e, at += 8) read.edges.push_back({bytes.integer(at), bytes.integer(at + 4)});
   CHECK(at == text.size());
   return read;
 }
@@ -161,10 +164,10 @@ inline std::vector<Vec3> tuples_in(const std::string& line) {
   return found;
 }
 
-// The points of the first Mesh with this prim name.
-inline Places read_usda(const std::string& text, const std::string& prim) {
+// The points of the first Mesh, or other kind, with this prim name.
+inline Places read_usda(const std::string& text, const std::string& prim, const std::string& kind = "Mesh") {
   std::istringstream lines(text.substr(
-      behind(text, "point3f[] points.timeSamples = {\n", behind(text, "def Mesh \"" + prim + "\""))));
+      behind(text, "point3f[] points.timeSamples = {\n", behind(text, "def " + kind + " \"" + prim + "\""))));
   Places places;
   for (std::string line; std::getline(lines, line) && line.find('}') == line.npos;)
     places.push_back(tuples_in(line));

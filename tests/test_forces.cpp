@@ -11,6 +11,7 @@
 #include "solver/forces/damping.h"
 #include "solver/forces/linear_spring.h"
 #include "solver/forces/noh_jung.h"
+#include "solver/forces/rope_laws.h"
 #include "solver/forces/seam_spring.h"
 #include "solver/forces/soft.h"
 #include "tests/places.h"
@@ -47,7 +48,12 @@ struct BendAlwaysClamped {
   static Law::Rest rest() { return BucklingSpring::rest(0.7, 3, 200); }
   static std::vector<double> kinks() { return {0.7}; }
 };
-using Laws = std::tuple<Stretch, Weld, Linear, Bend, BendAlwaysClamped>;
+struct RopeSegment {
+  using Law = RopeStretch;
+  static Law::Rest rest() { return {0.7, 120}; }
+  static std::vector<double> kinks() { return {}; }
+};
+using Laws = std::tuple<Stretch, Weld, Linear, RopeSegment, Bend, BendAlwaysClamped>;
 
 bool near_kink(const std::vector<double>& kinks, double l) {
   for (double k : kinks)

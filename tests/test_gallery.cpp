@@ -59,6 +59,10 @@ const Part gallery[] = {
     {"poncho", 0.6, 2},           // has come to the shoulders
     {"poncho-sewn", 0.5, 4},      // is sewn after 0.2 s
     {"reef-knot", 1.2, 4},        // the bands have come to each other
+    {"rope-box", 1.0, 2},         // swings through below its pin
+    {"rope-chain", 0.6, 2},
+    {"rope-drum", 1.5, 2},        // is hauled over the drum
+    {"rope-sheet", 0.6, 2},       // the ball has come to the sheet
     {"rotating-ball", 4.8, 1},    // the ball turns from 3 s on, the fastest at 4.5 s
     {"sheet-in-bowl", 0.6, 1},
     {"sheet-on-ball", 0.6, 1},

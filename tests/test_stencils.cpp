@@ -8,6 +8,7 @@
 #include "solver/forces/damping.h"
 #include "solver/forces/linear_spring.h"
 #include "solver/forces/pair_force.h"
+#include "solver/forces/rope_laws.h"
 #include "solver/forces/woven.h"
 #include "solver/integrators/newton_matrix.h"
 #include "tests/dense.h"
@@ -133,7 +134,12 @@ struct Woven {  // taut in some triangles and slack in others
   }
   static Law::Common common() { return fabric_of(0.01 * percent); }
 };
-using Cases = std::tuple<FullSpring, Distance, Area, PointTriangle, Woven<100>, Woven<30>>;
+struct BentRope {
+  using Law = RopeBend;
+  static Law::Rest rest() { return {0.3, 0.5, 20, 0.4}; }
+  static Law::Common common() { return {}; }
+};
+using Cases = std::tuple<FullSpring, Distance, Area, PointTriangle, BentRope, Woven<100>, Woven<30>>;
 
 // Of the direct solvers; a multigrid may make its levels anew whenever they work badly.
 bool analyses_are_kept(std::string_view solver) { return solver == "cholmod" || solver == "eigen-ldlt"; }

@@ -89,6 +89,17 @@ void print_soft(const SoftEntry& entry, const Cloth& cloth, const System& system
                             .c_str());
 }
 
+void print_rope(const Cloth& rope) {
+  double length = 0;
+  for (const RestEdge& segment : rope.edges) length += segment.L;
+  const RopeMaterial& m = *rope.rope;
+  std::printf("rope %s: %s m in %s, %s kg/m, stretch %s N, bend %s N m^2, radius %s mm\n",
+              one_line(rope.name).c_str(), rounded(length, 4).c_str(),
+              counted(static_cast<long>(rope.edges.size()), "segment").c_str(),
+              rounded(m.mass_per_length, 4).c_str(), rounded(m.stretch, 4).c_str(),
+              rounded(m.bend, 4).c_str(), rounded(1000 * m.radius, 3).c_str());
+}
+
 // Of all vertices that are pinned: how many a body carries, and how many go along a path.
 void print_pins(const Scene& scene, const Simulation& simulation) {
   const Constraints& constraints = *simulation.constraints;
@@ -150,6 +161,8 @@ void check_scene(const std::filesystem::path& file, const std::filesystem::path&
   }
   for (std::size_t k = 0; k < scene.softs.size(); ++k)
     print_soft(scene.softs[k], simulation.cloths[scene.cloths.size() + k], *simulation.system);
+  for (std::size_t k = 0; k < scene.ropes.size(); ++k)
+    print_rope(simulation.cloths[scene.cloths.size() + scene.softs.size() + k]);
   print_pins(scene, simulation);
   for (std::size_t k = 0; k < simulation.cloths.size(); ++k)
     print_paths(scene.pins_of(k), simulation.cloths[k], simulation.state, s.duration);

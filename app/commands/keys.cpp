@@ -52,7 +52,19 @@ friction = 0.3
 mesh    = "body.obj"
 spacing = 0.1
 
+[[rope]]
+points          = [[0, 0, 0], [1, 0, 0]]
+mass_per_length = 0.1
+pins            = [{ end = "first" }]
+anchors         = [{ end = "last", body = "ground" }]
+joins           = [{ end = "first", to = "soft" }]
+
+[[rope]]
+mesh            = "lines.obj"
+mass_per_length = 0.1
+
 [[obstacle]]
+name     = "ground"
 shape    = "plane"
 friction = { static = 0.3, kinetic = 0.3 }
 motion   = { spin = { axis = [0, 1, 0], rate = 1 } }

@@ -111,8 +111,12 @@ std::vector<int> smooth_parts(const TriangleMesh& mesh, double crease) {
 }  // namespace
 
 Faces faces_of(const TriangleMesh& mesh) {
-  if (mesh.document) return faces_of_document(*mesh.document);
   Faces faces;
+  if (mesh.document && mesh.triangles.empty()) {
+    for (const Polyline& line : polylines(mesh)) faces.line = line.vertices;
+    return faces;
+  }
+  if (mesh.document) return faces_of_document(*mesh.document);
   faces.counts.assign(mesh.triangles.size(), 3);
   for (const Triangle& t : mesh.triangles) faces.corners.insert(faces.corners.end(), t.begin(), t.end());
   return faces;

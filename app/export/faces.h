@@ -16,6 +16,7 @@ struct Faces {
   std::vector<int> counts;   // number of corners of each face
   std::vector<int> corners;  // vertex numbers, one face after the other
   std::vector<Uv> uv;        // of each corner; empty unless every corner has uv
+  std::vector<int> line;     // of a rope, which has no faces: its vertices in order; empty for all others
 };
 
 // The polygons of the document, or the triangles when there is no document.

@@ -7,6 +7,7 @@
 #include "app/export/faces.h"
 #include "app/export/gltf_buffer.h"
 #include "app/export/rigid.h"
+#include "app/recording/drawn.h"
 
 namespace drape::app {
 namespace {
@@ -22,6 +23,7 @@ std::vector<Vec3> from(const std::vector<Vec3>& first, const std::vector<Vec3>& 
 
 struct Shape {
   std::size_t number = 0;  // in the recording
+  TriangleMesh mesh;       // as it is drawn in the first frame
   Corners corners;
   std::optional<std::vector<RigidPlace>> places;  // of a body that moves as a whole
   bool morphs = false;
@@ -41,7 +43,7 @@ class GltfWriter {
     file.write(glb_start(compact_json_text(json()), buffer_.size(), file.path().string()));
     for (const Shape& shape : shapes_) {
       write_mesh(file, shape);
-      const std::size_t own = mesh(shape).positions.size(), doubled = shape.corners.size() - own;
+      const std::size_t own = shape.mesh.positions.size(), doubled = shape.corners.size() - own;
       if (doubled > 0)
         notes.push_back(source_.shape(shape.number).name + ": " +
                         counted(static_cast<long>(doubled), "double") +
@@ -51,21 +53,22 @@ class GltfWriter {
   }
 
  private:
-  const TriangleMesh& mesh(const Shape& shape) const { return source_.shape(shape.number).mesh; }
-
-  // Places of the mesh's vertices; those of a body that is moved by its node about its centre.
+  // Places of the mesh's vertices; those of a body that is moved by its node about its centre. Ropes are tubes.
   std::vector<Vec3> positions(const Shape& shape, std::size_t k) const {
-    std::vector<Vec3> x = source_.positions(shape.number, k);
+    std::vector<Vec3> x =
+        DrawnShape(source_.shape(shape.number)).positions(source_.positions(shape.number, k));
     if (shape.places)
       for (Vec3& point : x) point -= shape.places->front().centre;
     return x;
   }
 
   void plan(std::size_t s) {
-    const TriangleMesh& mesh = source_.shape(s).mesh;
     Shape shape;
     shape.number = s;
-    shape.corners = split_corners(mesh, faces_of(mesh), crease_of(source_.shape(s).body));
+    shape.mesh = source_.shape(s).mesh;
+    if (const DrawnShape drawn(source_.shape(s)); drawn.is_tube())
+      shape.mesh = {drawn.positions(source_.positions(s, 0)), drawn.triangles(), {}, nullptr};
+    shape.corners = split_corners(shape.mesh, faces_of(shape.mesh), crease_of(source_.shape(s).body));
     const bool moves = source_.moves(s) && source_.frame_count() > 1;
     if (moves && source_.shape(s).body) shape.places = rigid_places(source_, s);
     shape.morphs = moves && !shape.places;

@@ -10,13 +10,17 @@ namespace {
 
 constexpr auto little = std::endian::little;
 
-std::string header(std::size_t vertices, bool has_uv, std::size_t faces, bool wide, double time) {
+std::string header(std::size_t vertices, bool has_uv, std::size_t faces, bool wide, std::size_t edges,
+                   double time) {
   std::string text = "ply\nformat binary_little_endian 1.0\ncomment drape, " + shortest(time) + " s\n";
   text += "element vertex " + std::to_string(vertices) + "\n";
   for (const char* axis : {"x", "y", "z"}) (text += "property float ") += std::string(axis) + "\n";
   if (has_uv) text += "property float s\nproperty float t\n";
   text += "element face " + std::to_string(faces) + "\n";
-  return text + "property list " + (wide ? "uint" : "uchar") + " int vertex_indices\nend_header\n";
+  text += std::string("property list ") + (wide ? "uint" : "uchar") + " int vertex_indices\n";
+  if (edges > 0)
+    text += "element edge " + std::to_string(edges) + "\nproperty int vertex1\nproperty int vertex2\n";
+  return text + "end_header\n";
 }
 
 }  // namespace
@@ -24,7 +28,8 @@ std::string header(std::size_t vertices, bool has_uv, std::size_t faces, bool wi
 std::string ply_bytes(const std::vector<Vec3>& positions, const std::vector<Uv>& uv, const Faces& faces,
                       double time) {
   const bool wide = std::any_of(faces.counts.begin(), faces.counts.end(), [](int n) { return n > 255; });
-  std::string bytes = header(positions.size(), !uv.empty(), faces.counts.size(), wide, time);
+  const std::size_t edges = faces.line.empty() ? 0 : faces.line.size() - 1;
+  std::string bytes = header(positions.size(), !uv.empty(), faces.counts.size(), wide, edges, time);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     for (const double coordinate : positions[i]) append_float<little>(bytes, coordinate);
     if (uv.empty()) continue;
@@ -38,6 +43,8 @@ std::string ply_bytes(const std::vector<Vec3>& positions, const std::vector<Uv>&
       bytes += static_cast<char>(static_cast<unsigned char>(count));
     for (int k = 0; k < count; ++k) append_int<little>(bytes, faces.corners[next++]);
   }
+  for (std::size_t k = 0; k < edges; ++k)
+    for (const std::size_t end : {k, k + 1}) append_int<little>(bytes, faces.line[end]);
   return bytes;
 }
 

@@ -37,10 +37,12 @@ std::string integers(const std::vector<int>& numbers) {
   return list_of(numbers, [](std::string& text, int number) { text += std::to_string(number); });
 }
 
-std::string extent(const std::vector<Vec3>& positions) {
+// radius [m]: how far what is at the positions reaches around them.
+std::string extent(const std::vector<Vec3>& positions, double radius = 0) {
   if (positions.empty()) return "[]";
   const Eigen::AlignedBox3d box = box_of(positions);
-  return tuples(std::vector<Vec3>{box.min(), box.max()});
+  const Vec3 around = Vec3::Constant(radius);
+  return tuples(std::vector<Vec3>{box.min() - around, box.max() + around});
 }
 
 class UsdaWriter {
@@ -53,7 +55,8 @@ class UsdaWriter {
     for (const RecordedShape& shape : source_.recording.shapes()) shapes.push_back(shape.name);
     const Names names = usd_names(shapes);
     header(usd_names({source_.name}).front());
-    for (std::size_t s = 0; s < source_.shape_count(); ++s) mesh(s, names[s]);
+    for (std::size_t s = 0; s < source_.shape_count(); ++s)
+      source_.shape(s).mesh.triangles.empty() ? curve(s, names[s]) : mesh(s, names[s]);
     file_.write("}\n");
   }
 
@@ -80,6 +83,30 @@ class UsdaWriter {
     line("}");
   }
 
+  void velocities(std::size_t s) {
+    if (source_.recording.velocities(s, source_.frames[0]).empty()) return;
+    attribute("vector3f[] velocities", s,
+              [&](std::size_t k) { return tuples(source_.recording.velocities(s, source_.frames[k])); });
+  }
+
+  // A rope, as thick as it is.
+  void curve(std::size_t s, const std::string& name) {
+    const RecordedShape& shape = source_.shape(s);
+    file_.write("    def BasisCurves \"" + name + "\" (\n        displayName = " + usd_string(shape.name) +
+                "\n    )\n    {\n");
+    line("int[] curveVertexCounts = [" + std::to_string(shape.mesh.vertex_count()) + "]");
+    attribute("float3[] extent", s,
+              [&](std::size_t k) { return extent(source_.positions(s, k), shape.radius); });
+    attribute("point3f[] points", s, [&](std::size_t k) { return tuples(source_.positions(s, k)); });
+    line("uniform token type = \"linear\"");
+    velocities(s);
+    line("float[] widths = [" + shortest(2 * shape.radius) + "] (");
+    line("    interpolation = \"constant\"");
+    line(")");
+    line("uniform token wrap = \"nonperiodic\"");
+    file_.write("    }\n");
+  }
+
   void mesh(std::size_t s, const std::string& name) {
     const RecordedShape& shape = source_.shape(s);
     const Faces faces = faces_of(shape.mesh);
@@ -101,10 +128,7 @@ class UsdaWriter {
       line(")");
     }
     line("uniform token subdivisionScheme = \"none\"");
-    if (!source_.recording.velocities(s, source_.frames[0]).empty()) {
-      attribute("vector3f[] velocities", s,
-                [&](std::size_t k) { return tuples(source_.recording.velocities(s, source_.frames[k])); });
-    }
+    velocities(s);
     file_.write("    }\n");
   }
 

@@ -66,6 +66,15 @@ std::string polygons(const Faces& faces, Appended& appended) {
          appended.add("Int32", "offsets", 1, ends) + "</Polys>\n";
 }
 
+std::string line(const std::vector<int>& vertices, Appended& appended) {
+  if (vertices.empty()) return {};
+  std::string corners, end;
+  for (const int v : vertices) append_int<little>(corners, v);
+  append_int<little>(end, static_cast<int>(vertices.size()));
+  return "<Lines>\n" + appended.add("Int32", "connectivity", 1, corners) +
+         appended.add("Int32", "offsets", 1, end) + "</Lines>\n";
+}
+
 std::string pvd_text(const ExportSource& source) {
   std::string text =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
@@ -90,10 +99,12 @@ std::string vtp_bytes(const VtpData& data, const Faces& faces, double time) {
       "header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" "
       "NumberOfTuples=\"1\" format=\"ascii\">" +
       shortest(time) + "</DataArray>\n</FieldData>\n";
-  text += "<Piece NumberOfPoints=\"" + std::to_string(data.positions.size()) + "\" NumberOfPolys=\"" +
-          std::to_string(faces.counts.size()) + "\">\n";
+  text += "<Piece NumberOfPoints=\"" + std::to_string(data.positions.size()) + "\" NumberOfLines=\"" +
+          (faces.line.empty() ? "0" : "1") + "\" NumberOfPolys=\"" + std::to_string(faces.counts.size()) +
+          "\">\n";
   text += point_data(data, appended);
   text += "<Points>\n" + appended.add_vectors("Points", data.positions) + "</Points>\n";
+  text += line(faces.line, appended);
   text += polygons(faces, appended);
   text += "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
   return text + appended.blocks() + "\n</AppendedData>\n</VTKFile>\n";

@@ -32,11 +32,11 @@ RecordedShape file_shape(const std::string& path, bool body) {
 void mark_crossings(Still& still) {
   Sheets sheets;
   for (const StillPart& part : still.parts)
-    if (!part.body) sheets.add("", *part.triangles, part.positions);
+    if (!part.body && !part.tube) sheets.add("", *part.triangles, part.positions);
   std::size_t sheet = 0;
   const std::vector<std::vector<int>> crossing = sheets.crossing_triangles();
   for (StillPart& part : still.parts) {
-    if (part.body) continue;
+    if (part.body || part.tube) continue;
     part.crossing.assign(part.triangles->size(), 0);
     for (const int t : crossing[sheet++]) part.crossing[t] = 1;
   }
@@ -52,6 +52,7 @@ Subject::Subject(const std::string& path) : path_(path) {
   recording_ = std::make_unique<Recording>(path);
   for (std::size_t k = 0; k < recording_->shapes().size(); ++k) {
     const RecordedShape& shape = recording_->shapes()[k];
+    drawn_.emplace_back(shape);
     sectors_.push_back(shape.body && shape.moves && !shape.mesh.positions.empty()
                            ? ball_from_middle(recording_->positions(k, 0))
                            : std::vector<Vec3>());
@@ -89,24 +90,26 @@ Still Subject::still(int frame, std::optional<Field> field) const {
   Still still;
   int cloths = 0;
   bool coloured = false;
-  const auto add = [&](const RecordedShape& shape, std::vector<Vec3> positions) -> StillPart& {
-    still.parts.push_back({shape.body,
-                           shape.body ? 0 : cloths++,
-                           std::move(positions),
-                           &shape.mesh.triangles,
-                           nullptr,
-                           {},
-                           {}});
-    return still.parts.back();
+  const auto add = [&](bool body, std::vector<Vec3> positions,
+                       const std::vector<Triangle>& triangles) -> StillPart& {
+    StillPart& part = still.parts.emplace_back();
+    part.body = body;
+    part.cloth = body ? 0 : cloths++;
+    part.positions = std::move(positions);
+    part.triangles = &triangles;
+    return part;
   };
   for (std::size_t k = 0; recording_ && k < recording_->shapes().size(); ++k) {
     const RecordedShape& shape = recording_->shapes()[k];
-    StillPart& part = add(shape, recording_->positions(k, frame));
+    StillPart& part =
+        add(shape.body, drawn_[k].positions(recording_->positions(k, frame)), drawn_[k].triangles());
+    part.tube = drawn_[k].is_tube();
     if (!sectors_[k].empty()) part.sectors = &sectors_[k];
-    if (field && field != Field::crossing && !shape.body) part.values = values(k, frame, *field);
+    if (field && field != Field::crossing && !shape.body)
+      part.values = drawn_[k].values(values(k, frame, *field));
     coloured = coloured || !part.values.empty();
   }
-  for (const RecordedShape& shape : meshes_) add(shape, shape.mesh.positions);
+  for (const RecordedShape& shape : meshes_) add(shape.body, shape.mesh.positions, shape.mesh.triangles);
   if (recording_) still.planes = recording_->planes(frame);
   if (field == Field::crossing) {
     mark_crossings(still);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/picture/colours.h"
+#include "app/recording/drawn.h"
 #include "app/recording/recording.h"
 #include "mesh/triangles/triangle_mesh.h"
 
@@ -19,6 +20,7 @@ struct StillPart {
   const std::vector<Triangle>* triangles = nullptr;  // owned by the Subject
   // For a ball, the positions [m] of its vertices relative to its middle in the first frame; else null.
   const std::vector<Vec3>* sectors = nullptr;
+  bool tube = false;           // a rope, which may go into what it is joined to
   std::vector<char> crossing;  // by triangle, whether it crosses another; empty: it was not looked for
   std::vector<double> values;  // colours come from these values at the vertices; empty: the part's own colour
 };
@@ -50,6 +52,7 @@ class Subject {
 
   std::string path_;
   std::unique_ptr<Recording> recording_;
+  std::vector<DrawnShape> drawn_;           // the shapes of the recording
   std::vector<RecordedShape> meshes_;       // read from OBJ files
   std::vector<std::vector<Vec3>> sectors_;  // for each shape of the recording; empty when it is not a ball
 };

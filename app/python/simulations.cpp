@@ -79,7 +79,7 @@ Shared made(const py::object& given, const py::dict& settings, const std::option
   return std::make_shared<Whole>(scene);
 }
 
-// One of its cloths or soft bodies.
+// One of its cloths, soft bodies or ropes.
 struct Part {
   Shared whole;
   std::size_t number;
@@ -173,13 +173,15 @@ class PartialRun {
 };
 
 void add_parts(py::module_& m) {
-  py::class_<Part>(m, "Cloth", "A cloth or a soft body of a simulation.")
+  py::class_<Part>(m, "Cloth", "A cloth, a soft body or a rope of a simulation.")
       .def_property_readonly("name", [](const Part& part) { return part.cloth().name; })
       .def_property_readonly(
           "mesh", [](const Part& part) { return TriangleMesh(part.cloth().mesh); },
           "as the file has it, placed: a copy")
       .def_property_readonly(
           "soft", [](const Part& part) { return part.cloth().soft.has_value(); }, "a soft body, and no cloth")
+      .def_property_readonly(
+          "rope", [](const Part& part) { return part.cloth().rope.has_value(); }, "a rope, and no cloth")
       .def_property_readonly(
           "particles",
           [](const Part& part) {

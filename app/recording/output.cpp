@@ -26,6 +26,10 @@ std::vector<fs::path> inputs_of(const Scene& scene) {
     add(soft.mesh);
     for (const PinEntry& pin : soft.pins) add(pin.source.poses);
   }
+  for (const RopeEntry& rope : scene.ropes) {
+    add(rope.mesh);
+    for (const PinEntry& pin : rope.pins) add(pin.source.poses);
+  }
   for (const ObstacleEntry& obstacle : scene.obstacles) {
     add(obstacle.mesh);
     add(obstacle.source.poses);

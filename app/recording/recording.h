@@ -20,9 +20,10 @@ namespace drape::app {
 
 struct RecordedShape {
   std::string name;    // of its files, NAME.obj
-  bool body = false;   // true for a body that is draped over, false for a cloth or a soft body
+  bool body = false;   // true for a body that is draped over, false for a cloth, a soft body or a rope
   bool moves = false;  // false when it stays at mesh.positions in every frame
   TriangleMesh mesh;   // faces, uv, groups as in the input; positions [m] at the end of the run
+  double radius = 0;   // m, of a rope, whose mesh has a line and no triangles; 0 of all others
 };
 
 // A plane, which has no end; it may move.
@@ -55,7 +56,9 @@ class Recording {
   double time(int frame) const { return times_[frame]; }  // s
   double frame_rate() const;  // 1/s, mean over the run; 0 when there is a single frame
 
-  const std::vector<RecordedShape>& shapes() const { return shapes_; }  // cloths, soft bodies, then bodies
+  const std::vector<RecordedShape>& shapes() const {
+    return shapes_;
+  }  // cloths, soft bodies, ropes, then bodies
   std::vector<RecordedPlane> planes(int frame) const;
 
   std::vector<Vec3> positions(std::size_t shape, int frame) const;  // m

@@ -165,7 +165,7 @@ void Recording::add_shape(const std::string& name, const fs::path& file, bool bo
   if (name.empty() || name.front() == '.' || name.find_first_of("/\\") != name.npos)
     return miss(folder_ / "run.json", "'" + one_line(name) + "' is no name of a file");
   try {
-    shapes_.push_back({name, body, false, read_obj(file)});
+    shapes_.push_back({name, body, false, read_obj(file, ObjNeed::faces_or_lines)});
     sources_.emplace_back();
   } catch (const InputError& error) {
     missing_.push_back(error.what());
@@ -188,9 +188,12 @@ void Recording::find_shapes() {
       add_shape(name, fs::exists(last) ? last : frame_path(folder_, name, 1), false);
     }
   }
-  for (const char* kind : {"cloths", "softs"})
-    for (const Json& cloth : run_[kind].items())
-      add_shape(cloth["name"].text(), folder_ / (cloth["name"].text() + ".obj"), false);
+  for (const char* kind : {"cloths", "softs", "ropes"})
+    for (const Json& part : run_[kind].items()) {
+      const std::size_t before = shapes_.size();
+      add_shape(part["name"].text(), folder_ / (part["name"].text() + ".obj"), false);
+      if (shapes_.size() > before) shapes_.back().radius = part["material"]["radius"].number(0);
+    }
   for (std::size_t k = 0; k < shapes_.size(); ++k) find_frames(k);
 
   if (run_.is_null())

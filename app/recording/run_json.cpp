@@ -38,6 +38,19 @@ Json softs_json(const std::vector<SoftCounts>& softs) {
   return list;
 }
 
+Json ropes_json(const std::vector<RopeCounts>& ropes) {
+  Json::List list;
+  for (const RopeCounts& r : ropes)
+    list.push_back(Json::Members{{"name", r.name},
+                                 {"particles", r.particles},
+                                 {"segments", r.segments},
+                                 {"length", r.length},
+                                 {"material", r.material},
+                                 {"pins", r.pins},
+                                 {"ends", r.ends}});
+  return list;
+}
+
 Json vector_json(const Vec3& v) { return Json::List{v[0], v[1], v[2]}; }
 
 // The turn as a unit quaternion qw qx qy qz.
@@ -91,6 +104,7 @@ std::string run_json(const RunRecord& record) {
       {"scene", record.scene},
       {"cloths", cloths_json(record.cloths)},
       {"softs", softs_json(record.softs)},
+      {"ropes", ropes_json(record.ropes)},
       {"bodies", bodies_json(record.bodies)},
       {"integrator", record.integrator},
       {"contact", record.contact},

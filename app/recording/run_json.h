@@ -26,6 +26,14 @@ struct SoftCounts {
   Json material = {}, pins = {};  // app/recording/scene_record.h
 };
 
+struct RopeCounts {
+  std::string name;
+  int particles = 0,
+      segments = 0;   // vertices of its line count as particles, also where they are of another part
+  double length = 0;  // m, at rest
+  Json material = {}, pins = {}, ends = {};  // app/recording/scene_record.h
+};
+
 struct BodyRecord {
   std::string name, file, shape;  // file: below the output folder, empty for a plane
   bool moves = false;             // whether a motion moves it
@@ -52,6 +60,7 @@ struct RunRecord {
   std::string scene, integrator, contact, linear_solver;
   std::vector<ClothCounts> cloths;
   std::vector<SoftCounts> softs;
+  std::vector<RopeCounts> ropes;
   std::vector<BodyRecord> bodies;
   Names warnings;
   int threads = 1;

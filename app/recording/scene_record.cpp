@@ -27,6 +27,7 @@ Json rule_json(const PinBox& rule) {
   return Json::Members{{"box", Json::List{vector_json(rule.lower), vector_json(rule.upper)}}};
 }
 Json rule_json(const PinGroup& rule) { return Json::Members{{"group", rule.name}}; }
+Json rule_json(const PinEnd& rule) { return Json::Members{{"end", rule.last ? "last" : "first"}}; }
 
 // Words, each with what stands before and after it, but for what is not there.
 class Words {
@@ -93,12 +94,31 @@ std::string material_words(const Json& material) {
   return words.text();
 }
 
+std::string rope_words(const Json& material) {
+  Words words;
+  words.number("", material["mass_per_length"], " kg/m");
+  words.number("stretch ", material["stretch"], " N");
+  words.number("bend ", material["bend"], " N m^2");
+  if (material["damping"].number(0) > 0) words.number("damping ", material["damping"], " N s");
+  if (material["bend_damping"].number(0) > 0)
+    words.number("damping of bending ", material["bend_damping"], " N m^2 s");
+  words.number("radius ", material["radius"], " mm", 1000);
+  return words.text();
+}
+
+std::string end_words(const Json& end) {
+  const bool anchored = !end["body"].is_null();
+  return "the " + end["end"].text() + (anchored ? " is anchored to " : " is joined to ") +
+         end[anchored ? "body" : "to"].text();
+}
+
 std::string pin_words(const Json& pin) {
   Words words;
   const double count = pin["count"].number(NAN);
   const std::string held = std::isfinite(count) ? counted(std::lround(count), "vertex") : "particles";
   words.add(!pin["group"].is_null() ? held + " of group " + pin["group"].text()
             : !pin["box"].is_null() ? held + " in a box"
+            : !pin["end"].is_null() ? "the " + pin["end"].text() + " end"
                                     : held);
   if (!pin["follow"].is_null()) words.add("following " + pin["follow"].text());
   if (!pin["motion"].is_null()) words.add("moved by " + pin["motion"].text());
@@ -215,6 +235,25 @@ Json material_json(const SoftMaterial& m) {
                        {"damping_kind", damping_name(m.damping_kind)}};
 }
 
+Json rope_material_json(const RopeMaterial& m) {
+  return Json::Members{{"mass_per_length", m.mass_per_length},
+                       {"stretch", m.stretch},
+                       {"bend", m.bend},
+                       {"damping", m.damping},
+                       {"bend_damping", m.bend_damping},
+                       {"radius", m.radius}};
+}
+
+Json ends_json(const RopeEntry& entry) {
+  Json::List list;
+  const auto end = [](bool last) { return Json(last ? "last" : "first"); };
+  for (const AnchorEntry& anchor : entry.anchors)
+    list.push_back(Json::Members{{"end", end(anchor.last)}, {"body", anchor.body}});
+  for (const JoinEntry& join : entry.joins)
+    list.push_back(Json::Members{{"end", end(join.last)}, {"to", join.to}});
+  return list;
+}
+
 Json pins_json(const std::vector<PinEntry>& pins, const Cloth& cloth) {
   Json::List list;
   for (const PinEntry& pin : pins) {
@@ -270,7 +309,7 @@ Json::Members numerics_json(const SimulationOptions& options) {
 }
 
 Json::Members scene_json(const Scene& scene, const Simulation* simulation) {
-  Json::List cloths, softs, bodies;
+  Json::List cloths, softs, ropes, bodies;
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
     const ClothEntry& entry = scene.cloths[k];
     Json::Members json = {{"name", entry.name},
@@ -288,6 +327,14 @@ Json::Members scene_json(const Scene& scene, const Simulation* simulation) {
       json.emplace_back("pins", pins_json(entry.pins, simulation->cloths[scene.cloths.size() + k]));
     softs.emplace_back(std::move(json));
   }
+  for (std::size_t k = 0; k < scene.ropes.size(); ++k) {
+    const RopeEntry& entry = scene.ropes[k];
+    Json::Members json = {
+        {"name", entry.name}, {"material", rope_material_json(entry.material)}, {"ends", ends_json(entry)}};
+    const std::size_t part = scene.cloths.size() + scene.softs.size() + k;
+    if (simulation) json.emplace_back("pins", pins_json(entry.pins, simulation->cloths[part]));
+    ropes.emplace_back(std::move(json));
+  }
   for (const ObstacleEntry& entry : scene.obstacles) {
     Json::Members json = {{"name", entry.name}, {"shape", name(entry.obstacle.shape)}};
     for (auto& member : contact_json(entry.obstacle)) json.push_back(std::move(member));
@@ -295,6 +342,7 @@ Json::Members scene_json(const Scene& scene, const Simulation* simulation) {
   }
   return {{"cloths", std::move(cloths)},
           {"softs", std::move(softs)},
+          {"ropes", std::move(ropes)},
           {"bodies", std::move(bodies)},
           {"settings", settings_json(scene.settings)}};
 }
@@ -314,6 +362,12 @@ std::vector<SceneFact> scene_facts(const Json& run) {
     const std::string of = " of " + soft["name"].text();
     add("Material" + of, material_words(soft["material"]));
     add("Pins" + of, list_words(soft["pins"], pin_words));
+  }
+  for (const Json& rope : run["ropes"].items()) {
+    const std::string of = " of " + rope["name"].text();
+    add("Rope " + rope["name"].text(), rope_words(rope["material"]));
+    add("Pins" + of, list_words(rope["pins"], pin_words));
+    add("Ends" + of, list_words(rope["ends"], end_words));
   }
   for (const Json& body : run["bodies"].items())
     add("Contact with " + body["name"].text(), contact_words(body));

@@ -56,7 +56,7 @@ double last_motion(const Scene& scene, const Simulation& simulation) {
   double last = 0;
   for (const Cloth& cloth : simulation.cloths)
     for (const Cloth::Stitched& open : cloth.seams) last = std::max(last, open.seam.close);
-  for (std::size_t k = 0; k < scene.cloths.size() + scene.softs.size(); ++k)
+  for (std::size_t k = 0; k < scene.part_count(); ++k)
     for (const PinEntry& pin : scene.pins_of(k))
       if (pin.motion) last = std::max(last, pin.motion->last_time());
   for (const MovingBody& body : constraints.bodies()) {
@@ -122,11 +122,20 @@ void Run::describe() {
       record_.softs.push_back({c.name, c.end_particle - c.first_particle, c.mesh.vertex_count(),
                                c.mesh.triangle_count(), *c.soft,
                                material_json(scene.softs[k - scene.cloths.size()].material), pins});
+    else if (c.rope)
+      describe_rope(scene.ropes[k - scene.cloths.size() - scene.softs.size()], c, pins);
     else
       record_.cloths.push_back({c.name, c.mesh.vertex_count(), c.mesh.triangle_count(), c.report.edges,
                                 c.report.diagonals, fabric_json(scene.cloths[k], &c), pins, seams_json(c),
                                 c.imperfection});
   }
+}
+
+void Run::describe_rope(const RopeEntry& entry, const Cloth& rope, const Json& pins) {
+  double length = 0;
+  for (const RestEdge& segment : rope.edges) length += segment.L;
+  record_.ropes.push_back({rope.name, rope.mesh.vertex_count(), static_cast<int>(rope.edges.size()), length,
+                           rope_material_json(entry.material), pins, ends_json(entry)});
 }
 
 const StepRow& Run::step() {

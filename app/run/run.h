@@ -44,6 +44,7 @@ class Run {
   using Clock = std::chrono::steady_clock;
 
   void describe();
+  void describe_rope(const RopeEntry& entry, const Cloth& rope, const Json& pins);
   bool at_rest(const StepRow& row) const;
   bool slow(double cloth_speed) const;
   void record_step(const StepRow& row);

@@ -9,7 +9,7 @@ namespace {
 
 std::string hints(const RunRecord& record, const Output& output) {
   std::string text;
-  if (record.max_edge_strain > 0.1 && record.softs.empty())
+  if (record.max_edge_strain > 0.1 && record.softs.empty() && !record.cloths.empty())
     text += "hint: an edge is stretched by " + rounded(100 * record.max_edge_strain, 2) +
             " %, more than woven cloth does: raise stretch, or check the units of the mesh\n";
   const bool springs = std::any_of(record.cloths.begin(), record.cloths.end(),
@@ -79,6 +79,8 @@ std::string summary(const RunRecord& record, const Output& output) {
     text += s.name + ": " + counted(s.particles, "particle") + ", " +
             counted(s.springs.structural + s.springs.shear + s.springs.bend, "spring") + ", " +
             counted(s.triangles, "triangle") + "\n";
+  for (const RopeCounts& r : record.ropes)
+    text += r.name + ": " + counted(r.particles, "particle") + ", " + rounded(r.length, 4) + " m of rope\n";
   text += record.integrator + ", " + solver_text(record) + ", " + counted(record.threads, "thread") + ": " +
           rounded(ms.median, 3) + " ms a step (95 % below " + rounded(ms.p95, 3) + "), " +
           rounded(iterations.mean, 3) + " linear iterations a step\n";

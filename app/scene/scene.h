@@ -104,6 +104,37 @@ struct SoftEntry {
   std::string where;
 };
 
+// An end of a rope that is fastened to a body.
+struct AnchorEntry {
+  bool last = false;       // which end
+  std::string body;        // name of the obstacle
+  std::optional<Vec3> at;  // m, where the end has to be at the start
+  std::string where;
+};
+
+// An end of a rope that is a vertex of another part.
+struct JoinEntry {
+  bool last = false;             // which end
+  std::string to;                // name of the part
+  std::optional<double> within;  // m, how far off the vertex may be; unset: the radius
+  std::string where;
+};
+
+struct RopeEntry {
+  std::string name;               // of the rope and of its output files
+  std::vector<Vec3> points;       // m, before they are placed; empty for a line of a file
+  std::filesystem::path mesh;     // OBJ file; empty for points
+  std::string line;               // of the file; empty: the only one
+  std::optional<int> segments;    // into how many of one length it is divided anew
+  std::optional<double> spacing;  // m, the same by their length
+  Placement placement;
+  RopeMaterial material;
+  std::vector<AnchorEntry> anchors;
+  std::vector<JoinEntry> joins;
+  std::vector<PinEntry> pins;
+  std::string where;
+};
+
 // How two cloths or soft bodies rub on each other, or one on itself.
 struct FrictionEntry {
   std::array<std::string, 2> between;  // names
@@ -169,12 +200,16 @@ struct Scene {
   SimulationOptions simulation;
   std::vector<ClothEntry> cloths;
   std::vector<SoftEntry> softs;
+  std::vector<RopeEntry> ropes;
   std::vector<ObstacleEntry> obstacles;
   std::vector<FrictionEntry> frictions;
 
-  // The pins of cloth k; numbers after the last cloth are soft bodies.
-  const std::vector<PinEntry>& pins_of(std::size_t k) const {
-    return k < cloths.size() ? cloths[k].pins : softs[k - cloths.size()].pins;
+  // Cloths, then soft bodies, then ropes are the parts of a simulation.
+  std::size_t part_count() const { return cloths.size() + softs.size() + ropes.size(); }
+  const std::vector<PinEntry>& pins_of(std::size_t part) const {
+    if (part < cloths.size()) return cloths[part].pins;
+    part -= cloths.size();
+    return part < softs.size() ? softs[part].pins : ropes[part - softs.size()].pins;
   }
 };
 

@@ -5,8 +5,9 @@
 
 #include "app/base/table.h"
 #include "app/scene/fabrics.h"
-#include "app/scene/motion_read.h"
 #include "app/scene/obstacle_read.h"
+#include "app/scene/pin_read.h"
+#include "app/scene/rope_read.h"
 #include "app/scene/scene.h"
 #include "app/scene/self_contact_read.h"
 #include "app/scene/sewing_read.h"
@@ -24,7 +25,9 @@ namespace fs = std::filesystem;
 // A name becomes a file name.
 std::string read_name(Table& table, const fs::path& mesh) {
   std::string name = mesh.stem().string();
-  table.read("name", name, {"of the output files; unique", "the mesh's, or \"soft\" of a box of particles"});
+  table.read(
+      "name", name,
+      {"of the output files; unique", "the mesh's, \"soft\" of a box of particles, or \"rope\" of points"});
   const bool good =
       !name.empty() && name.front() != '.' &&
       std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == '/' || c == '\\'; });
@@ -32,51 +35,6 @@ std::string read_name(Table& table, const fs::path& mesh) {
     table.fail("name", "a name is used for files: it may not be empty, begin with a dot or hold a slash");
   return name;
 }
-
-PinBox read_pin_box(const Table& pin, const Node& box) {
-  if (box.kind != Node::Kind::array || box.items.size() != 2)
-    pin.fail("box", "expected two corners, [[x, y, z], [x, y, z]]");
-  PinBox by_box;
-  try {
-    by_box.lower = vector(box.items[0], dimension::length);
-    by_box.upper = vector(box.items[1], dimension::length);
-  } catch (const InputError& error) {
-    pin.fail("box", error.what());
-  }
-  if ((by_box.lower.array() > by_box.upper.array()).any())
-    pin.fail("box", "the first corner must be the lower one");
-  return by_box;
-}
-
-PinRule read_pin_rule(Table& pin) {
-  PinVertices by_number;
-  PinGroup by_group;
-  pin.read("vertices", by_number.vertices, "numbers of vertices, from 0, in the file's order");
-  const Node* const box =
-      pin.take("box", "[[x, y, z], [x, y, z]], lengths in m",
-               "lower and upper corner: all vertices that are in it after the cloth is placed");
-  pin.read("group", by_group.name, "a group of the mesh: all its vertices");
-  if (pin.has("vertices") + pin.has("box") + pin.has("group") != 1)
-    pin.fail("", "expected one of vertices = [...], box = [[...], [...]], group = \"...\"");
-  if (pin.has("vertices")) return by_number;
-  if (pin.has("group")) return by_group;
-  return read_pin_box(pin, *box);
-}
-
-PinEntry read_pin(Table& pin, const fs::path& folder) {
-  PinEntry entry;
-  entry.where = pin.where();
-  pin.read("follow", entry.follow, "name of an obstacle that the vertices move with");
-  entry.motion = read_motion(pin, folder, Vec3::Zero(), entry.source);
-  entry.rule = read_pin_rule(pin);
-  pin.finish();
-  if (pin.has("follow") && entry.follow.empty()) pin.fail("follow", "expected the name of an obstacle");
-  if (pin.has("follow") && pin.has("motion"))
-    pin.fail("follow", "a pin follows a body or has a motion of its own, not both");
-  return entry;
-}
-
-constexpr const char* pins_about = "vertices that are held, or led";
 
 constexpr std::array keys_of_connections = {"stretch_spring", "bend_spring", "buckling_clamp",
                                             "neighbour_weighting"};
@@ -241,7 +199,16 @@ SoftEntry read_whole_soft(Table& table, const fs::path& folder) {
   return soft;
 }
 
-// Cloths and soft bodies are written side by side.
+RopeEntry read_whole_rope(Table& table, const fs::path& folder) {
+  RopeEntry rope = read_rope(table, folder);
+  rope.name = read_name(table, rope.mesh.empty() ? fs::path("rope") : rope.mesh);
+  for (Table& pin : table.tables("pins", pins_about))
+    rope.pins.push_back(read_pin(pin, folder, PinsOf::rope));
+  table.finish();
+  return rope;
+}
+
+// Cloths, soft bodies and ropes are written side by side.
 void check_names(const Scene& scene) {
   std::set<std::string> named;
   const auto add = [&](const std::string& name, const std::string& where, const char* kind) {
@@ -251,20 +218,9 @@ void check_names(const Scene& scene) {
   for (const ClothEntry& cloth : scene.cloths) add(cloth.name, cloth.where, "cloths");
   for (const SoftEntry& soft : scene.softs)
     add(soft.name, soft.where, scene.cloths.empty() ? "soft bodies" : "cloths or soft bodies");
-}
-
-// A pin follows an obstacle of the scene, of which there is one.
-void check_follow(const PinEntry& pin, const std::vector<ObstacleEntry>& obstacles) {
-  if (pin.follow.empty()) return;
-  Names names;
-  for (const ObstacleEntry& obstacle : obstacles) names.push_back(obstacle.name);
-  const auto count = std::count(names.begin(), names.end(), pin.follow);
-  if (count == 1) return;
-  const std::string start = pin.where + ": follow = \"" + one_line(pin.follow) + "\": ";
-  if (count == 0)
-    throw InputError(start + "there is no obstacle of that name; " + suggestion(pin.follow, names));
-  throw InputError(start + "there are " + std::to_string(count) +
-                   " obstacles of that name; give each a name of its own");
+  for (const RopeEntry& rope : scene.ropes)
+    add(rope.name, rope.where,
+        scene.cloths.empty() && scene.softs.empty() ? "ropes" : "cloths, soft bodies or ropes");
 }
 
 }  // namespace
@@ -285,6 +241,7 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path
                                                 "none: nothing but what it touches slows the cloth"});
   std::vector<Table> cloths = table.tables("cloth", "each a cloth"),
                      softs = table.tables("soft", "each a soft body, a lattice of springs"),
+                     ropes = table.tables("rope", "each a rope, a line of particles"),
                      obstacles = table.tables("obstacle", "each a body that the cloth meets"),
                      pairs = table.tables(
                          "pair", {"each how two cloths or soft bodies meet", "by what is said of both"});
@@ -293,18 +250,19 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path
   if (simulation.size() > 1) table.fail("simulation", "there may be only one");
   scene.simulation = read_simulation(simulation.empty() ? nullptr : simulation.data());
   scene.simulation.air = read_air(std::move(air), table);
-  if (!table.has("soft")) table.require("cloth");
+  if (!table.has("soft") && !table.has("rope")) table.require("cloth");
   for (Table& cloth : cloths) scene.cloths.push_back(read_cloth(cloth, folder));
   for (Table& soft : softs) scene.softs.push_back(read_whole_soft(soft, folder));
+  for (Table& rope : ropes) scene.ropes.push_back(read_whole_rope(rope, folder));
   for (Table& obstacle : obstacles) scene.obstacles.push_back(read_obstacle(obstacle, folder));
   for (Table& pair : pairs) scene.frictions.push_back(read_friction_pair(pair));
-  if (scene.cloths.empty() && scene.softs.empty()) table.fail("cloth", "there is no cloth");
+  if (scene.cloths.empty() && scene.softs.empty() && scene.ropes.empty())
+    table.fail("cloth", "there is no cloth");
   check_names(scene);
   for (const FrictionEntry& pair : scene.frictions) check_friction_pair(pair, scene);
-  for (const ClothEntry& cloth : scene.cloths)
-    for (const PinEntry& pin : cloth.pins) check_follow(pin, scene.obstacles);
-  for (const SoftEntry& soft : scene.softs)
-    for (const PinEntry& pin : soft.pins) check_follow(pin, scene.obstacles);
+  for (std::size_t k = 0; k < scene.part_count(); ++k)
+    for (const PinEntry& pin : scene.pins_of(k)) check_follow(pin, scene.obstacles);
+  for (const RopeEntry& rope : scene.ropes) check_ends(rope, scene);
   return scene;
 }
 

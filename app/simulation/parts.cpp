@@ -120,6 +120,14 @@ void load_parts(const Scene& scene, Simulation& simulation) {
       throw InputError(entry.where + ": " + error.what());
     }
   }
+  for (const RopeEntry& entry : scene.ropes) {
+    RopePart part = load_rope(entry, simulation);
+    try {
+      simulation.add(std::move(part));
+    } catch (const InputError& error) {
+      throw InputError(entry.where + ": " + error.what());
+    }
+  }
 }
 
 }  // namespace drape::app

@@ -34,6 +34,12 @@ void add_pins(const Scene& scene, Simulation& simulation) {
   }
 }
 
+void add_anchors(const Scene& scene, Simulation& simulation) {
+  const std::size_t before = scene.cloths.size() + scene.softs.size();
+  for (std::size_t k = 0; k < scene.ropes.size(); ++k)
+    anchor(scene.ropes[k], simulation.cloths[before + k], scene, simulation);
+}
+
 void rub(const Scene& scene, Simulation& simulation) {
   const auto number_of = [&](const std::string& name) {
     const auto cloth = std::find_if(simulation.cloths.begin(), simulation.cloths.end(),
@@ -66,6 +72,7 @@ Simulation make_simulation(const Scene& scene, bool keep_level_sets) {
   simulation.scene = std::make_shared<const Scene>(scene);
   load_parts(scene, simulation);
   add_obstacles(scene, keep_level_sets, simulation);
+  add_anchors(scene, simulation);
   add_pins(scene, simulation);  // some of them to bodies
   rub(scene, simulation);
   if (options.require_clean) require_clean(scene, simulation);

@@ -19,7 +19,7 @@ struct Body {
   std::string level_set;  // of a level set: its voxels and its error, in words
 };
 
-// A scene that is ready to run. Its parts are the cloths of the scene, followed by the soft bodies.
+// A scene that is ready to run. Its parts are the cloths of the scene, followed by the soft bodies and the ropes.
 struct Simulation : Assembly {
   using Assembly::Assembly;
 

@@ -21,6 +21,9 @@ void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
   constexpr double negligible = 1e-9;  // m
   const std::vector<double> depth = simulation.constraints->penetration(simulation.state.x);
   const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
+  std::vector<char> carried(depth.size(), 0);  // by a body, in which it may be
+  for (const MovingPin& pin : simulation.constraints->moving_pins())
+    if (pin.body >= 0) carried[static_cast<std::size_t>(pin.particle)] = 1;
   for (const Cloth& cloth : simulation.cloths) {
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       int inside = 0, deepest = -1;
@@ -28,8 +31,10 @@ void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
       double deepest_depth = least;
       for (int i = cloth.first_particle; i < cloth.end_particle; ++i) {
         const auto particle = static_cast<std::size_t>(i);
-        if (!(depth[particle] > least) || simulation.system->masses()[particle] == 0) continue;
-        const double d = -bodies[k].distance(simulation.state.x.segment<3>(3 * i));
+        if (!(depth[particle] > least) || simulation.system->masses()[particle] == 0 || carried[particle])
+          continue;
+        const double d =
+            simulation.constraints->radius_of(i) - bodies[k].distance(simulation.state.x.segment<3>(3 * i));
         if (!(d > least)) continue;
         ++inside;
         if (d > deepest_depth) deepest = i, deepest_depth = d;
@@ -192,7 +197,7 @@ void warn_if_coarse(const Scene& scene, Simulation& simulation) {
       const double radius = longest_edge(bodies[k].obstacle().shape);
       if (cloth.report.median_edge <= radius) continue;
       simulation.messages.push_back(
-          "warning: cloth " + cloth.name + " is too coarse for " +
+          std::string("warning: ") + (cloth.rope ? "rope " : "cloth ") + cloth.name + " is too coarse for " +
           body_name(bodies[k].obstacle(), scene.obstacles[k].name) + ": its edges (median " +
           rounded(cloth.report.median_edge, 2) + " m) are longer than the body's radius (" +
           rounded(radius, 2) +
@@ -236,7 +241,7 @@ void tell_of_step(const SimulationOptions& options, Names& messages) {
 
 void add_warnings(const Scene& scene, Simulation& simulation) {
   for (const Cloth& cloth : simulation.cloths) {
-    if (cloth.soft) continue;
+    if (cloth.soft || cloth.rope) continue;
     warn_if_long(cloth, simulation.messages);
     warn_if_limp(cloth, simulation.messages);
     tell_of_friction(cloth, simulation.messages);

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "app/base/interrupt.h"
+#include "app/recording/drawn.h"
 #include "app/view/track.h"
 #include "mesh/obj/obj.h"
 
@@ -62,28 +63,40 @@ Json index_head(PageBlocks& blocks, const std::vector<int>& list) {
   return Json::Members{{"block", blocks.add(index_bytes(list))}, {"count", static_cast<long>(list.size())}};
 }
 
-std::vector<int> corners(const TriangleMesh& mesh) {
+std::vector<int> corners(const std::vector<Triangle>& triangles) {
   std::vector<int> list;
-  for (const Triangle& t : mesh.triangles) list.insert(list.end(), t.begin(), t.end());
+  for (const Triangle& t : triangles) list.insert(list.end(), t.begin(), t.end());
   return list;
+}
+
+std::vector<int> sides_of(const TriangleMesh& mesh, const DrawnShape& drawn) {
+  if (!drawn.is_tube()) return polygon_sides(mesh);
+  TriangleMesh tube;
+  tube.triangles = drawn.triangles();
+  return polygon_sides(tube);
 }
 
 Json shape_head(const Recording& recording, std::size_t s, PageBlocks& blocks, long& not_finite) {
   const RecordedShape& shape = recording.shapes()[s];
-  const std::size_t vertices = shape.mesh.positions.size();
+  const DrawnShape drawn(shape);
+  const auto vertices = static_cast<std::size_t>(drawn.vertices(shape.mesh.vertex_count()));
   const int frames = shape.body && !shape.moves ? 1 : recording.frames();
   Json::Members head = {{"name", shape.name},
                         {"body", shape.body},
                         {"vertices", static_cast<long>(vertices)},
-                        {"triangles", index_head(blocks, corners(shape.mesh))},
-                        {"edges", index_head(blocks, polygon_sides(shape.mesh))}};
-  head.emplace_back("positions",
-                    track(
-                        blocks, frames, 3, vertices,
-                        [&](int k) { return by_component(recording.positions(s, k)); }, not_finite));
+                        {"triangles", index_head(blocks, corners(drawn.triangles()))},
+                        {"edges", index_head(blocks, sides_of(shape.mesh, drawn))}};
+  if (drawn.is_tube()) head.emplace_back("sides", tube_sides);  // vertices for each point of a rope
+  head.emplace_back(
+      "positions",
+      track(
+          blocks, frames, 3, vertices,
+          [&](int k) { return by_component(drawn.positions(recording.positions(s, k))); }, not_finite));
   if (shape.body) return head;
   const auto known = [&](const char* name, const FrameValues& values) {
-    head.emplace_back(name, field(blocks, frames, vertices, values, not_finite));
+    head.emplace_back(
+        name, field(
+                  blocks, frames, vertices, [&](int k) { return drawn.values(values(k)); }, not_finite));
   };
   known("speed", [&](int k) { return speeds(recording.velocities(s, k)); });
   known("strain", [&](int k) { return recording.strains(s, k); });

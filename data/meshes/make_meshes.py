@@ -297,6 +297,20 @@ def write_nails():
                         "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
 
 
+def write_line(name, comments, points):
+    lines = [f"# {c}" for c in comments] + ["v " + " ".join(number(x, 5) for x in p) for p in points]
+    lines += ["o " + pathlib.Path(name).stem, "l " + " ".join(str(k + 1) for k in range(len(points)))]
+    (here / name).write_text("\n".join(lines) + "\n")
+    print(f"{name}: {len(points)} vertices")
+
+
+def over_drum(radius, height, left, right, parts):
+    """A line that goes up on the left, half round a drum along z at this height, and down on the right."""
+    angles = np.linspace(np.pi, 0, parts + 1)
+    arc = [(radius * np.cos(a), height + radius * np.sin(a), 0) for a in angles]
+    return [(-radius, height - left, 0), *arc, (radius, height - right, 0)]
+
+
 def main():
     write_flat("sheet-958.obj", ["Square sheet, 1 m x 1 m, 958 vertices, irregular triangles."],
                *first_good(lambda rng: square(rng, 1.0, 28, 958)))
@@ -319,6 +333,8 @@ def main():
     write("dress.obj", ["A dress without straps, 95 cm long, 80 x 45 quads, standing, its hem at y = 0.",
                         "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)
     write_nails()
+    write_line("rope-over-drum.obj", ["A line over a drum along z, whose axis is 1.5 m high: half round it at 157.5 mm, 80 cm down on the left, 50 cm on the right.",
+                                      "Metres, y up. Made by make_meshes.py; CC0 1.0."], over_drum(0.1575, 1.5, 0.8, 0.5, 48))
     points, faces = nails([(0, 0, 0.4)], 0.003, 12, 0.03, 0.02)
     write("needle.obj", ["A needle, 40 cm long and 6 mm thick where it stands on a block of 3 cm, whose top is at y = 0.",
                          "Metres, y up. Made by make_meshes.py; CC0 1.0."], points, faces)

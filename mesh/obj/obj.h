@@ -66,12 +66,15 @@ struct ObjDocument {
   std::size_t face_count() const { return face_start.empty() ? 0 : face_start.size() - 1; }
 };
 
-// Throws InputError when the file is missing, a directory, binary or empty, when it has no vertices or no
-// faces, when a number is not finite, or when a face refers to a vertex that is not there.
-TriangleMesh read_obj(const std::filesystem::path& path);
+// What a file must have at least: a surface, or lines, such as those of ropes.
+enum class ObjNeed { faces, faces_or_lines };
+
+// Throws InputError when the file is missing, a directory, binary or empty, when it has no vertices or not what it
+// needs, when a number is not finite, or when a face refers to a vertex that is not there.
+TriangleMesh read_obj(const std::filesystem::path& path, ObjNeed need = ObjNeed::faces);
 
 // The same from memory; `name` stands in error messages.
-TriangleMesh parse_obj(std::string_view text, const std::string& name);
+TriangleMesh parse_obj(std::string_view text, const std::string& name, ObjNeed need = ObjNeed::faces);
 
 // A chain of vertices from 'l' lines. Its name is that of the 'g' line before it (the first word), or else
 // that of the 'o' line.
@@ -83,6 +86,8 @@ struct Polyline {
 // ended, under the same name, continues that line. Lines that refer to vertices which are not there were left
 // out when the file was read.
 std::vector<Polyline> polylines(const TriangleMesh& mesh);
+// A mesh without triangles whose document has one line through these points, under 'o' and this name.
+TriangleMesh line_mesh(const std::vector<Vec3>& points, const std::string& name);
 
 // Writes the mesh's document (or only its triangles when it has none) with these positions [m]. Normals are
 // computed anew where the file had normals. The text goes into a temporary file beside `path`, which is then

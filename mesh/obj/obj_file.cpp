@@ -33,6 +33,8 @@ std::string read_text(const std::filesystem::path& path) {
 
 }  // namespace
 
-TriangleMesh read_obj(const std::filesystem::path& path) { return parse_obj(read_text(path), path.string()); }
+TriangleMesh read_obj(const std::filesystem::path& path, ObjNeed need) {
+  return parse_obj(read_text(path), path.string(), need);
+}
 
 }  // namespace drape

@@ -41,4 +41,17 @@ std::vector<Polyline> polylines(const TriangleMesh& mesh) {
   return lines;
 }
 
+TriangleMesh line_mesh(const std::vector<Vec3>& points, const std::string& name) {
+  TriangleMesh mesh;
+  mesh.positions = points;
+  ObjDocument document;
+  document.face_start.push_back(0);
+  std::string line = "l";
+  for (std::size_t k = 1; k <= points.size(); ++k) (line += ' ') += std::to_string(k);
+  document.statements.push_back({0, "o " + name});
+  document.statements.push_back({0, std::move(line)});
+  mesh.document = std::make_shared<const ObjDocument>(std::move(document));
+  return mesh;
+}
+
 }  // namespace drape

@@ -28,7 +28,8 @@ std::string quoted(std::string_view word) {
 
 class ObjReader {
  public:
-  ObjReader(std::string_view text, const std::string& name) : scanner_(text), name_(name) {}
+  ObjReader(std::string_view text, const std::string& name, ObjNeed need)
+      : scanner_(text), name_(name), need_(need) {}
 
   TriangleMesh read();
 
@@ -65,6 +66,7 @@ class ObjReader {
 
   obj::LineScanner scanner_;
   std::string name_;
+  ObjNeed need_;
   TriangleMesh mesh_;
   ObjDocument document_;
   std::vector<Ahead> ahead_;
@@ -82,10 +84,12 @@ TriangleMesh ObjReader::read() {
   }
   if (mesh_.positions.empty()) throw InputError(name_ + ": no vertices ('v' lines): is this an OBJ file?");
   check_references();
-  if (document_.face_count() == 0) {
+  if (document_.face_count() == 0 && (need_ == ObjNeed::faces || elements_.empty())) {
     const std::string skipped = warnings_.first("corners", name_);
     throw InputError(name_ +
-                     ": no faces of three corners or more ('f' lines): there is no surface to simulate" +
+                     (need_ == ObjNeed::faces
+                          ? ": no faces of three corners or more ('f' lines): there is no surface to simulate"
+                          : ": neither faces ('f' lines) nor lines ('l' lines)") +
                      (skipped.empty() ? "" : " (" + skipped + ")"));
   }
   drop_broken_elements();
@@ -342,14 +346,14 @@ void ObjReader::cut_faces() {
 
 }  // namespace
 
-TriangleMesh parse_obj(std::string_view text, const std::string& name) {
+TriangleMesh parse_obj(std::string_view text, const std::string& name, ObjNeed need) {
   if (text.empty()) throw InputError(name + ": the file is empty");
   if (text.find('\0') != text.npos) {
     const bool utf16 = text.substr(0, 2) == "\xFF\xFE" || text.substr(0, 2) == "\xFE\xFF";
     throw InputError(name + (utf16 ? ": is UTF-16 text; save it as UTF-8"
                                    : ": is a binary file; export it as Wavefront OBJ"));
   }
-  return ObjReader(text, name).read();
+  return ObjReader(text, name, need).read();
 }
 
 }  // namespace drape

@@ -304,6 +304,11 @@ void Assembly::pin(const PinRule& rule, std::size_t k) {
 
 void Assembly::connect(Cloth& cloth, Forces& forces) const {
   if (cloth.soft) return append(soft_body(*cloth.lattice, cloth.material, cloth.first_particle), forces);
+  if (cloth.rope) {
+    std::vector<int> particles;
+    for (int v = 0; v < cloth.mesh.vertex_count(); ++v) particles.push_back(cloth.embedding.particle(v));
+    return append(rope_forces(cloth.rest.positions, particles, *cloth.rope), forces);
+  }
   const TriangleMesh mesh = between_particles(cloth);
   if (cloth.model == ClothModel::woven) {
     if (!cloth.memory) cloth.memory = std::make_shared<BendMemory>();

@@ -1,6 +1,6 @@
-// Cloths, soft bodies, bodies and pins as one system that is stepped, while seams close and are merged.
+// Cloths, soft bodies, ropes, bodies and pins as one system that is stepped, while seams close and are merged.
 //   Assembly all;                                  gravity and options of contact, the usual ones by default
-//   all.add(...)                                   every cloth and soft body
+//   all.add(...)                                   every cloth, soft body and rope
 //   all.constraints->add(...), all.pin(...)        bodies and pins, in any order
 //   all.use("implicit-euler", "auto")              makes the system, and may change the integrator later
 //   all.advance(h)                                 steps, as often as you like
@@ -24,11 +24,11 @@ namespace drape {
 using MakeIntegrator = std::function<std::unique_ptr<Integrator>(System&, Constraints&)>;
 
 struct Assembly {
-  // gravity [m/s^2]. Without air nothing slows the cloth; soft bodies do not feel it.
+  // gravity [m/s^2]. Without air nothing slows the cloth; soft bodies and ropes do not feel it.
   explicit Assembly(const Vec3& gravity = {0, -9.81, 0}, ContactOptions contact = {},
                     std::optional<Air> air = {});
 
-  std::vector<Cloth> cloths;  // cloths and soft bodies as they were added
+  std::vector<Cloth> cloths;  // cloths, soft bodies and ropes as they were added
   std::unique_ptr<System> system;
   std::unique_ptr<Constraints> constraints;
   std::unique_ptr<Integrator> integrator;  // refers to `system` and `constraints`
@@ -40,10 +40,11 @@ struct Assembly {
   // Energy that seams have given so far [J]: by their pull, and to the cloth when they are merged.
   double given = 0;
 
-  // The reference is valid until the next part is added. Both throw InputError when a mesh cannot be
+  // The reference is valid until the next part is added. These throw InputError when a mesh cannot be
   // simulated, when a fabric or a material makes no sense, or when use() was called before.
   Cloth& add(ClothPart part);
   Cloth& add(SoftPart part);
+  Cloth& add(RopePart part);
 
   // Holds the particles that the rule selects of cloths[k] where they are. Throws InputError when it selects
   // nothing.

@@ -1,8 +1,9 @@
-// A cloth or a soft body: it is simulated as particles and written as a mesh.
+// A cloth, a soft body or a rope: it is simulated as particles and written as a mesh.
 //   The vertices of a cloth are particles, joined by the connections of its model. When a seam has been
 //   merged, several vertices are one particle. A soft body is a lattice of particles; its mesh is the surface
 //   of the lattice, or another one that the lattice carries.
-// ClothPart and SoftPart are plain data from which an Assembly (solver/assembly/assembly.h) makes a Cloth.
+//   The points of a rope are particles; its mesh has a line ('l' of an OBJ file) and no triangles.
+// ClothPart, SoftPart and RopePart are plain data from which an Assembly (solver/assembly/assembly.h) makes a Cloth.
 #pragma once
 
 #include <memory>
@@ -17,6 +18,7 @@
 #include "solver/assembly/seam.h"
 #include "solver/forces/connections.h"
 #include "solver/forces/plate_friction.h"
+#include "solver/forces/rope.h"
 #include "solver/forces/soft.h"
 #include "solver/forces/woven.h"
 
@@ -70,6 +72,14 @@ struct SoftPart {
   std::optional<SelfContactOptions> self_contact = {};  // unset: cloth passes through it
 };
 
+struct RopePart {
+  std::string name = "rope";  // used in messages
+  std::vector<Vec3> points;   // m, as the rope starts, which is as long as it rests
+  RopeMaterial material = {};
+  // An end that is joined is that particle of a part that was added before, and starts where it is.
+  std::optional<int> first = {}, last = {};
+};
+
 // A pair of particles whose strain l / L - 1 [-] is watched.
 struct RestEdge {
   int i, j;
@@ -100,6 +110,7 @@ struct Cloth {
   std::optional<LatticeCounts> soft;       // set: this is a soft body and no cloth
   std::shared_ptr<const Lattice> lattice;  // of a soft body
   SoftMaterial material;
+  std::optional<RopeMaterial> rope;  // set: this is a rope and no cloth
 
   struct Stitched {
     OpenSeam seam;

@@ -7,6 +7,7 @@
 //     static double chord(const Rest&, double l);       // stiffer where a step would overshoot, else 0 [N/m]
 //     static double stiffest(const Rest&, double l);    // >= dt/dl: of a parabola above E(l)          [N/m]
 //     static constexpr bool link_pushes;                // of a link of the length Rest::L only: whether it pushes, too
+//     static double damper(double k_d, const Rest&);    // may be left out: the damping of one pair  [N s/m]
 //   };
 // With d = x_i - x_j, l = |d|, n = d/l:
 //   f_i = -t n - k_d ((v_i - v_j) . n) n,   f_j = -f_i
@@ -14,7 +15,7 @@
 // The two eigenvalues of the exact stiffness are dt/dl and t/l (twice). So clamping them at zero gives the
 // positive semidefinite part exactly. It drops the transverse term under compression, as Choi & Ko 2002 do.
 // Coincident particles have no direction and so no force; K = dt/dl I when t = 0 there (a weld), else 0.
-// k_d [N s/m] is the damping along every pair.
+// k_d [N s/m] is the damping along every pair, or what a spring's damper() makes of the number of the force.
 #pragma once
 
 #include <algorithm>
@@ -45,16 +46,24 @@ struct AlongDistance {
 
   static double energy(double, const Rest& r, const Vec3& d) { return Spring::energy(r, d.norm()); }
 
-  static double dissipation(double k_d, const Rest&, const Vec3& d, const auto& velocity) {
-    const double l2 = d.squaredNorm();
+  static double damper(double k_d, const Rest& r) {
+    if constexpr (requires { Spring::damper(k_d, r); })
+      return Spring::damper(k_d, r);
+    else
+      return k_d;
+  }
+
+  static double dissipation(double damping, const Rest& r, const Vec3& d, const auto& velocity) {
+    const double l2 = d.squaredNorm(), k_d = damper(damping, r);
     if (k_d == 0 || l2 == 0) return 0;
     const double along = d.dot(velocity());
     return 0.5 * k_d * along * along / l2;
   }
 
-  static Vec3 pull(double k_d, const Rest& r, const Vec3& d, const auto& velocity) {
+  static Vec3 pull(double damping, const Rest& r, const Vec3& d, const auto& velocity) {
     const double l = d.norm();
     if (l == 0) return Vec3::Zero();
+    const double k_d = damper(damping, r);
     double t = Spring::tension(r, l).t;
     if (k_d > 0) t += k_d / l * d.dot(velocity());
     return t / l * d;
@@ -66,7 +75,7 @@ struct AlongDistance {
     Tension law = Spring::tension(r, l);
     if (stiffness == Stiffness::chord) law.dt = std::max(law.dt, Spring::chord(r, l));
     if (stiffness == Stiffness::majorant) law.dt = std::max(law.dt, Spring::stiffest(r, l));
-    const double k_d = l == 0 ? 0 : damping;
+    const double k_d = l == 0 ? 0 : damper(damping, r);
     if ((law.t == 0 && law.dt == 0 && k_d == 0) || (l == 0 && law.t != 0)) return {};
     const double pull = l == 0 ? 0 : law.t / l;
     const double across = l == 0 ? law.dt : std::max(pull, 0.0);
@@ -87,10 +96,8 @@ struct AlongDistance {
   [[gnu::always_inline]] static double alone_along(double k_d, const Rest& r, double l, double l_free,
                                                    double drag, double W, double h) {
     Tension law = Spring::tension(r, l);
-    if (law.dt == 0) {
-      if (l == l_free) return 0;             // slack
-      law = Spring::tension(r, l = l_free);  // slack by its own pull only
-    }
+    if (law.dt == 0 && l != l_free) law = Spring::tension(r, l = l_free);  // slack by its own pull only
+    if (law.t == 0 && law.dt == 0 && k_d == 0) return 0;
     const double k = law.t < 0 ? std::max(law.dt, law.t / (l - r.L)) : law.dt;
     const double block = h * h * k + h * k_d;
     return -(h * (law.t + k_d * drag) + block * (l_free - l) / h) / ((1 + W * block) * l_free);

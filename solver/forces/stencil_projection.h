@@ -88,7 +88,7 @@ class StencilProjection {
   }
 
   // The same as relax_vector, written out: most elements are of this kind.
-  [[gnu::always_inline]] static void relax_pair(const Common& k_d, const Link& link, Substep& substep,
+  [[gnu::always_inline]] static void relax_pair(const Common& damping, const Link& link, Substep& substep,
                                                 Vec3& lambda) {
     const int i = link.particles[0], j = link.particles[1];
     const double share_i = substep.mobility[static_cast<std::size_t>(i)],
@@ -109,6 +109,7 @@ class StencilProjection {
                    : 0;
         return move(s * d[0], s * d[1], s * d[2]);
       }
+    const double k_d = Law::damper(damping, link.rest);
     double drag = 0;
     if (k_d > 0 && l2 > 0) {
       const double *const x = substep.start.data() + 3 * i, *const y = substep.start.data() + 3 * j;

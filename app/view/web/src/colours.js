@@ -33,9 +33,10 @@ function top_of(shapes, field) {
   let least = 0, largest = 0;
   for (const shape of shapes) {
     if (!shape.has(field)) continue;
-    const frames = shape.track.frames, stride = Math.max(1, Math.floor((frames * shape.vertices) / 50000));
-    for (let k = 0; k < frames * shape.vertices; k += stride) {
-      const value = shape.value(field, Math.floor(k / shape.vertices), k % shape.vertices);
+    const frames = shape.track.frames, own = shape.vertices / shape.sides;
+    const stride = Math.max(1, Math.floor((frames * own) / 50000));
+    for (let k = 0; k < frames * own; k += stride) {
+      const value = shape.value(field, Math.floor(k / own), k % own);
       sample.push(Math.abs(value));
       least = Math.min(least, value), largest = Math.max(largest, value);
     }

@@ -38,7 +38,7 @@ export class VertexPanel {
     this.name.append(...shapes.map((shape, k) => new Option(shape.name + (shape.body ? " (body)" : ""), k)));
     const chosen = () => {
       const shape = shapes[this.name.value], vertex = Number(this.number.value);
-      if (this.number.value !== "" && Number.isInteger(vertex) && vertex >= 0 && vertex < shape.vertices) take({ shape, vertex });
+      if (this.number.value !== "" && Number.isInteger(vertex) && vertex >= 0 && vertex < shape.vertices / shape.sides) take({ shape, vertex });
       else take(null);
     };
     this.name.addEventListener("change", chosen);
@@ -52,7 +52,7 @@ export class VertexPanel {
     this.values.hidden = this.clear.hidden = picked === null;
     if (!picked) return void (this.number.value = "");
     this.name.value = this.shapes.indexOf(picked.shape);
-    this.number.max = picked.shape.vertices - 1;
+    this.number.max = picked.shape.vertices / picked.shape.sides - 1;
     this.number.value = picked.vertex;
   }
 

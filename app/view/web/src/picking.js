@@ -29,7 +29,7 @@ export class Picking {
     const { shape, source, position } = seen.find(({ mesh }) => mesh === hit.object);
     const away = (i) => Math.hypot(...["x", "y", "z"].map((axis, c) => position.array[3 * i + c] - hit.point[axis]));
     const nearest = [hit.face.a, hit.face.b, hit.face.c].sort((a, b) => away(a) - away(b))[0];
-    this.take({ shape, vertex: source ? source[nearest] : nearest });
+    this.take({ shape, vertex: Math.floor((source ? source[nearest] : nearest) / shape.sides) });
   }
 
   take(picked) {

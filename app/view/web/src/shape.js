@@ -1,11 +1,12 @@
-// A cloth, soft body or body of the run: its faces, where its vertices are, and what is known of them.
+// A cloth, soft body, rope or body of the run: its faces, where its vertices are, and what is known of them.
 import { Track, read_indices } from "./data.js";
 
 export class Shape {
   constructor(head, times) {
     this.name = head.name;
     this.body = head.body;
-    this.vertices = head.vertices;
+    this.vertices = head.vertices; // those that are drawn
+    this.sides = head.sides ?? 1; // how many are drawn for each of its own: a ring of them round each point of a rope
     this.triangles = read_indices(head.triangles.block, head.triangles.count);
     this.edges = read_indices(head.edges.block, head.edges.count);
     this.track = new Track(head.positions, head.vertices);
@@ -20,20 +21,22 @@ export class Shape {
     return field in this.fields || (field === "speed" && this.speed_from_positions);
   }
 
+  // Of one of its own vertices, as below: the middle of its ring.
   position(frame, vertex) {
-    return [0, 1, 2].map((c) => this.track.value(frame, vertex, c));
+    const ring = Array.from({ length: this.sides }, (_, k) => vertex * this.sides + k);
+    return [0, 1, 2].map((c) => ring.reduce((sum, v) => sum + this.track.value(frame, v, c), 0) / this.sides);
   }
 
-  // Of one vertex; null where it is not known.
+  // Null where it is not known.
   value(field, frame, vertex) {
-    if (this.fields[field]) return this.fields[field].value(frame, vertex);
+    if (this.fields[field]) return this.fields[field].value(frame, vertex * this.sides);
     return this.has(field) ? this.#speed(...this.#neighbours(frame), vertex) : null;
   }
 
   values_to(out, field, frame) {
     if (this.fields[field]) return this.fields[field].copy_to(out, frame);
     const [before, after] = this.#neighbours(frame);
-    for (let i = 0; i < this.vertices; ++i) out[i] = this.#speed(before, after, i);
+    for (let i = 0; i < this.vertices; ++i) out[i] = this.#speed(before, after, Math.floor(i / this.sides));
   }
 
   #neighbours(frame) {

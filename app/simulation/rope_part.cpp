@@ -1,0 +1,122 @@
+// A rope of a scene: its points or a line of a file, divided and placed; its ends joined to vertices of other parts, or
+// fastened to bodies.
+#include <algorithm>
+#include <cmath>
+
+#include "app/scene/load_mesh.h"
+#include "app/simulation/parts.h"
+#include "mesh/base/errors.h"
+#include "mesh/obj/obj.h"
+#include "mesh/triangles/line.h"
+
+namespace drape::app {
+namespace {
+
+std::string in_mm(double length) { return rounded(1000 * length, 3) + " mm"; }
+std::string in_words(const Vec3& x) {
+  return "(" + rounded(x[0], 4) + ", " + rounded(x[1], 4) + ", " + rounded(x[2], 4) + ") m";
+}
+std::string end_of(bool last) { return last ? "its last end" : "its first end"; }
+
+// The one line of this name, or of any name when there is none.
+Polyline line_of(const RopeEntry& entry, const TriangleMesh& mesh) {
+  const std::vector<Polyline> lines = polylines(mesh);
+  Names names;
+  std::vector<const Polyline*> found;
+  for (const Polyline& line : lines) {
+    names.push_back(line.name);
+    if (entry.line.empty() || line.name == entry.line) found.push_back(&line);
+  }
+  const std::string start = entry.where + ": line: " + entry.mesh.string() + " has ";
+  if (lines.empty()) throw InputError(start + "no lines ('l'); expected one that the rope goes along");
+  if (found.empty())
+    throw InputError(start + "no line '" + one_line(entry.line) + "'; " + suggestion(entry.line, names));
+  if (found.size() > 1)
+    throw InputError(start + counted(static_cast<long>(found.size()), "line") +
+                     (entry.line.empty() ? "" : " of that name") + "; expected " +
+                     (entry.line.empty() ? "the name of one: " + listed(names) : "one"));
+  return *found.front();
+}
+
+std::vector<Vec3> points_of(const RopeEntry& entry) {
+  TriangleMesh mesh;
+  mesh.positions = entry.points;
+  if (!entry.mesh.empty()) {
+    require_file(entry.mesh, entry.where);
+    mesh = read_obj(entry.mesh, ObjNeed::faces_or_lines);
+    std::vector<Vec3> along;
+    for (const int v : line_of(entry, mesh).vertices)
+      along.push_back(mesh.positions[static_cast<std::size_t>(v)]);
+    mesh.positions = std::move(along);
+  }
+  mesh = placed(std::move(mesh), entry.placement, entry.mesh.empty() ? entry.where : entry.mesh.string());
+  std::optional<int> parts = entry.segments;
+  if (entry.spacing)
+    parts = std::max(1, static_cast<int>(std::lround(length_of(mesh.positions) / *entry.spacing)));
+  return parts ? evenly_divided(mesh.positions, *parts) : mesh.positions;
+}
+
+// The particle that the end becomes.
+int joined_to(const JoinEntry& join, const RopeEntry& entry, const Vec3& end, const Simulation& simulation) {
+  const auto part = std::find_if(simulation.cloths.begin(), simulation.cloths.end(),
+                                 [&](const Cloth& cloth) { return cloth.name == join.to; });
+  const std::vector<Vec3> vertices = part->embedding.positions(simulation.state.x);
+  int nearest = 0;
+  const auto off = [&](int v) { return (vertices[static_cast<std::size_t>(v)] - end).norm(); };
+  for (int v = 1; v < part->embedding.vertices(); ++v)
+    if (off(v) < off(nearest)) nearest = v;
+  const std::string start = join.where + ": " + end_of(join.last) + ", at " + in_words(end) + ", is ";
+  const double within = join.within.value_or(entry.material.radius);
+  if (!(off(nearest) <= within))
+    throw InputError(start + in_mm(off(nearest)) + " from the nearest vertex of " + one_line(part->name) +
+                     " (" + std::to_string(nearest) + ", at " +
+                     in_words(vertices[static_cast<std::size_t>(nearest)]) + "); expected " + in_mm(within) +
+                     " or less: move the end, or set within");
+  const int particle = part->embedding.particle(nearest);
+  if (particle < 0)
+    throw InputError(start + "nearest to vertex " + std::to_string(nearest) + " of " + one_line(part->name) +
+                     ", which lies between particles; join it to a box of particles instead");
+  return particle;
+}
+
+void tell_of_segments(const RopeEntry& entry, std::size_t points, Names& messages) {
+  constexpr std::size_t few = 8;
+  if (points > few) return;
+  messages.push_back("note: rope " + entry.name + ": has " +
+                     counted(static_cast<long>(points - 1), "segment") +
+                     ", each of which stays straight; set segments or spacing if it is to bend");
+}
+
+}  // namespace
+
+RopePart load_rope(const RopeEntry& entry, Simulation& simulation) {
+  RopePart part;
+  part.name = entry.name;
+  part.material = entry.material;
+  part.points = points_of(entry);
+  tell_of_segments(entry, part.points.size(), simulation.messages);
+  for (const JoinEntry& join : entry.joins)
+    (join.last ? part.last : part.first) =
+        joined_to(join, entry, join.last ? part.points.back() : part.points.front(), simulation);
+  return part;
+}
+
+void anchor(const RopeEntry& entry, const Cloth& rope, const Scene& scene, Simulation& simulation) {
+  for (const AnchorEntry& anchor : entry.anchors) {
+    const int particle = rope.embedding.particle(anchor.last ? rope.embedding.vertices() - 1 : 0);
+    const Vec3 x = simulation.state.x.segment<3>(3 * particle);
+    const std::string start = anchor.where + ": " + end_of(anchor.last) + ", at " + in_words(x) + ", is ";
+    if (const double off = anchor.at ? (*anchor.at - x).norm() : 0; off > entry.material.radius)
+      throw InputError(start + in_mm(off) + " from where it is to be anchored; move one of both");
+    const auto body = std::find_if(scene.obstacles.begin(), scene.obstacles.end(),
+                                   [&](const ObstacleEntry& o) { return o.name == anchor.body; });
+    const auto number = body - scene.obstacles.begin();
+    const double off = simulation.constraints->bodies()[static_cast<std::size_t>(number)].distance(x);
+    if (off > entry.material.radius)
+      throw InputError(start + in_mm(off) + " outside of " + one_line(anchor.body) +
+                       "; expected it in the body, or off its surface by the rope's radius at most");
+    simulation.constraints->pin_to_body({particle}, static_cast<int>(number), simulation.state.x);
+  }
+}
+
+}  // namespace drape::app
