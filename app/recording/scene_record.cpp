@@ -323,6 +323,10 @@ Json::Members scene_json(const Scene& scene, const Simulation* simulation) {
   for (std::size_t k = 0; k < scene.softs.size(); ++k) {
     const SoftEntry& entry = scene.softs[k];
     Json::Members json = {{"name", entry.name}, {"material", material_json(entry.material)}};
+    if (entry.clusters)
+      json.emplace_back("clusters", entry.clusters->count > 0   ? Json(entry.clusters->count)
+                                    : is_tetrahedra(entry.mesh) ? Json("tetrahedra")
+                                                                : Json("cells"));
     if (simulation)
       json.emplace_back("pins", pins_json(entry.pins, simulation->cloths[scene.cloths.size() + k]));
     softs.emplace_back(std::move(json));

@@ -93,7 +93,8 @@ struct ClothEntry {
 // A soft body: a lattice of particles and springs that is a box or fills a mesh.
 struct SoftEntry {
   std::string name;                          // of the body and of its output files
-  std::filesystem::path mesh;                // closed OBJ file; empty for a box
+  std::filesystem::path mesh;                // closed OBJ file, or tetrahedra (.msh); empty for a box
+  std::optional<SoftClusters> clusters;      // unset: springs
   std::array<int, 3> particles = {0, 0, 0};  // number along x, y and z, of a box
   Vec3 spacing = Vec3::Zero();               // m; equal along x, y and z where a mesh is filled
   Placement placement;                       // of the mesh and the lattice together
@@ -223,7 +224,8 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const std::fil
 
 Names shape_names();
 Names model_names();
-bool is_vdb(const std::filesystem::path& path);      // by its extension
-bool is_pattern(const std::filesystem::path& path);  // by its extension: .svg, .toml
+bool is_vdb(const std::filesystem::path& path);         // by its extension
+bool is_tetrahedra(const std::filesystem::path& path);  // by its extension: .msh
+bool is_pattern(const std::filesystem::path& path);     // by its extension: .svg, .toml
 
 }  // namespace drape::app

@@ -225,6 +225,7 @@ void check_names(const Scene& scene) {
 
 }  // namespace
 
+bool is_tetrahedra(const fs::path& path) { return path.extension() == ".msh"; }
 bool is_pattern(const fs::path& path) { return path.extension() == ".svg" || path.extension() == ".toml"; }
 
 Names model_names() { return {"noh-jung", "choi-ko", "woven"}; }

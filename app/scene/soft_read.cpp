@@ -35,6 +35,34 @@ void read_box(Table& table, SoftEntry& soft) {
   for (std::size_t a = 0; a < 3; ++a) soft.spacing[static_cast<Eigen::Index>(a)] /= soft.particles[a] - 1;
 }
 
+void read_cubes(Table& table, SoftEntry& soft) {
+  const bool tetrahedra = is_tetrahedra(soft.mesh);
+  if (tetrahedra && table.has("spacing"))
+    table.fail("spacing", "tetrahedra are taken as they are; leave spacing out");
+  double spacing = 0;
+  if (!tetrahedra) table.require("spacing");
+  table.read("spacing", spacing, dimension::length, Range::positive,
+             {"the edge of the cubes, which scale leaves as it is; not of tetrahedra", "none"});
+  soft.spacing.setConstant(spacing);
+}
+
+// One cluster for each cell or tetrahedron, or so many.
+void read_clusters(Table& table, SoftEntry& soft) {
+  const Node* const node = table.take(
+      "clusters", "\"tetrahedra\", \"cells\", or a number",
+      {"what holds the body together instead of springs, for `pbd`: one for each tetrahedron or cell, "
+       "or so many that overlap; stiff by `young`",
+       "springs"});
+  if (!node) return;
+  const std::string one = is_tetrahedra(soft.mesh) ? "tetrahedra" : "cells";
+  if (node->kind == Node::Kind::text && node->text == one)
+    soft.clusters = SoftClusters{};
+  else if (node->kind == Node::Kind::integer && node->integer >= 1 && node->integer < 1000000)
+    soft.clusters = SoftClusters{static_cast<int>(node->integer)};
+  else
+    table.fail("clusters", "expected \"" + one + "\", or how many, such as 12");
+}
+
 // Springs by a modulus, or the constants of all three kinds.
 void read_springs(Table& table, SoftMaterial& material) {
   const bool springs = table.has("structural") || table.has("shear") || table.has("bend");
@@ -77,17 +105,15 @@ SoftEntry read_soft(Table& table, const std::filesystem::path& folder) {
                "expected either particles = [10, 10, 10] of a box, or mesh = \"body.obj\" to be filled");
   if (table.has("mesh")) {
     table.only_of("of a mesh that is filled");
-    soft.mesh = read_path(table, folder, "a closed OBJ file, filled with cubes");
-    double spacing = 0;
-    table.read_required("spacing", spacing, dimension::length, Range::positive,
-                        "the edge of the cubes, which scale leaves as it is");
-    soft.spacing.setConstant(spacing);
+    soft.mesh = read_path(table, folder, "a closed OBJ file, filled with cubes; or tetrahedra of Gmsh, .msh");
+    read_cubes(table, soft);
   } else {
     table.only_of("of a box of particles");
     read_box(table, soft);
   }
   table.only_of({});
   soft.placement = read_placement(table);
+  read_clusters(table, soft);
   read_material(table, soft.material);
   return soft;
 }

@@ -4,6 +4,7 @@
 #include "app/scene/load_mesh.h"
 #include "app/simulation/parts.h"
 #include "mesh/base/errors.h"
+#include "mesh/tetrahedra/msh.h"
 
 namespace drape::app {
 namespace {
@@ -29,6 +30,13 @@ Lattice box_of(const SoftEntry& entry) {
   return box_lattice(entry.particles, entry.placement.scale * entry.spacing);
 }
 
+TetrahedralMesh tetrahedra_of(const SoftEntry& entry) {
+  require_file(entry.mesh, entry.where);
+  TetrahedralMesh mesh = read_msh(entry.mesh);
+  for (Vec3& x : mesh.positions) x *= entry.placement.scale;
+  return mesh;
+}
+
 }  // namespace
 
 SoftPart load_soft(const SoftEntry& entry, Names& messages) {
@@ -36,6 +44,11 @@ SoftPart load_soft(const SoftEntry& entry, Names& messages) {
   part.name = entry.name;
   part.material = entry.material;
   part.place = {entry.placement.rotation, entry.placement.translate};
+  part.clusters = entry.clusters;
+  if (is_tetrahedra(entry.mesh)) {
+    part.tetrahedra = tetrahedra_of(entry);
+    return part;
+  }
   MeshReport report;
   if (!entry.mesh.empty())
     part.mesh = load_mesh(entry.mesh, entry.where, {.scale = entry.placement.scale}, report, messages);

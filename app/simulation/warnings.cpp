@@ -162,7 +162,7 @@ void tell_of_self_contact(const ClothEntry& entry, const Cloth& cloth, Names& me
 }
 
 void tell_of_self_contact(const SoftEntry& entry, Names& messages) {
-  if (entry.self_contact && !entry.mesh.empty())
+  if (entry.self_contact && !entry.mesh.empty() && !is_tetrahedra(entry.mesh))
     messages.push_back("note: soft body " + entry.name +
                        ": cloth meets the surface of its lattice, which is up to a cell (" +
                        rounded(1000 * entry.spacing[0], 3) + " mm) outside its mesh");

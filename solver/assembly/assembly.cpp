@@ -7,12 +7,12 @@
 
 #include "mesh/base/errors.h"
 #include "mesh/base/words.h"
-#include "mesh/lattice/solid.h"
 #include "mesh/obj/obj_groups.h"
 #include "mesh/triangles/extent.h"
 #include "mesh/triangles/normals.h"
 #include "mesh/triangles/topology.h"
 #include "solver/assembly/imperfection.h"
+#include "solver/assembly/soft_forces.h"
 #include "solver/forces/choi_ko.h"
 #include "solver/forces/face_contact_force.h"
 #include "solver/forces/noh_jung.h"
@@ -166,19 +166,6 @@ std::vector<Vec3> start_of(const Cloth& cloth, const Layers& layers) {
   return positions;
 }
 
-void place(const Pose& pose, const std::string& name, std::vector<Vec3>& positions) {
-  for (Vec3& x : positions) {
-    x = pose.to_world(x);
-    if (!x.allFinite()) throw InputError(name + ": its place puts a vertex out of the range of numbers");
-  }
-}
-
-void add_edges(const std::vector<LatticePair>& pairs, const std::vector<Vec3>& positions, Cloth& cloth) {
-  for (const LatticePair& p : pairs)
-    cloth.edges.push_back(
-        {cloth.first_particle + p.i, cloth.first_particle + p.j, (positions[p.i] - positions[p.j]).norm()});
-}
-
 }  // namespace
 
 Assembly::Assembly(const Vec3& gravity, ContactOptions contact, std::optional<Air> air)
@@ -220,74 +207,25 @@ Cloth& Assembly::add(ClothPart part) {
   const std::vector<double> masses = masses_of(cloth);
   connect(cloth, forces_);
   const int first = cloth.first_particle;
-  for (const Triangle& t : cloth.mesh.triangles)
-    faces_.push_back({{first + t[0], first + t[1], first + t[2]},
-                      cloth.fabric.stretch_spring.value_or(mean_stretch(cloth.fabric))});
+  const double stiffness = cloth.fabric.stretch_spring.value_or(mean_stretch(cloth.fabric));
+  std::vector<Triangle> faces = cloth.mesh.triangles;
+  for (Triangle& t : faces) {
+    for (int& v : t) v += first;
+    faces_.push_back({t, stiffness});
+  }
   const Layers layers = layers_of(part.self_contact, cloth.mesh);
-  if (part.self_contact)
-    meet(cloth, *part.self_contact, cloth.mesh.triangles, layers, [&](int vertex) { return first + vertex; });
+  if (part.self_contact) meet(cloth, *part.self_contact, faces, layers);
   const std::vector<Vec3> positions = start_of(cloth, layers);
   return take(std::move(cloth), positions, masses);
 }
 
-Cloth& Assembly::add(SoftPart part) {
-  if (system) throw InputError(part.name + ": is added after use(); add all soft bodies before it");
-  Cloth cloth;
-  cloth.name = std::move(part.name);
-  cloth.lattice = std::make_shared<const Lattice>(std::move(part.lattice));
-  cloth.material = part.material;
-  const Lattice& lattice = *cloth.lattice;
-  const int first = state.particles();
-  cloth.first_particle = first;
-  cloth.end_particle = first + lattice.particle_count();
-  std::vector<int> on_surface;
-  const TriangleMesh surface = surface_of(lattice, on_surface);
-  std::optional<double> volume;
-  if (part.mesh) {
-    cloth.mesh = std::move(*part.mesh);
-    cloth.embedding = embedding_in(lattice, cloth.mesh.positions, first);
-    volume = solid_of(cloth.mesh).volume;
-  } else {
-    cloth.mesh = surface;
-    for (int p : on_surface) cloth.embedding.add_vertex(first + p);
-  }
-  const std::vector<double> masses = drape::masses(lattice, cloth.material, volume);
-  place(part.place, cloth.name, cloth.mesh.positions);
-  cloth.report = examine(cloth.mesh);
-  std::vector<Vec3> positions = lattice.positions;
-  place(part.place, cloth.name, positions);
-  cloth.soft = LatticeCounts{static_cast<int>(lattice.structural.size()),
-                             static_cast<int>(lattice.shear.size()), static_cast<int>(lattice.bend.size())};
-  for (const auto* pairs : {&lattice.structural, &lattice.shear, &lattice.bend})
-    add_edges(*pairs, lattice.positions, cloth);
-  connect(cloth, forces_);
-  const double stiffness =
-      cloth.material.young ? *cloth.material.young * lattice.spacing[0] : cloth.material.structural;
-  for (const Triangle& t : surface.triangles) {
-    const auto particle = [&](std::size_t k) { return first + on_surface[t[k]]; };
-    faces_.push_back({{particle(0), particle(1), particle(2)}, stiffness});
-  }
-  if (part.self_contact)
-    meet(cloth, *part.self_contact, surface.triangles,
-         Layers(surface.triangles.size(), part.self_contact->layer),
-         [&](int v) { return first + on_surface[v]; });
-  return take(std::move(cloth), positions, masses);
-}
-
-// Lets the triangles of the next cloth take part in contact of cloth and cloth.
-template <class Particle>
-void Assembly::meet(const Cloth& cloth, const SelfContactOptions& options,
-                    const std::vector<Triangle>& triangles, const std::vector<std::optional<int>>& layers,
-                    const Particle& particle) {
+// Lets triangles of the next cloth take part in contact of cloth and cloth; faces: between particles.
+void Assembly::meet(const Cloth& cloth, const SelfContactOptions& options, const std::vector<Triangle>& faces,
+                    const std::vector<std::optional<int>>& layers) {
   check_self_contact(cloth, options);
-  for (std::size_t k = 0; k < triangles.size(); ++k) {
-    const Triangle& t = triangles[k];
-    self_.push_back({{particle(t[0]), particle(t[1]), particle(t[2])},
-                     options.thickness,
-                     options.friction,
-                     static_cast<int>(cloths.size()),
-                     layers[k]});
-  }
+  for (std::size_t k = 0; k < faces.size(); ++k)
+    self_.push_back(
+        {faces[k], options.thickness, options.friction, static_cast<int>(cloths.size()), layers[k]});
 }
 
 void Assembly::set_friction(std::size_t k, std::size_t l, double friction) {
@@ -303,7 +241,7 @@ void Assembly::pin(const PinRule& rule, std::size_t k) {
 }
 
 void Assembly::connect(Cloth& cloth, Forces& forces) const {
-  if (cloth.soft) return append(soft_body(*cloth.lattice, cloth.material, cloth.first_particle), forces);
+  if (cloth.soft) return append(internal::soft_forces(cloth), forces);
   if (cloth.rope) {
     std::vector<int> particles;
     for (int v = 0; v < cloth.mesh.vertex_count(); ++v) particles.push_back(cloth.embedding.particle(v));

@@ -67,9 +67,8 @@ struct Assembly {
  private:
   using Forces = std::vector<std::unique_ptr<Force>>;
 
-  template <class Particle>
-  void meet(const Cloth& cloth, const SelfContactOptions& options, const std::vector<Triangle>& triangles,
-            const std::vector<std::optional<int>>& layers, const Particle& particle);
+  void meet(const Cloth& cloth, const SelfContactOptions& options, const std::vector<Triangle>& faces,
+            const std::vector<std::optional<int>>& layers);
   Cloth& take(Cloth cloth, const std::vector<Vec3>& positions, const std::vector<double>& masses);
   // Adds the forces of a part, as far as it has been sewn, and notes its edges.
   void connect(Cloth& cloth, Forces& forces) const;

@@ -15,6 +15,7 @@
 #include "constraints/pose.h"
 #include "mesh/lattice/lattice.h"
 #include "mesh/obj/examine.h"
+#include "mesh/tetrahedra/tetrahedral_mesh.h"
 #include "solver/assembly/seam.h"
 #include "solver/forces/connections.h"
 #include "solver/forces/plate_friction.h"
@@ -61,9 +62,17 @@ struct ClothPart {
   std::optional<MeshReport> report = {};  // what examine() says of the mesh; unset: examine() is called
 };
 
+// Clusters that hold a soft body together in place of springs (solver/forces/cluster.h).
+struct SoftClusters {
+  int count = 0;  // that overlap; 0: one for each cell or tetrahedron
+};
+
 struct SoftPart {
   std::string name = "soft";  // used in messages
   Lattice lattice;
+  // Tetrahedra in place of the lattice: their vertices are the particles, and the mesh is their surface.
+  std::optional<TetrahedralMesh> tetrahedra = {};
+  std::optional<SoftClusters> clusters = {};  // unset: springs
   SoftMaterial material = {};
   // A closed mesh that the lattice carries; the mass is that of its volume. Unset: the mesh is the surface of
   // the lattice, and the mass is that of the cells.
@@ -107,8 +116,11 @@ struct Cloth {
   std::shared_ptr<BendMemory> memory;  // of a woven cloth whose threads rub
   double limp_below = 0;  // curvature [1/m] below which the cloth is limp (solver/forces/connections.h)
 
-  std::optional<LatticeCounts> soft;       // set: this is a soft body and no cloth
-  std::shared_ptr<const Lattice> lattice;  // of a soft body
+  std::optional<LatticeCounts> soft;  // set: this is a soft body and no cloth
+  // One of these, of a soft body.
+  std::shared_ptr<const Lattice> lattice;
+  std::shared_ptr<const TetrahedralMesh> tetrahedra;
+  std::optional<SoftClusters> clusters;
   SoftMaterial material;
   std::optional<RopeMaterial> rope;  // set: this is a rope and no cloth
 
