@@ -112,6 +112,8 @@ std::vector<double> Constraints::penetration(const VecX& x) const {
       for (const MovingBody& body : bodies_)
         depth[i] = std::max(depth[i], radius_of(i) - body.distance(x.segment<3>(3 * i)));
   });
+  for (const MovingPin& pin : moving_pins())  // a body may hold it inside
+    if (pin.body >= 0) depth[static_cast<std::size_t>(pin.particle)] = 0;
   return depth;
 }
 

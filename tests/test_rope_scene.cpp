@@ -76,7 +76,7 @@ TEST_CASE("a mistake in a rope is told with its line", "[rope]") {
       {whole + "bned = 1\n", "scene.toml:4:", "did you mean 'bend'?"},
       {whole + "pins = [{ end = \"middle\" }]\n", "scene.toml:4:", "first, last"},
       {whole + "pins = [{ group = \"a\" }]\n", "scene.toml:4:", "group"},
-      {whole + "anchors = [{ end = \"last\", body = \"bocks\" }]\n" + box_text,
+      {whole + "anchors = [{ end = \"last\", body = \"bok\" }]\n" + box_text,
        "scene.toml:4:", "did you mean 'box'?"},
       {whole + "anchors = [{ end = \"last\" }]\n", "scene.toml:4:", "'body' is missing"},
       {whole + "anchors = [{ end = \"last\", body = \"box\" }, { end = \"last\", body = \"box\" }]\n" +
