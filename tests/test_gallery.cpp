@@ -38,6 +38,7 @@ struct Part {
 // clang-format off
 const Part gallery[] = {
     {"ball-on-floor", 0.8, 2},    // has come to the floor; the ball turns from 1.5 s on
+    {"boxes-stack", 0.4, 4},      // they stand on each other; the sheet comes down
     {"choi-ko-100", 0.5, 1},
     {"choi-ko-200", 0.5, 1},
     {"dress-on-towel", 0.35, 2},  // the dress has come to the towel
@@ -58,6 +59,8 @@ const Part gallery[] = {
     {"pocket", 0.4, 4},           // comes apart in 0.3 s
     {"poncho", 0.6, 2},           // has come to the shoulders
     {"poncho-sewn", 0.5, 4},      // is sewn after 0.2 s
+    {"rabbit-clusters", 0.6, 2},
+    {"rabbit-links", 0.6, 2},     // has come to the steps
     {"reef-knot", 1.2, 4},        // the bands have come to each other
     {"rope-box", 1.0, 2},         // swings through below its pin
     {"rope-chain", 0.6, 2},
