@@ -46,6 +46,7 @@ void BodyMeeting::add(const Bodies& bodies) {
 
 void BodyMeeting::begin_step(Bodies& bodies, double h, double recovery_speed) {
   meetings_.clear();
+  settled_ = true;
   if (forms_.empty()) return;
   h_ = h;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
@@ -188,8 +189,10 @@ void BodyMeeting::sweep_until_settled() {
   }
   for (const Meeting& m : meetings_) speed = std::max(speed, (slip(m) + m.carried).norm());
   for (const Meeting& m : meetings_) apply(m, m.impulse());
-  for (int k = 0; k < most_sweeps; ++k)
-    if (sweep() <= exactness * speed) break;
+  constexpr double still = 1e-12;  // m/s: a body that is slower stands
+  const double end = exactness * std::max(speed, still);
+  settled_ = false;
+  for (int k = 0; k < most_sweeps && !settled_; ++k) settled_ = sweep() <= end;
 }
 
 // Goes once through all touches. Returns the largest change of velocity [m/s].
@@ -257,6 +260,7 @@ void BodyMeeting::give(Bodies& bodies) {
 
 BodyMeetingReport BodyMeeting::end_step(const Bodies& bodies) {
   BodyMeetingReport report;
+  report.settled = settled_;
   kept_.clear();
   last_h_ = h_;
   for (const Meeting& m : meetings_) {

@@ -25,8 +25,9 @@
 namespace drape {
 
 struct BodyMeetingReport {
-  int touches = 0;     // points at which bodies press on each other
-  double deepest = 0;  // how far bodies were inside each other when the step began [m]
+  int touches = 0;      // points at which bodies press on each other
+  double deepest = 0;   // how far bodies were inside each other when the step began [m]
+  bool settled = true;  // the sweeps came to an end, see `exactness`
 };
 
 class BodyMeeting {
@@ -36,7 +37,8 @@ class BodyMeeting {
   // Between surfaces at rest [m]: at 0 the direction from one to the other is lost.
   static constexpr double rest_gap = 2e-6;
   static constexpr double exactness = 1e-11;
-  static constexpr int most_sweeps = 3000;
+  static constexpr int most_sweeps =
+      3000;  // after which the impulses are taken as they are, and are not `settled`
 
   // Throws InputError when the body would meet one of the others in a way that needs Bullet, which this build is
   // without. To be called for every body.
@@ -48,7 +50,7 @@ class BodyMeeting {
   void solve(Bodies& bodies);
   BodyMeetingReport end_step(const Bodies& bodies);  // keeps the impulses for the next step
 
-  // Pairs of bodies that are inside each other now by more than `margin` [m].
+  // Pairs of bodies that were inside each other by more than `margin` [m] when the last step began.
   struct Overlap {
     int a, b;
     double depth;  // m
@@ -105,6 +107,7 @@ class BodyMeeting {
   std::vector<double> pushes_;                // scratch: by touch, what moves the bodies apart
   std::vector<std::pair<Vec3, Vec3>> apart_;  // by body: what moves it apart from others [m/s], [rad/s]
   double h_ = 0, last_h_ = 0;
+  bool settled_ = true;
 };
 
 }  // namespace drape

@@ -100,7 +100,8 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
   self_.begin_step(step_, bodies_, options_.recovery_speed * h, kappa);
   if (foresight != Foresight::none)
     for (const Contact& contact : contacts_.touching())
-      if (contact.planes > 0) self_.pinch(contact, bodies_[contact.plane[0].obstacle]);
+      if (contact.planes > 0 && step_.radius_of(contact.particle) == 0)
+        self_.pinch(contact, bodies_[contact.plane[0].obstacle]);
   return ContactStep(*this);
 }
 

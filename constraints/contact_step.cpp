@@ -138,11 +138,11 @@ void ContactStep::respond(ContactMode mode, const VecX& x, const VecX& v, const 
                           VecX& v_new, double noise) {
   const StepMotion& step = constraints_->step_;
   const PinSet& pins = constraints_->pins_;
+  for (MovingBody& body : constraints_->bodies_) body.begin_corrections();
   bool moved = false;
   for (bool again = true; again; moved = moved || again) {
     constraints_->contacts_.respond(mode, constraints_->bodies_, step, x, v, x_new, v_new);
     clear_impulses();
-    constraints_->step_.work += constraints_->self_.push_bodies(constraints_->bodies_, x_new);
     constraints_->contacts_.each_response([&](const ContactResponse& r) {
       constraints_->step_.work += r.body_velocity.dot(r.impulse);
       constraints_->bodies_[r.body].push(-r.impulse, r.place, r.approach);
@@ -202,6 +202,7 @@ ContactReport ContactStep::finish(VecX& x_new, VecX& v_new) {
     constraints_->contacts_.commit();
     constraints_->faces_.end_step(constraints_->bodies_, step.x, x_new);
     const BodyMeetingReport met = constraints_->meeting_.end_step(constraints_->bodies_);
+    report.converged = report.converged && met.settled;
     report.body_contacts = met.touches;
     report.body_overlap = met.deepest;
     for (MovingBody& body : constraints_->bodies_)

@@ -114,14 +114,16 @@ std::optional<ContactPlane> MovingBody::meeting(const Vec3& x0, const Vec3& x1, 
 std::optional<Vec3> MovingBody::stop(const Vec3& x0, Vec3& x1, double start_distance, double radius) const {
   const Vec3 X0 = start_.to_body(x0), X1 = end_.to_body(x1);
   Vec3 end = X1;
-  if (start_distance >= radius) {
-    const auto hit = first_hit(obstacle_.shape, X0, X1, radius);
+  // What is known of the distance is a lower bound: for a particle without a radius it says which side that is on.
+  if (radius > 0) start_distance = closest(obstacle_.shape, X0, 0).distance;
+  const double floor = std::min(start_distance, radius);
+  if (start_distance >= 0) {
+    const auto hit = first_hit(obstacle_.shape, X0, X1, std::max(floor, 0.0));
     if (!hit) return std::nullopt;
     end = drape::carried(obstacle_.shape, X0 + hit->fraction * (X1 - X0), hit->fraction);
   }
   const SurfacePoint s = closest(obstacle_.shape, end, 1);
   if (s.covered) return std::nullopt;  // the body has closed on it
-  const double floor = std::min(start_distance, radius);
   if (s.distance < floor) end += (floor - s.distance) * s.normal;
   if (end == X1) return std::nullopt;
   x1 = end_.to_world(end);

@@ -52,6 +52,10 @@ class MovingBody {
   // The impulses of the particles on the body in this step, summed from zero. Where they make the body move
   // otherwise than was assumed, `correct` is true, and the planes that it made must be updated (their
   // velocity has changed).
+  // Before a response of its own: it is corrected anew, from where it has come to.
+  void begin_corrections() {
+    if (reacting_) reacting_->begin_corrections();
+  }
   void clear_impulse();
   void push(const Vec3& impulse, const Vec3& place, double approach = 0);
   bool correct(double noise) { return reacting_ && reacting_->correct(end_, noise); }

@@ -81,6 +81,11 @@ Pose ReactingBody::begin_step(double h) {
   return moved();
 }
 
+void ReactingBody::begin_corrections() {
+  corrections_ = changes_ = 0;
+  known_ = false;
+}
+
 void ReactingBody::clear_impulse() {
   J_.setZero();
   T_.setZero();
@@ -89,7 +94,8 @@ void ReactingBody::clear_impulse() {
 
 void ReactingBody::push(const Vec3& impulse, const Vec3& place, double approach) {
   J_ += impulse;
-  T_ += (place - (pose_.to_world(body_.centre) + h_ * q_.head<3>())).cross(impulse);
+  const Vec3 u = meets_ ? Vec3(q_.head<3>() + y_.head<3>()) : Vec3(q_.head<3>());
+  T_ += (place - (pose_.to_world(body_.centre) + h_ * u)).cross(impulse);
   approach_ = std::max(approach_, approach);
 }
 
@@ -115,7 +121,10 @@ Pose ReactingBody::expect(const Vec3& u, const Vec3& w) {
   return moved();
 }
 
-double ReactingBody::change() const { return (h_ * body_.gravity).norm() + J_.norm() / body_.mass; }
+double ReactingBody::change() const {
+  const double by_bodies = meets_ ? met_.head<3>().norm() : 0;
+  return (h_ * body_.gravity).norm() + J_.norm() / body_.mass + by_bodies;
+}
 
 // The cloth can throw the body back at twice the speed at which they met, and no faster.
 void ReactingBody::stay_in_reach() {
@@ -133,7 +142,8 @@ bool ReactingBody::correct(Pose& end, double noise) {
   if (relaxation_ == 0) {
     const double Z = J_.norm() / std::max(approach_, h_ * body_.gravity.norm() + 1e-12);
     // How fast the point where it is pushed gives way to a unit of the impulse: 1/m where that is the centre of mass.
-    const double spins = T_.dot(world_inertia(pose_).inverse() * T_) / std::max(J_.squaredNorm(), 1e-300);
+    const double pushed = std::max({J_.squaredNorm(), T_.squaredNorm() / (radius_ * radius_), 1e-300});
+    const double spins = T_.dot(world_inertia(pose_).inverse() * T_) / pushed;
     relaxation_ = 1 / (1 + Z * (1 / body_.mass + spins));
   }
   if (known_) {  // the newest change comes first, and the oldest falls out

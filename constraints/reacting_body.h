@@ -67,6 +67,8 @@ class ReactingBody {
   // from a particle [m/s].
   void clear_impulse();
   void push(const Vec3& impulse, const Vec3& place, double approach = 0);
+  // Forgets the solves of this step so far, because what pushes next is another problem.
+  void begin_corrections();
   // True when the impulses make another motion than the prescribed one; `end` is then the new pose.
   // noise [N s]: what in the impulses may be round-off.
   bool correct(Pose& end, double noise = 0);

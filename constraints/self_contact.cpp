@@ -24,8 +24,8 @@ constexpr double stiffest = 1000;
 // while they were pressed and soft before would make energy.
 constexpr double slowest_fall = 0.9;
 
-// How fast a contact that has become thinner than its cloth may thicken [m/s]: so slowly that what it lifts flies no farther
-// than where the contact still holds it.
+// How fast a contact that has become thinner than its cloth may thicken [m/s]: so slowly that, on earth, what it lifts flies no
+// farther than the contact is remembered.
 double lift_speed(double thickness) { return std::sqrt(2 * 9.81 * 0.5 * thickness); }
 
 }  // namespace

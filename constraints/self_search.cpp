@@ -16,7 +16,7 @@ namespace {
 
 constexpr double same_way = 0.5;  // the cosine from which two normals belong to one contact
 
-// What is lifted flies no farther than this (self_contact.cpp), and a contact goes on while it does.
+// What is lifted flies no farther than this on earth (self_contact.cpp), and is found to be near while it does.
 double reach_about(double thickness) { return 1.5 * thickness; }
 
 Vec3 across(const Vec3& n, const Vec3& a) { return a - n.dot(a) * n; }

@@ -150,10 +150,10 @@ void thin_out(std::vector<Touch>& found) {
   auto done = found.begin(), rest = found.begin();  // kept; not yet looked at
   while (rest != found.end()) {
     const Vec3 n = rest->normal;
-    const auto end = std::partition(rest, found.end(),
+    const auto end = std::partition(rest + 1, found.end(),
                                     [&](const Touch& touch) { return touch.normal.dot(n) > same_normal; });
     const auto kept = keep_outermost(rest, end);
-    done = std::move(rest, kept, done);
+    done = done == rest ? kept : std::move(rest, kept, done);
     rest = end;
   }
   found.erase(done, found.end());

@@ -2,6 +2,8 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
+#include "solver/forces/cluster_force.h"
+#include "solver/forces/cluster_sets.h"
 #include "solver/forces/linear_spring.h"
 #include "solver/forces/self_contact_force.h"
 #include "solver/forces/woven.h"
@@ -215,11 +217,10 @@ TEST_CASE("a vertex that meets a free body, and sticks, takes Bullet's impulse",
       system.add(Gravity{Vec3::Zero()});
       const Mat3 inertia = m_B * Vec3(0.004, 0.005, 0.006).asDiagonal();
       Constraints constraints;
-      constraints.add(Obstacle{
-          .shape = Box{.centre = Vec3::Zero(), .size = Vec3::Constant(0.2)},
-          .friction = 1000,
-          .margin = 0,
-          .rigid = RigidBody{.mass = m_B, .inertia = inertia, .gravity = Vec3::Zero()}});
+      constraints.add(Obstacle{.shape = Box{.centre = Vec3::Zero(), .size = Vec3::Constant(0.2)},
+                               .friction = 1000,
+                               .margin = 0,
+                               .rigid = RigidBody{.mass = m_B, .inertia = inertia, .gravity = Vec3::Zero()}});
       State state{0, place, Vec3(0.4, -1, 0.2)};
       REQUIRE(pbd(system, constraints, projected(1, 1))->advance(state, 1e-4).done);
       const ReactingBody& body = *constraints.bodies()[0].reacting();
@@ -239,11 +240,10 @@ TEST_CASE("a chain that hangs from a body gives it its weight, and momentum stay
     for (const int iterations : {1, 5}) {
       Chain chain(8, 0.4, 0.2, 100, {0, -1, 0});
       chain.system.add(Gravity{});
-      chain.constraints.add(Obstacle{.shape = Sphere{{0, 0.05, 0}, 0.05},
-                                     .margin = 0,
-                                     .rigid = RigidBody{.mass = m_B,
-                                                        .inertia = 1e-3 * m_B * Mat3::Identity(),
-                                                        .centre = {0, 0.05, 0}}});
+      chain.constraints.add(Obstacle{
+          .shape = Sphere{{0, 0.05, 0}, 0.05},
+          .margin = 0,
+          .rigid = RigidBody{.mass = m_B, .inertia = 1e-3 * m_B * Mat3::Identity(), .centre = {0, 0.05, 0}}});
       chain.constraints.pin_to_body({0}, 0, chain.state.x);
       auto stepper = pbd(chain.system, chain.constraints, projected(4, iterations));
       const ReactingBody& body = *chain.constraints.bodies()[0].reacting();
@@ -256,7 +256,7 @@ TEST_CASE("a chain that hangs from a body gives it its weight, and momentum stay
     }
 }
 
-TEST_CASE("two sheets lie on each other and on the floor, and one that is drawn away rubs", "[pbd]") {
+TEST_CASE("two sheets come to rest on each other and on the floor", "[pbd]") {
   for (const Kind kind : kinds) {
     TriangleMesh lower = bent(7, kind, 0.3, [](double, double) { return 0.002; }), upper = lower;
     const int n = lower.vertex_count();
@@ -279,13 +279,83 @@ TEST_CASE("two sheets lie on each other and on the floor, and one that is drawn 
   }
 }
 
+TEST_CASE("a sheet on a slope of cloth sticks below its friction and slides as Coulomb says above it",
+          "[pbd]") {
+  constexpr double mu = 0.3;
+  for (const double slope : {0.2, 0.5}) {
+    TriangleMesh lower = grid(9, 9, 0.5, 0.5), upper = grid(5, 5, 0.2, 0.2);
+    const int n = lower.vertex_count();
+    for (const Vec3& x : upper.positions) lower.positions.push_back(x + Vec3(0.01, 0.00099, 0.02));
+    std::vector<SelfFace> faces;
+    for (const Triangle& t : lower.triangles) faces.push_back({t, 1e-3, mu, 0});
+    for (const Triangle& t : upper.triangles) {
+      lower.triangles.push_back({t[0] + n, t[1] + n, t[2] + n});
+      faces.push_back({lower.triangles.back(), 1e-3, mu, 1});
+    }
+    Sheet both(lower, {.area_density = 0.2, .stretch = 100, .bend = 1e-5, .damping = 0.01});
+    const double angle = std::atan(slope);
+    both.system.add(Gravity{9.81 * Vec3(std::sin(angle), -std::cos(angle), 0)});
+    for (int i = 0; i < n; ++i) both.constraints.pin(i);
+    both.constraints.add_self_faces(faces);
+    both.system.add(self_contact_force(both.constraints));
+    auto stepper = pbd(both.system, both.constraints, projected(10, 2));
+    for (int k = 0; k < 20; ++k) REQUIRE(stepper->advance(both.state, 0.01).done);
+    double along = 0;
+    for (int i = n; i < n + 25; ++i) along += both.state.v[3 * i] / 25;
+    INFO("slope " << slope);
+    if (slope < mu)
+      CHECK(std::abs(along) < 1e-3);
+    else
+      CHECK(along == Approx(9.81 * (std::sin(angle) - mu * std::cos(angle)) * 0.2).epsilon(0.03));
+  }
+}
+
+TEST_CASE("a cluster that hangs from a body gives it its weight, and momentum stays", "[pbd]") {
+  for (const double m_B : {0.5, 100.0})
+    for (const int iterations : {1, 4}) {
+      const Lattice cube = box_lattice({3, 3, 3}, Vec3::Constant(0.05));
+      const SoftMaterial soft{.density = 300, .young = 1e5};
+      const std::vector<double> own = masses(cube, soft);
+      System system(own);
+      Clusters clusters(sets_of_cells(cube), own, stacked(cube.positions), "cube");
+      const double k = cluster_stiffness(clusters, *soft.young, soft.density);
+      system.add(std::make_unique<ClusterForce>(std::move(clusters), k));
+      system.add(Gravity{});
+      State state{0, stacked(cube.positions), VecX::Zero(3 * cube.particle_count())};
+      Constraints constraints;
+      constraints.add(Obstacle{
+          .shape = Sphere{{0, 0.2, 0}, 0.05},
+          .margin = 0,
+          .rigid = RigidBody{.mass = m_B, .inertia = 1e-2 * m_B * Mat3::Identity(), .centre = {0, 0.2, 0}}});
+      std::vector<int> top;
+      for (int i = 0; i < cube.particle_count(); ++i)
+        if (cube.positions[static_cast<std::size_t>(i)][1] > 0.04) top.push_back(i);
+      constraints.pin_to_body(top, 0, state.x);
+      auto stepper = pbd(system, constraints, projected(10, iterations));
+      for (int n = 0; n < 20; ++n) REQUIRE(stepper->advance(state, 0.01).done);
+      const Vec3 all = constraints.bodies()[0].reacting()->momentum() + momentum(system, state.v);
+      double mass = m_B;
+      for (const double m : own) mass += m;
+      INFO(m_B << " kg, " << iterations << " iterations");
+      CHECK((all - 0.2 * mass * Vec3(0, -9.81, 0)).norm() < 1e-3 * mass);
+    }
+}
+
 TEST_CASE("a step of pbd has the same bits on any number of threads", "[pbd]") {
-  check_same_bits([] {
-    LargeSheet sheet;
-    auto stepper = pbd(sheet.system, sheet.constraints, projected(4, 2));
-    for (int n = 0; n < 3; ++n) REQUIRE(stepper->advance(sheet.state, 0.01).done);
-    return sheet.state;
-  });
+  for (const bool is_woven : {false, true})
+    check_same_bits([is_woven] {
+      const TriangleMesh mesh = grid(130, 130, 1, 1);
+      System system(lumped_mass(mesh, 0.2));
+      const Fabric fabric{.area_density = 0.2, .stretch = 20, .bend = 1e-6};
+      system.add(is_woven ? woven(mesh, mesh, fabric) : noh_jung(mesh, fabric));
+      system.add(Gravity{});
+      Constraints constraints;
+      constraints.pin(0);
+      State state = at_rest(mesh);
+      auto stepper = pbd(system, constraints, projected(3, 2));
+      for (int n = 0; n < 2; ++n) REQUIRE(stepper->advance(state, 0.01).done);
+      return state;
+    });
 }
 
 TEST_CASE("pbd says what it cannot take", "[pbd]") {
@@ -293,6 +363,15 @@ TEST_CASE("pbd says what it cannot take", "[pbd]") {
   CHECK_THROWS_WITH(pbd(sheet.system, sheet.constraints, projected(0, 1)), Catch::Contains("substeps"));
   CHECK_THROWS_WITH(pbd(sheet.system, sheet.constraints, projected(1, 1, Links::length, 1.5)),
                     Catch::Contains("alpha = 1.5"));
+  const Fabric rubs = [] {
+    Fabric fabric;
+    fabric.weave.bend_friction = 1e-3;
+    return fabric;
+  }();
+  System rubbing(lumped_mass(sheet.mesh, 0.2));
+  rubbing.add(woven(sheet.mesh, sheet.mesh, rubs));
+  CHECK_THROWS_WITH(pbd(rubbing, sheet.constraints, {}),
+                    Catch::Contains("'bend friction' has no position-based"));
   StepOptions held;
   held.contact = ContactMode::constraint;
   CHECK_THROWS_WITH(pbd(sheet.system, sheet.constraints, held), Catch::Contains("restitution"));

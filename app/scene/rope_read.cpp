@@ -115,6 +115,11 @@ void check_ends(const RopeEntry& rope, const Scene& scene) {
           throw InputError(ends[k].where + ": end = \"" + (ends[k].last ? "last" : "first") +
                            "\": " + ends[l].where + " has the same end; leave one of them out");
   };
+  for (const PinEntry& pin : rope.pins)
+    for (const AnchorEntry& anchor : rope.anchors)
+      if (const auto* end = std::get_if<PinEnd>(&pin.rule); end && end->last == anchor.last)
+        throw InputError(pin.where + ": end = \"" + (anchor.last ? "last" : "first") + "\": " + anchor.where +
+                         " anchors that end to a body; leave one of them out");
   check_once(rope.anchors);
   check_once(rope.joins);
   for (const AnchorEntry& anchor : rope.anchors)

@@ -68,7 +68,7 @@ void read_springs(Table& table, SoftMaterial& material) {
   const bool springs = table.has("structural") || table.has("shear") || table.has("bend");
   if (springs && table.has("young")) table.fail("young", "give either young, or structural, shear and bend");
   table.read("young", material.young, dimension::pressure, Range::positive,
-             "of an isotropic solid with Poisson's number 1/4; cubic cells only");
+             "of an isotropic solid with Poisson's number 1/4; of a lattice, with cubic cells only");
   const char* const instead = "by young";
   table.read("structural", material.structural, dimension::spring, Range::not_negative,
              {"every spring along an edge of a cell; this, shear and bend, instead of young", instead});
@@ -115,6 +115,9 @@ SoftEntry read_soft(Table& table, const std::filesystem::path& folder) {
   soft.placement = read_placement(table);
   read_clusters(table, soft);
   read_material(table, soft.material);
+  if (!soft.material.young && (soft.clusters || is_tetrahedra(soft.mesh)))
+    table.fail("structural", "is of the springs of a lattice; expected young");
+  if (soft.clusters && table.has("damping")) table.fail("damping", "is of springs, and clusters have none");
   return soft;
 }
 

@@ -35,6 +35,8 @@ Polyline line_of(const RopeEntry& entry, const TriangleMesh& mesh) {
     throw InputError(start + counted(static_cast<long>(found.size()), "line") +
                      (entry.line.empty() ? "" : " of that name") + "; expected " +
                      (entry.line.empty() ? "the name of one: " + listed(names) : "one"));
+  if (found.front()->vertices.size() < 2)
+    throw InputError(start + "a line of one vertex; a rope goes through two points at least");
   return *found.front();
 }
 
@@ -51,8 +53,13 @@ std::vector<Vec3> points_of(const RopeEntry& entry) {
   }
   mesh = placed(std::move(mesh), entry.placement, entry.mesh.empty() ? entry.where : entry.mesh.string());
   std::optional<int> parts = entry.segments;
-  if (entry.spacing)
-    parts = std::max(1, static_cast<int>(std::lround(length_of(mesh.positions) / *entry.spacing)));
+  constexpr double most = 1e6;  // segments
+  const double asked =
+      entry.spacing ? std::round(length_of(mesh.positions) / *entry.spacing) : parts.value_or(1);
+  if (!(asked <= most))
+    throw InputError(entry.where + ": a rope of " + rounded(length_of(mesh.positions), 3) + " m would have " +
+                     rounded(asked, 3) + " segments; expected a million at most: give a longer spacing");
+  if (entry.spacing) parts = std::max(1, static_cast<int>(asked));
   return parts ? evenly_divided(mesh.positions, *parts) : mesh.positions;
 }
 

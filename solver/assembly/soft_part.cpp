@@ -42,6 +42,11 @@ double volume_of_cells(const Cloth& soft) {
   return std::accumulate(volumes.begin(), volumes.end(), 0.0);
 }
 
+// m^3, of the mesh that a lattice carries, or else of what the body is made of.
+double volume_of(const Cloth& soft) {
+  return soft.lattice ? solid_of(soft.mesh).volume : volume_of_cells(soft);
+}
+
 // m, the length of a cell, or of an edge of a tetrahedron, about.
 double size_of_cell(const Cloth& soft) {
   return soft.tetrahedra
@@ -49,9 +54,9 @@ double size_of_cell(const Cloth& soft) {
              : soft.lattice->spacing[0];
 }
 
-std::vector<double> masses_of(const Cloth& soft, const std::optional<double>& volume) {
+std::vector<double> masses_of(const Cloth& soft) {
   return soft.tetrahedra ? masses(*soft.tetrahedra, soft.material)
-                         : masses(*soft.lattice, soft.material, volume);
+                         : masses(*soft.lattice, soft.material, volume_of(soft));
 }
 
 ParticleSets cluster_sets(const Cloth& soft) {
@@ -66,7 +71,7 @@ std::unique_ptr<Force> clusters_of(const Cloth& soft) {
     throw InputError(soft.name + ": clusters take young; structural, shear and bend are springs");
   ParticleSets sets = cluster_sets(soft);
   const auto first = static_cast<std::size_t>(soft.first_particle);
-  const std::vector<double> own = masses_of(soft, {});
+  const std::vector<double> own = masses_of(soft);
   std::vector<double> all(first, 1.0);
   all.insert(all.end(), own.begin(), own.end());
   for (auto& set : sets)
@@ -75,7 +80,7 @@ std::unique_ptr<Force> clusters_of(const Cloth& soft) {
   rest.insert(rest.end(), rest_of(soft).begin(), rest_of(soft).end());
   Clusters clusters(sets, all, stacked(rest), soft.name);
   const double mass = std::accumulate(own.begin(), own.end(), 0.0);
-  const double k = cluster_stiffness(clusters, *soft.material.young, mass / volume_of_cells(soft));
+  const double k = cluster_stiffness(clusters, *soft.material.young, mass / volume_of(soft));
   return std::make_unique<ClusterForce>(std::move(clusters), k);
 }
 
@@ -107,16 +112,14 @@ Cloth& Assembly::add(SoftPart part) {
   std::vector<int> on_surface;
   const TriangleMesh surface =
       cloth.tetrahedra ? surface_of(*cloth.tetrahedra, on_surface) : surface_of(*cloth.lattice, on_surface);
-  std::optional<double> volume;
   if (part.mesh && cloth.lattice) {
     cloth.mesh = std::move(*part.mesh);
     cloth.embedding = embedding_in(*cloth.lattice, cloth.mesh.positions, first);
-    volume = solid_of(cloth.mesh).volume;
   } else {
     cloth.mesh = surface;
     for (int p : on_surface) cloth.embedding.add_vertex(first + p);
   }
-  const std::vector<double> masses = masses_of(cloth, volume);
+  const std::vector<double> masses = masses_of(cloth);
   place(part.place, cloth.name, cloth.mesh.positions);
   cloth.report = examine(cloth.mesh);
   const Pairs pairs = pairs_of(cloth);

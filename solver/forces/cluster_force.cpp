@@ -1,5 +1,7 @@
 #include "solver/forces/cluster_force.h"
 
+#include <algorithm>
+
 namespace drape {
 
 double cluster_stiffness(const Clusters& clusters, double young, double density) {
@@ -13,7 +15,14 @@ double cluster_stiffness(const Clusters& clusters, double young, double density)
 }
 
 ClusterForce::ClusterForce(Clusters clusters, double k)
-    : clusters_(std::move(clusters)), k_(k), poses_(static_cast<std::size_t>(clusters_.count())) {}
+    : clusters_(std::move(clusters)), k_(k), poses_(static_cast<std::size_t>(clusters_.count())) {
+  for (int c = 0; c < clusters_.count(); ++c)
+    for (const ClusterMember& member : clusters_[c]) {
+      const auto i = static_cast<std::size_t>(member.particle);
+      if (masses_.size() <= i) masses_.resize(i + 1, 0.0);
+      masses_[i] = member.mass;
+    }
+}
 
 ClusterPose ClusterForce::pose(int cluster, const VecX& x) const {
   return matched(clusters_[cluster], x, poses_[static_cast<std::size_t>(cluster)].rotation);
@@ -34,18 +43,27 @@ void ClusterForce::add_force(const VecX& x, const VecX&, VecX& f) const {
   }
 }
 
-// What is held does not move, and the others do not know of it before the next substep.
+// A particle that is held does not move, and one that a body carries moves as the body gives way: the impulse on it is that of
+// its own mass. It has been put back since the last iteration, so only what is new is added.
 void ClusterForce::project(Substep& substep) {
   if (substep.first) moved_.setZero(substep.x.size());
-  x_free_ = substep.x - moved_;
-  substep.x = x_free_;
+  x_free_ = substep.x;
+  for (std::size_t i = 0; i < masses_.size(); ++i)
+    if (substep.mobility[i] * masses_[i] > 1 - 1e-9)
+      x_free_.segment<3>(3 * static_cast<Eigen::Index>(i)) -=
+          moved_.segment<3>(3 * static_cast<Eigen::Index>(i));
+  x_new_ = x_free_;
   clusters_.match(x_free_, poses_);
-  clusters_.project(poses_, goal_share(k_, substep.h), substep.x);
-  for (std::size_t i = 0; i < substep.mobility.size(); ++i)
-    if (substep.mobility[i] == 0)
-      substep.x.segment<3>(3 * static_cast<Eigen::Index>(i)) =
-          x_free_.segment<3>(3 * static_cast<Eigen::Index>(i));
-  moved_ = substep.x - x_free_;
+  clusters_.project(poses_, goal_share(k_, substep.h), x_new_);
+  for (std::size_t i = 0; i < masses_.size(); ++i) {
+    const auto at = 3 * static_cast<Eigen::Index>(i);
+    const double gives_way = substep.mobility[i] * masses_[i];
+    const Vec3 way = std::min(gives_way, 1.0) * (x_new_.segment<3>(at) - x_free_.segment<3>(at));
+    const bool is_free = gives_way > 1 - 1e-9;
+    substep.x.segment<3>(at) = x_free_.segment<3>(at) + way;
+    if (!is_free) substep.x.segment<3>(at) -= moved_.segment<3>(at);
+    moved_.segment<3>(at) = way;
+  }
 }
 
 }  // namespace drape

@@ -39,9 +39,11 @@ class ClusterForce final : public Force {
   ClusterPose pose(int cluster, const VecX& x) const;
 
   Clusters clusters_;
+  std::vector<double> masses_;      // kg, of the particles; 0 of one that is in no cluster
   double k_;                        // 1/s^2
   std::vector<ClusterPose> poses_;  // of the last substep
-  VecX moved_, x_free_;             // by the clusters in this substep, and without that [m]
+  VecX moved_;                      // by the clusters in this substep [m]
+  VecX x_free_, x_new_;             // scratch: without that, and with what it is to be
 };
 
 }  // namespace drape

@@ -96,7 +96,10 @@ struct AlongDistance {
   [[gnu::always_inline]] static double alone_along(double k_d, const Rest& r, double l, double l_free,
                                                    double drag, double W, double h) {
     Tension law = Spring::tension(r, l);
-    if (law.dt == 0 && l != l_free) law = Spring::tension(r, l = l_free);  // slack by its own pull only
+    if (law.dt == 0 && l != l_free) {  // slack by its own pull only
+      drag += (l_free - l) / h;
+      law = Spring::tension(r, l = l_free);
+    }
     if (law.t == 0 && law.dt == 0 && k_d == 0) return 0;
     const double k = law.t < 0 ? std::max(law.dt, law.t / (l - r.L)) : law.dt;
     const double block = h * h * k + h * k_d;

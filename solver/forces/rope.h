@@ -7,8 +7,8 @@
 // the curvature, to second order in the length of the segments as long as they hardly stretch. E is quadratic in the
 // positions: its Hessian is constant and positive semidefinite. The laws: solver/forces/rope_laws.h.
 //                                                              [Bergou et al. 2006]
-// A turn by the angle t between two segments has |p| = 2 sin(t/2): a rope that is folded over in one particle resists
-// with at most 2 B / d. Where the tension changes along the rope, p has a part along it, too, which makes tensions wrong by a
+// A turn by the angle t between two segments has |p| = 2 sin(t/2) and so the moment (B / d) sin(t): at most B / d, and none where
+// the rope is folded over in one particle, which stores 2 B / d. Where the tension changes along the rope, p has a part along it, too, which makes tensions wrong by a
 // share of B / (EA L^2): nothing, but for a rope that is as soft as its segments are thick.
 //   A segment resists compression as it resists tension. A rope that is pushed does not become shorter, it bows out, and
 // its particles do that by themselves. With springs that go slack, nothing would keep the particles of a rope apart that

@@ -65,7 +65,10 @@ void Pbd::take(State& state, double h, bool last, StepReport& report) {
     predict(state, h);
   }
   for (int k = 0; k < options_.projection.iterations; ++k) project(state, h, k, report);
-  if (!contacts_->bodies()) v_ = (x_ - state.x) / h;
+  if (contacts_->bodies())
+    contacts_->settle_faces(x_, v_);
+  else
+    v_ = (x_ - state.x) / h;
   if (!x_.allFinite() || !v_.allFinite()) {
     report.done = false;
     report.failure = not_finite(system_, x_, v_, "the new positions are not finite numbers");
@@ -153,6 +156,13 @@ void Pbd::meet_bodies(const State& state, double h) {
   for (const MovingPin& pin : contacts_->moving_pins()) moved_.segment<3>(3 * pin.particle).setZero();
 }
 
+// Whether the particle is a pin that moves: its equation is that of what carries it.
+bool Pbd::is_carried(int particle) const {
+  const std::vector<MovingPin>& pins = contacts_->moving_pins();
+  return std::any_of(pins.begin(), pins.end(),
+                     [particle](const MovingPin& pin) { return pin.particle == particle; });
+}
+
 // What the elements and the bodies leave of the equation of the substep, relative to the weight, or where nothing weighs, to
 // the forces.
 double Pbd::residual(const State& state, double h) {
@@ -162,7 +172,7 @@ double Pbd::residual(const State& state, double h) {
   double left = 0, forces = 0, weight = 0, places = 0;
   for (int i = 0; i < system_.particles(); ++i) {
     const double mobility = mobility_[static_cast<std::size_t>(i)];
-    if (mobility == 0) continue;
+    if (mobility == 0 || is_carried(i)) continue;
     const Vec3 f = push_.segment<3>(3 * i);
     const Vec3 moved = x_.segment<3>(3 * i) - predicted_.segment<3>(3 * i) - moved_.segment<3>(3 * i);
     left += (moved / (h * mobility) - h * f).squaredNorm();
@@ -172,7 +182,7 @@ double Pbd::residual(const State& state, double h) {
   }
   constexpr double round_off = 1e-13;  // of a difference of places
   const double reference = weight > 0 ? weight : forces;
-  return left > round_off * round_off * places ? std::sqrt(left / reference) : 0;
+  return reference > 0 && left > round_off * round_off * places ? std::sqrt(left / reference) : 0;
 }
 
 }  // namespace drape::internal
