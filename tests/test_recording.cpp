@@ -126,10 +126,10 @@ TEST_CASE("velocities, strains and contacts are those of the frame", "[recording
   const std::vector<Vec3> first = recording.velocities(0, 0);
   REQUIRE(first.size() == 25);
   for (const Vec3& v : first) CHECK(v.norm() == 0);
-  for (const Touch touch : recording.touches(0, 0)) CHECK(touch == Touch::free);
+  for (const app::Touch touch : recording.touches(0, 0)) CHECK(touch == app::Touch::free);
   bool touched = false;
   for (int frame = 0; frame < recording.frames(); ++frame) {
-    for (const Touch touch : recording.touches(0, frame)) touched = touched || touch != Touch::free;
+    for (const app::Touch touch : recording.touches(0, frame)) touched = touched || touch != app::Touch::free;
     // l / L - 1 of the edges of quads, whose rest lengths are 10 cm; diagonals of quads are edges, too.
     const std::vector<Vec3> x = recording.positions(0, frame);
     const std::vector<double> strain = recording.strains(0, frame);
