@@ -24,7 +24,7 @@ struct Traits {
 inline constexpr std::array<Traits, 13> traits = {{
     {"implicit-euler", 1, false, true, true, false, 1e-6},
     {"bdf2", 2, false, true, true, false, 0.1},
-    {"pbd", 1, false, true, false, false, 2e-3},
+    {"pbd", 1, false, true, false, false, 1e-2},
     {"explicit-euler", 1, true, false, false, true, 1e-6},
     {"symplectic-euler", 1, true, false, false, false, 1e-6},
     {"midpoint", 2, true, false, false, true, 1e-6},

