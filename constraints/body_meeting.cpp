@@ -183,19 +183,20 @@ Vec3 BodyMeeting::slip(const Meeting& m) const {
 }
 
 void BodyMeeting::sweep_until_settled() {
-  double speed = 0;
+  double speed = 0, fastest_body = 0;  // of the surfaces against each other; of a body
   for (Mover& mover : movers_) {
     mover.v = mover.free_v;
     mover.w = mover.free_w;
+    fastest_body = std::max(fastest_body, mover.v.norm());
   }
   for (const Meeting& m : meetings_) speed = std::max(speed, (slip(m) + m.carried).norm());
   for (const Meeting& m : meetings_) apply(m, m.impulse());
-  constexpr double still = 1e-12;  // m/s: a body that is slower stands
-  constexpr double well =
-      1e-6;  // of the speed: many touches that bear one load settle slowly, and this is near enough
+  constexpr double round_off = 4e-15, near_enough = 1e-3;
+  constexpr double still = 1e-7;  // m/s
+  const double noise = round_off * fastest_body;
   double change = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < most_sweeps && !(change <= exactness * std::max(speed, still)); ++k) change = sweep();
-  settled_ = change <= well * std::max(speed, still);
+  for (int k = 0; k < most_sweeps && !(change <= std::max(exactness * speed, noise)); ++k) change = sweep();
+  settled_ = change <= std::max(near_enough * speed, still);
 }
 
 // Goes once through all touches. Returns the largest change of velocity [m/s].
