@@ -17,38 +17,15 @@ namespace {
 const std::vector<std::string> rooms = {"mesh", "constraints", "solver", "app"};
 
 // From the bottom up: a room may include those before it.
-const std::vector<std::string> inner_rooms = {"mesh/base",
-                                              "mesh/triangles",
-                                              "mesh/obj",
-                                              "mesh/pattern",
-                                              "mesh/distance",
-                                              "mesh/lattice",
-                                              "mesh/tetrahedra",
-                                              "mesh/level_set",
-                                              "constraints",
-                                              "solver/matrix",
-                                              "solver/forces",
-                                              "solver/linear",
-                                              "solver/system",
-                                              "solver/integrators",
-                                              "solver/assembly",
-                                              "solver/stability",
-                                              "solver",
-                                              "app/base",
-                                              "app/pattern",
-                                              "app/scene",
-                                              "app/simulation",
-                                              "app/recording",
-                                              "app/run",
-                                              "app/export",
-                                              "app/picture",
-                                              "app/view",
-                                              "app/compare",
-                                              "app/textile",
-                                              "app/stability",
-                                              "app/python",
-                                              "app/commands",
-                                              "app"};
+const std::vector<std::string> inner_rooms = {
+    "mesh/base",      "mesh/triangles",     "mesh/obj",        "mesh/pattern",
+    "mesh/distance",  "mesh/lattice",       "mesh/tetrahedra", "mesh/level_set",
+    "constraints",    "solver/matrix",      "solver/forces",   "solver/linear",
+    "solver/system",  "solver/integrators", "solver/assembly", "solver/stability",
+    "solver",         "app/base",           "app/pattern",     "app/scene",
+    "app/simulation", "app/recording",      "app/run",         "app/export",
+    "app/picture",    "app/view",           "app/compare",     "app/textile",
+    "app/stability",  "app/python",         "app/commands",    "app"};
 
 std::size_t place(const std::vector<std::string>& list, const std::string& room) {
   return static_cast<std::size_t>(std::find(list.begin(), list.end(), room) - list.begin());
