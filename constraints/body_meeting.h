@@ -8,10 +8,10 @@
 // within the step it is e s, so that they part at once. mu and e of a pair are the geometric means of the two bodies';
 // mu is the static coefficient where the surfaces do not slide when the step begins, otherwise the kinetic one.
 // All impulses are found together by sweeps over the touches (projected Gauss-Seidel), from those of the last step, until
-// no sweep changes a velocity by more than `exactness` of the largest.
+// no sweep changes a velocity by more than `exactness` of the largest, or `most_sweeps` are done.
 //                                                         [Moreau 1988; Jourdan, Alart & Jean 1998; Catto 2005]
 // Bodies that are nearer than rest_gap are moved apart besides, by at most recovery_speed h in a step, which gives them
-// no velocity.
+// no velocity; cloth that lies on them goes along.
 // The order is that of the bodies, and no thread takes part, so the bits are always the same. Impulses are kept from step
 // to step; memory grows only while more touches are found than ever before. (Bullet's search allocates where hulls
 // overlap.)
@@ -25,9 +25,10 @@
 namespace drape {
 
 struct BodyMeetingReport {
-  int touches = 0;      // points at which bodies press on each other
-  double deepest = 0;   // how far bodies were inside each other when the step began [m]
-  bool settled = true;  // the sweeps came to an end, see `exactness`
+  int touches = 0;     // points at which bodies press on each other
+  double deepest = 0;  // how far bodies were inside each other when the step began [m]
+  // The last sweep changed a velocity by at most a thousandth of the speed at which surfaces met, or 0.1 um/s.
+  bool settled = true;
 };
 
 class BodyMeeting {
@@ -37,8 +38,7 @@ class BodyMeeting {
   // Between surfaces at rest [m]: at 0 the direction from one to the other is lost.
   static constexpr double rest_gap = 2e-6;
   static constexpr double exactness = 1e-11;
-  static constexpr int most_sweeps =
-      3000;  // after which the impulses are taken as they are, and are not `settled`
+  static constexpr int most_sweeps = 3000;  // after these the impulses are taken as they are
 
   // Throws InputError when the body would meet one of the others in a way that needs Bullet, which this build is
   // without. To be called for every body.

@@ -13,25 +13,12 @@
 #include "mesh/triangles/tear.h"
 #include "mesh/triangles/topology.h"
 #include "tests/places.h"
+#include "tests/tangled.h"
 
 using namespace drape;
+using namespace drape::test;
 
 namespace {
-
-TriangleMesh mesh_of(int vertices, std::vector<Triangle> triangles) {
-  TriangleMesh mesh;
-  for (int i = 0; i < vertices; ++i) mesh.positions.push_back({std::cos(i), std::sin(i), i * 0.1});
-  mesh.triangles = std::move(triangles);
-  return mesh;
-}
-
-TriangleMesh tangle(unsigned seed) {  // every kind of non-manifold there is, with equal triangles
-  std::mt19937 random(seed);
-  TriangleMesh mesh = mesh_of(9, {});
-  const auto any = [&] { return static_cast<int>(random() % 9); };
-  for (unsigned i = 0; i < 5 + 3 * seed; ++i) mesh.triangles.push_back({any(), any(), any()});
-  return mesh;
-}
 
 std::vector<TriangleMesh> all_meshes() {
   std::vector<TriangleMesh> meshes = {
@@ -44,7 +31,8 @@ std::vector<TriangleMesh> all_meshes() {
       mesh_of(5, {{0, 1, 2}, {0, 3, 4}}),             // a bow tie
       mesh_of(5, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}),  // three triangles at an edge
       mesh_of(4, {{0, 1, 2}, {2, 1, 0}, {1, 2, 3}})};
-  for (unsigned seed = 0; seed < 15; ++seed) meshes.push_back(tangle(seed));
+  for (unsigned seed = 0; seed < 15; ++seed)
+    meshes.push_back(tangle(9, 5 + 3 * static_cast<int>(seed), seed));
   return meshes;
 }
 

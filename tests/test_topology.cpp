@@ -12,8 +12,10 @@
 #include "mesh/base/errors.h"
 #include "mesh/triangles/generate.h"
 #include "mesh/triangles/topology.h"
+#include "tests/tangled.h"
 
 using namespace drape;
+using namespace drape::test;
 
 namespace drape {
 static bool operator==(const Edge& s, const Edge& t) {
@@ -28,22 +30,6 @@ static bool operator==(const Diagonal& s, const Diagonal& t) {
 }  // namespace drape
 
 namespace {
-
-TriangleMesh mesh_of(int vertices, std::vector<Triangle> triangles) {
-  TriangleMesh mesh;
-  for (int i = 0; i < vertices; ++i) mesh.positions.push_back({std::cos(i), std::sin(i), i * 0.1});
-  mesh.triangles = std::move(triangles);
-  return mesh;
-}
-
-// Random triangles over few vertices: every kind of non-manifold there is.
-TriangleMesh tangle(int vertices, int triangles, unsigned seed) {
-  std::mt19937 random(seed);
-  TriangleMesh mesh = mesh_of(vertices, {});
-  const auto any = [&] { return static_cast<int>(random() % static_cast<unsigned>(vertices)); };
-  for (int i = 0; i < triangles; ++i) mesh.triangles.push_back({any(), any(), any()});
-  return mesh;
-}
 
 std::vector<TriangleMesh> all_meshes() {
   std::vector<TriangleMesh> meshes = {grid(2, 2, 1, 1), grid(7, 5, 1, 2), equilateral_sheet(6, 7, 0.1),
