@@ -2,10 +2,12 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
+#include "solver/forces/buckling_spring.h"
 #include "solver/forces/cluster_force.h"
 #include "solver/forces/cluster_sets.h"
 #include "solver/forces/linear_spring.h"
 #include "solver/forces/self_contact_force.h"
+#include "solver/forces/tension_spring.h"
 #include "solver/forces/woven.h"
 #include "tests/same_bits.h"
 #include "tests/sheets.h"
@@ -343,6 +345,48 @@ TEST_CASE("a cluster that hangs from a body gives it its weight, and momentum st
       INFO(m_B << " kg, " << iterations << " iterations");
       CHECK((all - 0.2 * mass * Vec3(0, -9.81, 0)).norm() < 5e-3 * mass);
     }
+}
+
+namespace {
+
+// Springs that have no particle in common, from nothing to twice their length, some of whose ends are held.
+template <class Spring>
+void check_taken_at_once(const std::function<typename Spring::Rest(double L)>& rest) {
+  using Law = AlongDistance<Spring>;
+  constexpr int count = 203;
+  const VecX numbers = random_vector(8 * count, 1, 11);
+  std::vector<StencilLink<2, typename Spring::Rest>> links;
+  std::vector<double> mobility;
+  VecX start(6 * count);
+  for (int k = 0; k < count; ++k) {
+    const auto number = numbers.segment<8>(8 * k);
+    const double L = 1.1 + number[0], l = k % 29 == 0 ? 0 : k % 31 == 0 ? L : L * (1 + number[1]);
+    links.push_back({{2 * k, 2 * k + 1}, rest(L)});
+    start.segment<3>(6 * k) = number.template segment<3>(2);
+    const Vec3 n = Vec3(number.template segment<3>(5)).normalized();
+    start.segment<3>(6 * k + 3) = start.segment<3>(6 * k) + l * n;
+    mobility.push_back(k % 5 == 0 ? 0 : 1 + number[2]);
+    mobility.push_back(k % 7 == 0 ? 0 : 2 + number[3]);
+  }
+  const ProjectionOptions options;
+  VecX at_once = start, one_by_one = start;
+  std::vector<Vec3> impulses(count), expected(count, Vec3::Zero());
+  Substep together{0.01, start, mobility, at_once, options, true, false};
+  Substep in_turn{0.01, start, mobility, one_by_one, options, true, false};
+  Spring::relax_apart(links.data(), count, together, impulses.data());
+  for (std::size_t k = 0; k < count; ++k) relax_pair<Law>(0.0, links[k], in_turn, expected[k]);
+  CHECK((one_by_one - start).norm() > 1e-4);
+  CHECK(at_once == one_by_one);
+  for (std::size_t k = 0; k < count; ++k)
+    if (mobility[2 * k] + mobility[2 * k + 1] > 0) CHECK(impulses[k] == expected[k]);
+}
+
+}  // namespace
+
+TEST_CASE("springs taken four at a time move to the same bits as one by one", "[pbd]") {
+  check_taken_at_once<LinearSpring>([](double L) { return LinearSpring::Rest{L, 300 * L}; });
+  check_taken_at_once<TensionSpring>([](double L) { return TensionSpring::Rest{L, 300 * L}; });
+  check_taken_at_once<BucklingSpring>([](double L) { return BucklingSpring::rest(L, 2 * L, 700); });
 }
 
 TEST_CASE("a step of pbd has the same bits on any number of threads", "[pbd]") {

@@ -53,6 +53,7 @@ struct BucklingSpring {
   // the clamp, and the parabola with the stiffness of the chord lies above the energy.
   static double chord(const Rest& r, double l) { return l < r.L ? tension(r, l).t / (l - r.L) : 0; }
   static double stiffest(const Rest& r, double l) { return l >= r.L && l < 1.02 * r.L ? r.c_b : chord(r, l); }
+  static void relax_apart(const StencilLink<2, Rest>* links, int count, Substep& substep, Vec3* impulses);
 };
 
 }  // namespace drape

@@ -20,28 +20,34 @@ class Colours {
     begin(count);
     for (int e = 0; e < count; ++e) {
       std::uint64_t all = 0;
-      each_particle(e, [&](int p) { all |= taken[static_cast<std::size_t>(p)]; });
+      int lowest = particles;
+      each_particle(e, [&](int p) {
+        all |= taken[static_cast<std::size_t>(p)];
+        lowest = std::min(lowest, p);
+      });
+      lowest_.push_back(lowest);
       const std::uint64_t mine = give(e, all);
       each_particle(e, [&](int p) { taken[static_cast<std::size_t>(p)] |= mine; });
     }
     sort();
   }
 
-  // The elements, colour by colour, in ascending order within each.
+  // The elements, colour by colour; within each by their lowest particles, so that places next to each other are read together.
   const std::vector<int>& order() const { return order_; }
   int colours() const { return static_cast<int>(start_.size()) - 1; }
 
-  // Calls f(k) for every place k of order(): one colour after the other, those of a colour in any order.
-  template <class F>
-  void run(const F& f) const {
+  // Takes the places of order() in ranges [begin, end): one colour after the other, those of a colour in any order. Of what
+  // apart(begin, end) is called for, no two touch the same particle; in_turn(begin, end) has to keep to the order.
+  template <class Apart, class InTurn>
+  void run(const Apart& apart, const InTurn& in_turn) const {
     constexpr int block = 512, parallel_from = 4 * block;
     for (std::size_t colour = 0; colour + 1 < start_.size(); ++colour) {
-      const int first = start_[colour], count = start_[colour + 1] - first;
-      const bool serial = count < parallel_from || (rest_in_turn_ && colour + 2 == start_.size());
-      parallel_for((count + block - 1) / block, serial, [&](int b) {
-        const int end = first + std::min(count, (b + 1) * block);
-        for (int k = first + b * block; k < end; ++k) f(k);
-      });
+      const int first = start_[colour], last = start_[colour + 1], count = last - first;
+      if (rest_in_turn_ && colour + 2 == start_.size())
+        in_turn(first, last);
+      else
+        parallel_for((count + block - 1) / block, count < parallel_from,
+                     [&](int b) { apart(first + b * block, std::min(last, first + (b + 1) * block)); });
     }
   }
 
@@ -53,7 +59,7 @@ class Colours {
   std::uint64_t give(int element, std::uint64_t taken);  // its colour, as a bit
   void sort();
 
-  std::vector<int> colour_of_, order_, start_;
+  std::vector<int> colour_of_, lowest_, order_, start_;
   bool rest_in_turn_ = false;
 };
 

@@ -20,6 +20,7 @@ struct LinearSpring {
   static Tension tension(const Rest& r, double l) { return {r.k * (l - r.L), r.k}; }
   static double chord(const Rest&, double) { return 0; }
   static double stiffest(const Rest& r, double) { return r.k; }
+  static void relax_apart(const StencilLink<2, Rest>* links, int count, Substep& substep, Vec3* impulses);
 };
 
 }  // namespace drape

@@ -8,6 +8,7 @@
 //     static double stiffest(const Rest&, double l);    // >= dt/dl: of a parabola above E(l)          [N/m]
 //     static constexpr bool link_pushes;                // of a link of the length Rest::L only: whether it pushes, too
 //     static double damper(double k_d, const Rest&);    // may be left out: the damping of one pair  [N s/m]
+//     static void relax_apart(...);                     // may be left out: solver/forces/pair_projection.h
 //   };
 // With d = x_i - x_j, l = |d|, n = d/l:
 //   f_i = -t n - k_d ((v_i - v_j) . n) n,   f_j = -f_i
@@ -105,6 +106,12 @@ struct AlongDistance {
     const double block = h * h * k + h * k_d;
     return -(h * (law.t + k_d * drag) + block * (l_free - l) / h) / ((1 + W * block) * l_free);
   }
+
+  static void relax_apart(const StencilLink<2, Rest>* links, int count, Substep& substep,
+                          Vec3* impulses) requires requires {
+    &Spring::relax_apart;
+  }
+  { Spring::relax_apart(links, count, substep, impulses); }
 
   // By which share a link of the squared length l2 is too long; 0 of one that is slack and does not push.
   static double too_long(const Rest& r, double l2, bool squared) requires LinkOfLength<Spring> {

@@ -24,12 +24,15 @@ void PlateParts::colour(int particles) {
 }
 
 void PlateParts::run(Substep& substep) {
-  colours_.run([&](int k) {
-    const auto number = static_cast<std::size_t>(colours_.order()[static_cast<std::size_t>(k)]);
-    Mat3 lambda = substep.first ? Mat3(Mat3::Zero()) : lambda_[number];
-    relax(parts_[number], substep, lambda);
-    if (!substep.last) lambda_[number] = lambda;
-  });
+  const auto relax_range = [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) {
+      const auto number = static_cast<std::size_t>(colours_.order()[static_cast<std::size_t>(k)]);
+      Mat3 lambda = substep.first ? Mat3(Mat3::Zero()) : lambda_[number];
+      relax(parts_[number], substep, lambda);
+      if (!substep.last) lambda_[number] = lambda;
+    }
+  };
+  colours_.run(relax_range, relax_range);
 }
 
 void PlateParts::relax(const Part& part, Substep& substep, Mat3& lambda) const {

@@ -3,8 +3,7 @@
 //   A VectorLaw may give its new impulse itself, in closed form; free is what p would be without the impulse so far:
 //     static Vec3 alone(const Common&, const Rest&, const Vec3& p, const Vec3& free, double W, double h,
 //                       const auto& velocity);
-//   A law of two particles along their distance gives both as solver/forces/pair_force.h does: alone_along, and where it is a
-//   link of a length, too_long.
+//   A law of two particles along their distance gives what solver/forces/pair_projection.h asks for.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -14,6 +13,7 @@
 
 #include "solver/forces/colours.h"
 #include "solver/forces/force.h"
+#include "solver/forces/pair_projection.h"
 #include "solver/forces/stencil_laws.h"
 
 namespace drape {
@@ -50,23 +50,31 @@ class StencilProjection {
   }
 
   void run(const Common& common, Substep& substep) {
-    const auto relax = [&](int k) {
-      const auto number = static_cast<std::size_t>(k);
-      Impulse lambda = substep.first ? Impulse(Impulse::Zero()) : impulses_[number];
-      this->relax(common, links_[number], substep, lambda);
-      if (!substep.last) impulses_[number] = lambda;
+    const auto relax = [&](int begin, int end) {
+      for (int k = begin; k < end; ++k) {
+        const auto number = static_cast<std::size_t>(k);
+        Impulse lambda = substep.first ? Impulse(Impulse::Zero()) : impulses_[number];
+        this->relax(common, links_[number], substep, lambda);
+        if (!substep.last) impulses_[number] = lambda;
+      }
+    };
+    const auto relax_apart = [&](int begin, int end) {
+      if constexpr (requires(Link * links, Vec3 * impulses) {
+                      Law::relax_apart(links, 1, substep, impulses);
+                    })
+        if (substep.first && common == 0 && substep.options.links == Links::compliance)
+          return Law::relax_apart(links_.data() + begin, end - begin, substep,
+                                  substep.last ? nullptr : impulses_.data() + begin);
+      relax(begin, end);
     };
     if (stand_)
-      colours_.run(relax);
+      colours_.run(relax_apart, relax);
     else
-      for (int k = 0; k < static_cast<int>(links_.size()); ++k) relax(k);
+      relax(0, static_cast<int>(links_.size()));
   }
 
  private:
-  struct Link {
-    std::array<int, static_cast<std::size_t>(n)> particles;
-    Rest rest;
-  };
+  using Link = StencilLink<n, Rest>;
   static constexpr int size = VectorLaw<Law> ? 3 : SlopeLaw<Law> ? 6 : 3 * n;
   using Impulse = Eigen::Matrix<double, size, 1>;
   using Block = Eigen::Matrix<double, size, size>;
@@ -78,58 +86,13 @@ class StencilProjection {
 
   static void relax(const Common& common, const Link& link, Substep& substep, Impulse& lambda) {
     if constexpr (requires { &Law::alone_along; })
-      relax_pair(common, link, substep, lambda);
+      relax_pair<Law>(common, link, substep, lambda);
     else if constexpr (VectorLaw<Law>)
       relax_vector(common, link, substep, lambda);
     else if constexpr (SlopeLaw<Law>)
       relax_slopes(common, link, substep, lambda);
     else
       relax_points(common, link, substep, lambda);
-  }
-
-  // The same as relax_vector, written out: most elements are of this kind.
-  [[gnu::always_inline]] static void relax_pair(const Common& damping, const Link& link, Substep& substep,
-                                                Vec3& lambda) {
-    const int i = link.particles[0], j = link.particles[1];
-    const double share_i = substep.mobility[static_cast<std::size_t>(i)],
-                 share_j = substep.mobility[static_cast<std::size_t>(j)], W = share_i + share_j,
-                 h = substep.h;
-    if (W == 0) return;
-    double *const a = substep.x.data() + 3 * i, *const b = substep.x.data() + 3 * j;
-    const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-    const auto move = [&](double x, double y, double z) {
-      a[0] += share_i * x, a[1] += share_i * y, a[2] += share_i * z;
-      b[0] -= share_j * x, b[1] -= share_j * y, b[2] -= share_j * z;
-    };
-    const double l2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-    if constexpr (requires { Law::too_long(link.rest, l2, true); })
-      if (const Links links = substep.options.links; links != Links::compliance) {
-        const double s =
-            l2 > 0 ? -substep.options.alpha / W * Law::too_long(link.rest, l2, links == Links::squared_length)
-                   : 0;
-        return move(s * d[0], s * d[1], s * d[2]);
-      }
-    const double k_d = Law::damper(damping, link.rest);
-    double drag = 0;
-    if (k_d > 0 && l2 > 0) {
-      const double *const x = substep.start.data() + 3 * i, *const y = substep.start.data() + 3 * j;
-      for (int c = 0; c < 3; ++c) drag += d[c] * (d[c] - (x[c] - y[c]));
-      drag /= h * std::sqrt(l2);
-    }
-    if (substep.first) {
-      const double l = std::sqrt(l2), s = l > 0 ? Law::alone_along(k_d, link.rest, l, l, drag, W, h) : 0;
-      lambda = Vec3(s * d[0], s * d[1], s * d[2]);
-      return move(h * s * d[0], h * s * d[1], h * s * d[2]);
-    }
-    const double back = h * W;
-    const double free[3] = {d[0] - back * lambda[0], d[1] - back * lambda[1], d[2] - back * lambda[2]};
-    const double l_free = std::sqrt(free[0] * free[0] + free[1] * free[1] + free[2] * free[2]);
-    if (l_free == 0) return;
-    const double l = std::max((free[0] * d[0] + free[1] * d[1] + free[2] * d[2]) / l_free, 0.0);
-    const double s = Law::alone_along(k_d, link.rest, l, l_free, drag, W, h);
-    const double change[3] = {s * free[0] - lambda[0], s * free[1] - lambda[1], s * free[2] - lambda[2]};
-    lambda = Vec3(s * free[0], s * free[1], s * free[2]);
-    move(h * change[0], h * change[1], h * change[2]);
   }
 
   static void relax_vector(const Common& common, const Link& link, Substep& substep, Vec3& lambda) {

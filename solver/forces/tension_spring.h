@@ -24,6 +24,7 @@ struct TensionSpring {
   }
   static double chord(const Rest&, double) { return 0; }
   static double stiffest(const Rest& r, double) { return r.k; }
+  static void relax_apart(const StencilLink<2, Rest>* links, int count, Substep& substep, Vec3* impulses);
 };
 
 }  // namespace drape

@@ -3,6 +3,8 @@
 
 #ifdef __AVX__
 #include <immintrin.h>
+#else
+#include <cmath>
 #endif
 
 namespace drape::internal {
@@ -15,6 +17,13 @@ inline Four load(const float* p) {
   return _mm256_cvtps_pd(_mm_loadu_ps(p));  // GCC would split the conversion below into two halves
 #else
   return __builtin_convertvector(*reinterpret_cast<const FourFloats*>(p), Four);
+#endif
+}
+inline Four root(const Four& v) {
+#ifdef __AVX__
+  return _mm256_sqrt_pd(v);
+#else
+  return Four{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
 #endif
 }
 inline FourFloats narrow(const Four& v) { return __builtin_convertvector(v, FourFloats); }
