@@ -60,7 +60,7 @@ TEST_CASE("bad input to compare: one line, exit code 2, nothing written", "[comp
       {scene + "--time-steps 1", "--integrators, which is not given"},
       {"--sizes 3", "how many vertices"},
       {"--sizes 1q", "how many vertices"},
-      {"--sizes 1k --integrators implicit-euler", "do not go together"},
+      {"--sizes 1k --integrators implicit-eulr", "did you mean 'implicit-euler'?"},
       {"--sizes 1k --set simulation.bent=3", "unknown key 'bent'"},
       {scene + "--threads 0", "--threads"},
       {scene + "--tolerance 0", "--tolerance"},

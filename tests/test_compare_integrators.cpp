@@ -98,7 +98,8 @@ TEST_CASE("the rows of integrators are those of the same runs done by hand", "[c
   words.integrators = "implicit-euler,bdf2";
   words.time_steps = "10ms,20ms";
   Comparison comparison;
-  REQUIRE(compare_integrators(scene, compare_options(words), 0.05, true, comparison));
+  REQUIRE(compare_integrators(
+      scene, [&] { return make_simulation(scene); }, compare_options(words), 0.05, true, comparison));
   REQUIRE(comparison.runs.size() == 6);
   const std::vector<double> coarse = {0.02, 0.02, 0.01}, fine(5, 0.01);
   std::vector<ByHand> expected;
@@ -149,7 +150,8 @@ TEST_CASE("an integrator that fails is a row, not an end", "[compare]") {
   words.time_steps = "10ms,5ms";
   const CompareOptions options = compare_options(words);
   Comparison comparison;
-  CHECK(compare_integrators(scene, options, 0.02, true, comparison));
+  CHECK(compare_integrators(
+      scene, [&] { return make_simulation(scene); }, options, 0.02, true, comparison));
   REQUIRE(comparison.runs.size() == 2);
   for (const IntegratorRow& row : comparison.runs) {
     CHECK_THAT(row.failure, StartsWith("step "));
@@ -191,7 +193,8 @@ TEST_CASE("what is the same to the last bit does not differ", "[compare]") {
   words.solvers = "mpcg,mpcg@1e-4,eigen-ldlt";  // the second is asked for what the scene asks for
   words.integrators = "bdf2,implicit-euler";    // of which the first begins with a step of the second
   words.time_steps = "10ms";
-  REQUIRE(compare_integrators(scene, compare_options(words), 0.01, true, comparison));
+  REQUIRE(compare_integrators(
+      scene, [&] { return make_simulation(scene); }, compare_options(words), 0.01, true, comparison));
   REQUIRE(comparison.runs.size() == 6);
   const Names verdicts = {"the reference",
                           "no difference from the same run with mpcg",
@@ -208,4 +211,54 @@ TEST_CASE("what is the same to the last bit does not differ", "[compare]") {
     comparison.reference_solver = "mpcg";
     CHECK_THAT(verdict_of(row, comparison), StartsWith(verdicts[k]));
   }
+}
+
+TEST_CASE("integrators on sheets of several sizes: a reference for each, and the work at equal strain",
+          "[compare]") {
+  Desk desk;
+  REQUIRE(desk.run("--sizes 100,256 --solvers auto --steps 4 --integrators implicit-euler,pbd --time-steps "
+                   "10ms,5ms --out o") == 0);
+  const JsonValue json = desk.json();
+  REQUIRE(json["runs"].size() == 8);
+  for (const int vertices : {100, 256}) {
+    int references = 0;
+    for (const JsonValue& run : json["runs"])
+      if (run["vertices"] == vertices && run["reference"] == true) {
+        ++references;
+        CHECK(run["integrator"] == "implicit-euler");
+        CHECK(run["time_step"] == 0.005);
+        CHECK(run["strain_error"] == 0);
+        CHECK(run["strain"].get<double>() > 5e-4);
+      }
+    CHECK(references == 1);
+    CHECK_THAT(desk.out, Contains("from the same start, " + std::to_string(vertices) + " vertices"));
+    CHECK_THAT(desk.out, Contains("from the reference (implicit-euler at 0.005 s with auto, " +
+                                  std::to_string(vertices)));
+  }
+  check_same_table(content(desk.path / "o/compare-integrators.csv"), json["runs"]);
+  check_plots(content(desk.path / "o/compare.html"), 2 + 2 + 2);
+}
+
+TEST_CASE("work at equal strain: the cheapest run that is near enough", "[compare]") {
+  Comparison comparison;
+  const auto add = [&](const char* integrator, int vertices, double wall_ms, double strain_error) {
+    IntegratorRow row;
+    row.integrator = integrator;
+    row.vertices = vertices;
+    row.wall_ms = wall_ms;
+    row.strain_error = strain_error;
+    comparison.runs.push_back(row);
+  };
+  add("pbd", 100, 40, 0.02);
+  add("pbd", 100, 90, -0.004);
+  add("pbd", 100, 70, 0.006);
+  add("pbd", 400, 800, 0.2);
+  add("implicit-euler", 100, 30, 0);
+  comparison.runs.back().reference = true;
+  const ReportTable work = tables_of(comparison).back();
+  CHECK(work.header == Names{"integrator", "vertices", "10 %", "3 %", "1 %", "0.3 %", "0.1 %", "0.03 %"});
+  REQUIRE(work.rows.size() == 4);
+  CHECK(work.rows[0] == Names{"pbd", "100", "40", "40", "70", "-", "-", "-"});
+  CHECK(work.rows[1] == Names{"implicit-euler", "100", "-", "-", "-", "-", "-", "-"});
+  CHECK(work.rows[2] == Names{"pbd", "400", "-", "-", "-", "-", "-", "-"});
 }

@@ -122,7 +122,9 @@ bool compare_scene(const Scene& scene, Simulation& simulation, const CompareOpti
   SolverBench bench(options.solvers, comparison.tolerance, options.repeats);
   if (!Path(scene, simulation, common).follow(options, bench, files, comparison)) return false;
   if (options.integrators.empty()) return true;
-  return compare_integrators(scene, options, grid_of(scene).time(options.steps), common.quiet, comparison);
+  return compare_integrators(
+      scene, [&] { return make_simulation(scene); }, options, grid_of(scene).time(options.steps),
+      common.quiet, comparison);
 }
 
 bool compare_sizes(const Scene& scene, const CompareOptions& options, const CommonOptions& common,
@@ -135,6 +137,10 @@ bool compare_sizes(const Scene& scene, const CompareOptions& options, const Comm
                       "sheet of " + std::to_string(side * side) + " vertices, ");
     if (!Path(scene, simulation, common).follow(options, bench, files, comparison)) return false;
     if (!comparison.failure.empty()) break;
+    if (!options.integrators.empty() && !compare_integrators(
+                                            scene, [&] { return make_hung_sheet(scene, side); }, options,
+                                            grid_of(scene).time(options.steps), common.quiet, comparison))
+      return false;
   }
   comparison.growth = growth_of(comparison);
   return true;

@@ -67,6 +67,7 @@ std::string_view name(DiffersBy cause);
 // The result of one run of an integrator.
 struct IntegratorRow {
   std::string integrator, solver;
+  int vertices = 0;      // of all cloths
   double time_step = 0;  // s
   std::string failure;   // empty when the run reached its end
   double end = 0;        // s, the time that it reached

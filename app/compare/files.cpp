@@ -67,6 +67,7 @@ Json::Members members_of(const IntegratorRow& row, const Comparison& comparison)
                        {"inner_rejected", row.inner_rejected},
                        {"strain", optional_json(row.strain)},
                        {"strain_error", optional_json(row.strain_error)},
+                       {"vertices", row.vertices},
                        {"verdict", verdict_of(row, comparison)}};
 }
 

@@ -77,8 +77,10 @@ Plot size_plot(const Comparison& comparison, const std::string& title, const std
   return plot;
 }
 
-Plot work_precision(const Comparison& comparison) {
-  Plot plot{"Work and precision: " + rounded(comparison.run_duration, 4) + " s of the scene",
+// Of the runs with so many vertices.
+Plot work_precision(const Comparison& comparison, int vertices) {
+  Plot plot{"Work and precision: " + rounded(comparison.run_duration, 4) + " s of the scene, " +
+                counted(vertices, "vertex"),
             "wall time, s",
             "largest distance from the reference, m",
             true,
@@ -86,7 +88,7 @@ Plot work_precision(const Comparison& comparison) {
             {}};
   Series others{"other linear solvers", {}, {}, false};
   for (const IntegratorRow& row : comparison.runs) {
-    if (!row.max_distance || row.reference) continue;
+    if (row.vertices != vertices || !row.max_distance || row.reference) continue;
     if (row.solver != comparison.reference_solver) {
       others.x.push_back(row.wall_ms / 1000);
       others.y.push_back(*row.max_distance);
@@ -205,7 +207,7 @@ std::vector<Plot> plots_of(const Comparison& comparison) {
     if (k == 0 || row.step != comparison.rows[k - 1].step || row.vertices != comparison.rows[k - 1].vertices)
       plots.push_back(convergence_plot(comparison, row.vertices, row.step));
   }
-  if (!comparison.runs.empty()) plots.push_back(work_precision(comparison));
+  for (const int vertices : sizes_of_runs(comparison)) plots.push_back(work_precision(comparison, vertices));
   return plots;
 }
 

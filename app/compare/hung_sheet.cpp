@@ -31,6 +31,8 @@ Simulation make_hung_sheet(const Scene& scene, int side) {
   cloth.mesh = grid(side, side, 1, 1);
   cloth.end_particle = cloth.mesh.vertex_count();
   cloth.embedding = Embedding::each(0, cloth.mesh.vertex_count());
+  for (const StretchConnection& s : noh_jung_connections(cloth.mesh, cloth.mesh, entry.fabric).stretch)
+    cloth.edges.push_back({s.i, s.j, s.L});
   simulation.system = std::make_unique<System>(masses(cloth.mesh, entry.fabric));
   simulation.system->add(noh_jung(cloth.mesh, entry.fabric));
   simulation.system->add(Gravity{scene.simulation.gravity});

@@ -42,14 +42,15 @@ VecX vertices_of(const Simulation& simulation) {
   return stacked(all);
 }
 
-Run run_one(const Scene& scene, const std::string& integrator, double h, const SolverChoice& solver,
-            double duration) {
+Run run_one(const Scene& scene, const MakeSimulation& make, const std::string& integrator, double h,
+            const SolverChoice& solver, double duration) {
   Run run;
   run.row.integrator = integrator;
   run.row.solver = solver.text;
   run.row.time_step = h;
   try {
-    Simulation simulation = make_simulation(scene);
+    Simulation simulation = make();
+    run.row.vertices = static_cast<int>(vertices_of(simulation).size() / 3);
     StepOptions options = scene.simulation.step;
     if (solver.tolerance) options.tolerance = *solver.tolerance;
     simulation.use([&](System& system, Constraints& constraints) {
@@ -136,8 +137,8 @@ void measure_distances(std::vector<Run>& runs, const CompareOptions& options, co
 
 }  // namespace
 
-bool compare_integrators(const Scene& scene, const CompareOptions& options, double duration, bool quiet,
-                         Comparison& comparison) {
+bool compare_integrators(const Scene& scene, const MakeSimulation& make, const CompareOptions& options,
+                         double duration, bool quiet, Comparison& comparison) {
   const std::string& reference = scene.simulation.linear_solver;
   const SolverChoice reference_choice{reference, reference, {}};
   std::vector<Run> runs;
@@ -145,7 +146,7 @@ bool compare_integrators(const Scene& scene, const CompareOptions& options, doub
     if (!quiet)
       std::fprintf(stderr, "running %s at %s s with %s\n", integrator.c_str(), rounded(h, 4).c_str(),
                    solver.text.c_str());
-    runs.push_back(run_one(scene, integrator, h, solver, duration));
+    runs.push_back(run_one(scene, make, integrator, h, solver, duration));
     return !interrupted();
   };
   const std::vector<double> steps = time_steps(scene, options);

@@ -153,8 +153,6 @@ CompareOptions compare_options(const CompareWords& words) {
   options.save_systems = words.save_systems;
   if (options.integrators.empty() && !options.time_steps.empty())
     throw InputError("--time-steps: are those of --integrators, which is not given");
-  if (!options.integrators.empty() && !options.sizes.empty())
-    throw InputError("--integrators and --sizes do not go together: integrators are compared on a SCENE");
   return options;
 }
 

@@ -1,6 +1,7 @@
 #include "app/compare/tables.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -52,24 +53,28 @@ ReportTable table_of(std::vector<SolverRow>::const_iterator first,
   return table;
 }
 
-std::string name_of(const IntegratorRow& run) {
-  return run.integrator + " at " + rounded(run.time_step, 4) + " s with " + run.solver;
+std::string name_of(const IntegratorRow& run, const Comparison& comparison) {
+  return run.integrator + " at " + rounded(run.time_step, 4) + " s with " + run.solver +
+         (comparison.sizes.empty() ? "" : ", " + counted(run.vertices, "vertex"));
 }
 
-ReportTable table_of_runs(const Comparison& comparison) {
+// Of the runs with so many vertices.
+ReportTable table_of_runs(const Comparison& comparison, int vertices) {
   ReportTable table;
-  table.title = "integrators, " + rounded(comparison.run_duration, 4) + " s from the same start";
+  table.title = "integrators, " + rounded(comparison.run_duration, 4) + " s from the same start, " +
+                counted(vertices, "vertex");
   table.header = {"integrator",     "time step s",  "solver", "steps",      "wall ms",
                   "iterations",     "distance m",   "rms m",  "same run m", "drift J",
                   "energy error J", "strain error", "state",  "differs by"};
   for (const IntegratorRow& row : comparison.runs) {
+    if (row.vertices != vertices) continue;
     table.rows.push_back({row.integrator, rounded(row.time_step, 4), row.solver, std::to_string(row.steps),
                           milliseconds(row.wall_ms), std::to_string(row.linear_iterations),
                           optional_number(row.max_distance, 3), optional_number(row.rms_distance, 3),
                           optional_number(row.same_run_distance, 2), rounded(row.energy_drift, 3),
                           optional_number(row.energy_error, 3), optional_number(row.strain_error, 2),
                           row.failure.empty() ? "done" : "failed", std::string(name(row.differs_by))});
-    const std::string who = name_of(row);
+    const std::string who = name_of(row, comparison);
     if (row.reference) table.notes.push_back("the reference: " + who);
     if (row.steps_cut + row.steps_not_converged > 0)
       table.notes.push_back(who + ": " + counted(row.steps_cut, "step") + " taken in pieces, " +
@@ -80,6 +85,36 @@ ReportTable table_of_runs(const Comparison& comparison) {
       "that differs "
       "by the linear solver alone (" +
       comparison.reference_solver + ")");
+  return table;
+}
+
+// What the cheapest run of each integrator costs whose largest strain is off the reference's by no more than this much.
+ReportTable table_of_work(const Comparison& comparison, const std::vector<int>& sizes) {
+  constexpr std::array<double, 6> errors = {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003};
+  ReportTable table;
+  table.title = "wall ms of the cheapest run whose largest strain is off by at most";
+  table.header = {"integrator", "vertices"};
+  for (const double error : errors) table.header.push_back(rounded(100 * error, 2) + " %");
+  Names integrators;
+  for (const IntegratorRow& row : comparison.runs)
+    if (std::find(integrators.begin(), integrators.end(), row.integrator) == integrators.end())
+      integrators.push_back(row.integrator);
+  for (const int vertices : sizes)
+    for (const std::string& integrator : integrators) {
+      Names cells = {integrator, std::to_string(vertices)};
+      for (const double error : errors) {
+        std::optional<double> least;
+        for (const IntegratorRow& row : comparison.runs)
+          if (row.vertices == vertices && row.integrator == integrator && !row.reference &&
+              row.strain_error && std::abs(*row.strain_error) <= error)
+            least = std::min(least.value_or(row.wall_ms), row.wall_ms);
+        cells.push_back(least ? milliseconds(*least) : "-");
+      }
+      table.rows.push_back(std::move(cells));
+    }
+  table.notes.push_back(
+      "strain: the largest of an edge at the end, l / L - 1; -: no run was as near, or it is the reference "
+      "itself");
   return table;
 }
 
@@ -114,6 +149,13 @@ std::string aligned(const ReportTable& table) {
 
 }  // namespace
 
+std::vector<int> sizes_of_runs(const Comparison& comparison) {
+  std::vector<int> sizes;
+  for (const IntegratorRow& row : comparison.runs)
+    if (std::find(sizes.begin(), sizes.end(), row.vertices) == sizes.end()) sizes.push_back(row.vertices);
+  return sizes;
+}
+
 Names headline(const Comparison& c) {
   Names lines = {c.scene + ": " + c.integrator + ", " + rounded(c.time_step, 4) +
                  " s a step; the path is of " + c.reference_solver + ", tolerance " +
@@ -136,7 +178,10 @@ std::vector<ReportTable> tables_of(const Comparison& comparison) {
     first = last;
   }
   if (!comparison.growth.empty()) tables.push_back(table_of_growth(comparison));
-  if (!comparison.runs.empty()) tables.push_back(table_of_runs(comparison));
+  if (comparison.runs.empty()) return tables;
+  const std::vector<int> sizes = sizes_of_runs(comparison);
+  for (const int vertices : sizes) tables.push_back(table_of_runs(comparison, vertices));
+  tables.push_back(table_of_work(comparison, sizes));
   return tables;
 }
 
@@ -180,16 +225,17 @@ std::string verdict_of(const IntegratorRow& run, const Comparison& comparison) {
     if (!run.same_run_distance) return "differs by linear algebra only from" + same_run + ", which failed";
     return "differs by linear algebra only: " + rounded(*run.same_run_distance, 2) + " m from" + same_run;
   }
-  const auto reference = std::find_if(comparison.runs.begin(), comparison.runs.end(),
-                                      [](const IntegratorRow& other) { return other.reference; });
+  const auto reference = std::find_if(
+      comparison.runs.begin(), comparison.runs.end(),
+      [&](const IntegratorRow& other) { return other.reference && other.vertices == run.vertices; });
   if (reference == comparison.runs.end() || !run.max_distance) return "there is no reference to differ from";
-  const std::string from = " from the reference (" + name_of(*reference) + ")";
+  const std::string from = " from the reference (" + name_of(*reference, comparison) + ")";
   if (run.differs_by == DiffersBy::nothing) return "no difference" + from;
   return "differs by time integration: " + rounded(*run.max_distance, 2) + " m" + from;
 }
 
 std::string line_of(const IntegratorRow& run, const Comparison& comparison) {
-  return name_of(run) + ": " + verdict_of(run, comparison);
+  return name_of(run, comparison) + ": " + verdict_of(run, comparison);
 }
 
 std::string text_of(const Comparison& comparison) {

@@ -12,7 +12,8 @@ struct ReportTable {
   std::vector<Names> rows;
 };
 
-Names headline(const Comparison& comparison);  // says what was compared
+std::vector<int> sizes_of_runs(const Comparison& comparison);  // numbers of vertices, each once
+Names headline(const Comparison& comparison);                  // says what was compared
 std::vector<ReportTable> tables_of(const Comparison& comparison);
 // One text for each solver, "mpcg: agree" or everything by which the solver differs; the runs follow after
 // them.
