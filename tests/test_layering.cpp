@@ -143,6 +143,30 @@ TEST_CASE("the program uses of the library what any other program can use", "[la
   CHECK(looked_at > 100);
 }
 
+// Two test files may have types, templates and inline functions of one name: outside a namespace without a name the linker would
+// keep one of them for both.
+TEST_CASE("what a test file defines for itself stands in a namespace without a name", "[layering]") {
+  const auto starts = [](const std::string& line, const std::string& word) {
+    return line.rfind(word, 0) == 0;
+  };
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(drape::test::source_dir()) / "tests")) {
+    if (entry.path().extension() != ".cpp") continue;
+    ++files;
+    std::ifstream file(entry.path());
+    bool inside = false;
+    for (std::string line; std::getline(file, line);) {
+      if (starts(line, "namespace {")) inside = true;
+      if (starts(line, "}  // namespace")) inside = false;
+      if (inside) continue;
+      INFO(entry.path().filename() << ": " << line);
+      for (const char* word : {"struct ", "class ", "enum ", "template ", "template<", "inline "})
+        CHECK_FALSE(starts(line, word));
+    }
+  }
+  CHECK(files > 100);
+}
+
 TEST_CASE("Python is known in app/python only", "[layering]") {
   int bindings = 0;
   for (const std::string& room : rooms)
