@@ -51,6 +51,7 @@ class Constraints {
   // Adds triangles of the cloth that meet each other. They are pushed by a force, which the System needs, too:
   // solver/forces/self_contact_force.h.
   void add_self_faces(const std::vector<SelfFace>& faces) { self_.add(faces); }
+  void add_self_segments(const std::vector<SelfSegment>& segments) { self_.add(segments); }  // of ropes
   void set_self_friction(const SelfFriction& pair) { self_.set_friction(pair); }
   // These particles may pass each other, in place of those named before.
   void let_pass(const std::vector<int>& particles) { self_.let_pass(particles); }

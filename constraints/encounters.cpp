@@ -28,8 +28,8 @@ void Encounters::spread(const VecX& x, std::vector<Vec3>& places) const {
   for (std::size_t i = 0; i < places.size(); ++i) places[i] = place(x, i);
 }
 
-void Encounters::set(const std::vector<Triangle>& triangles, int particle_count, std::size_t of_cloth,
-                     const VecX& x) {
+void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<std::array<int, 2>>& segments,
+                     int particle_count, std::size_t of_cloth, const VecX& x) {
   faces_.clear();
   of_cloth_ = 0;
   particles_ = particle_count;
@@ -39,6 +39,7 @@ void Encounters::set(const std::vector<Triangle>& triangles, int particle_count,
     of_cloth_ += of_cloth < triangles.size() && k < of_cloth;
     faces_.push_back({t, {-1, -1, -1}});
   }
+  for (const auto& [i, j] : segments) faces_.push_back({{i, j, j}, {-1, -1, -1}});
   boxes_.reset();
   beside_ = {};
   groups_.clear();
@@ -55,6 +56,7 @@ void Encounters::set(const std::vector<Triangle>& triangles, int particle_count,
   for (std::size_t f = 0; f < faces_.size(); ++f)
     for (std::size_t k = 0; k < 3; ++k) {
       const int v = faces_[f].v[k], w = faces_[f].v[(k + 1) % 3];
+      if (v == w) continue;  // the second end of a segment, once more
       around[v].push_back(static_cast<int>(f));
       if (!has_owner[v]) owned_[f] |= static_cast<unsigned char>(1u << k);
       has_owner[v] = 1;

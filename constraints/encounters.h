@@ -1,4 +1,6 @@
 // Which vertices and triangles, and which edges, of the cloth could meet in a step.
+//   A segment of a rope goes along with the triangles as {i, j, j}: it owns vertices and its one edge as they do, and is
+// met as they are, by the vertices that come near it and by its edge.
 //   Two triangles are looked at when their boxes come near each other at a common time. Each vertex and each edge is
 //   owned by one of its triangles, so that a pair of them comes up once. Triangles with a common vertex are always
 //   near: their pairs are listed once and for all. The others are listed for every two patches of up to 32
@@ -12,6 +14,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -38,8 +41,9 @@ class Encounters {
  public:
   // Triangles between the first so many particles, each once; a triangle that names a particle twice does not count.
   // of_cloth: so many of the triangles are of cloth, and only their pairs with the others are looked for, without those
-  // of a vertex of cloth; all are of cloth: the pairs between all are.
-  void set(const std::vector<Triangle>& triangles, int particles, std::size_t of_cloth, const VecX& x);
+  // of a vertex of cloth; all are of cloth: the pairs between all are, and those of the segments with all.
+  void set(const std::vector<Triangle>& triangles, const std::vector<std::array<int, 2>>& segments,
+           int particles, std::size_t of_cloth, const VecX& x);
   double mean_edge() const { return mean_edge_; }  // when the triangles were set [m]
 
   // Prepares for select() with this motion x -> x_new and gaps up to this one [m]. Searches only where what is known

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "constraints/encounters.h"
+#include "constraints/rope_rest.h"
 #include "constraints/surfaces.h"
 #include "constraints/tangles.h"
 #include "mesh/base/parallel.h"
@@ -17,6 +18,7 @@ using namespace internal;
 namespace {
 
 constexpr double load_sinks = 0.1, arrival_sinks = 0.5;  // shares of the thickness
+constexpr double rope_sinks = 5e-5;  // m, under a load: a rope is thick, and is seen to lie
 // How much stiffer a contact becomes so, at most: with steps of 10 ms and r = 1 mm it then bears 3000 times the weight of
 // its lighter side.
 constexpr double stiffest = 1000;
@@ -40,9 +42,11 @@ SelfContacts::SelfContacts()
     : encounters_(std::make_unique<Encounters>()),
       on_bodies_(std::make_unique<Encounters>()),
       surfaces_(std::make_unique<Surfaces>()),
-      tangles_(std::make_unique<Tangles>()) {}
+      tangles_(std::make_unique<Tangles>()),
+      ropes_(std::make_unique<RopeRest>()) {}
 SelfContacts::SelfContacts(const SelfContacts& other) : SelfContacts() {
   add(other.faces_);
+  add(other.segments_);
   pairs_ = other.pairs_;
   pass_ = other.pass_;
 }
@@ -53,6 +57,15 @@ SelfContacts::~SelfContacts() = default;
 
 void SelfContacts::add(const std::vector<SelfFace>& faces) {
   faces_.insert(faces_.end(), faces.begin(), faces.end());
+  begin_anew();
+}
+
+void SelfContacts::add(const std::vector<SelfSegment>& segments) {
+  segments_.insert(segments_.end(), segments.begin(), segments.end());
+  begin_anew();
+}
+
+void SelfContacts::begin_anew() {
   stale_ = true;
   rest_.resize(0);
   tangled_.clear();
@@ -65,6 +78,10 @@ void SelfContacts::renumber(const std::vector<int>& particle_of) {
     const auto [a, b, c] = face.particles;
     return a == b || b == c || c == a;
   });
+  for (SelfSegment& segment : segments_)
+    for (int& particle : segment.particles) particle = particle_of[particle];
+  std::erase_if(segments_,
+                [](const SelfSegment& segment) { return segment.particles[0] == segment.particles[1]; });
   if (rest_.size() > 0) {
     const VecX before = rest_;
     for (std::size_t i = particle_of.size(); i-- > 0;)
@@ -108,13 +125,25 @@ void SelfContacts::set_particles(const StepMotion& step) {
       }
     }
   };
+  std::vector<std::array<int, 2>> segments;
+  for (const SelfSegment& segment : segments_) {
+    segments.push_back(segment.particles);
+    for (int particle : segment.particles) {
+      thickness_[particle] = segment.thickness;
+      friction_[particle] = segment.friction;
+      sheet_[particle] = segment.sheet;
+    }
+  }
+  for (const SelfFace& face : faces_)  // where a rope is joined to them
+    for (int particle : face.particles) thickness_[particle] = friction_[particle] = 0;
   take(faces_);
-  encounters_->set(mesh.triangles, cloth, mesh.triangles.size(), step.x);
+  encounters_->set(mesh.triangles, segments, cloth, mesh.triangles.size(), step.x);
   if (surfaces_->any()) {
     take(surfaces_->faces());
-    on_bodies_->set(mesh.triangles, static_cast<int>(n), faces_.size(), step.x);
+    on_bodies_->set(mesh.triangles, {}, static_cast<int>(n), faces_.size(), step.x);
   }
   piece_ = connected_pieces(mesh);
+  ropes_->set(segments_, faces_, rest_, static_cast<int>(n));
   way_.assign(n, 1);
   nearest_.assign(n, 0);
 }
@@ -131,7 +160,13 @@ void SelfContacts::prepare(const StepMotion& step, const std::vector<MovingBody>
       triangles.push_back(face.particles);
       layers.push_back(face.layer);
     }
-    tangles_->begin(std::move(triangles), std::move(layers), pass_, step.x);
+    for (const SelfSegment& segment : segments_) {
+      const auto [i, j] = segment.particles;
+      triangles.push_back({i, j, j});
+    }
+    layers.resize(triangles.size());
+    tangles_->begin(std::move(triangles), static_cast<int>(segments_.size()), std::move(layers), pass_,
+                    step.x);
   }
   const auto cloth = static_cast<std::size_t>(cloth_particles());
   if (tangled_.size() != cloth) {
@@ -186,7 +221,9 @@ void SelfContacts::stiffen(SelfContact& contact, const StepMotion& step) const {
   const double mass = contact.stiffness * step.h * step.h / kappa_;
   const double stops = mass * std::max(0.0, -contact.normal.dot(contact.over(step.v))) / step.h;
   const double sinks = std::max(contact.thickness, 0.1 * both_thicknesses(contact.who));
-  double bears = contact.load / (load_sinks * sinks);
+  const double under_load = load_sinks * sinks;
+  double bears =
+      contact.load / (ropes_->is_rope(contact.who) ? std::min(under_load, rope_sinks) : under_load);
   if (step.last_h > 0) contact.stiff *= step.last_h * step.last_h / (step.h * step.h);
   if (contact.stiff > 0) bears = std::max(std::sqrt(bears * contact.stiff), slowest_fall * contact.stiff);
   contact.stiffness = std::clamp(std::max(bears, stops / (arrival_sinks * sinks)), contact.stiffness,

@@ -21,6 +21,9 @@
 //   found [mesh/distance/approach.h]. Their vertices become a zone, which keeps the motion D that it has on the whole, or
 //   that of pins or of a body in it, so that cloth in motion is not held up: x_i + D + t_i (d_i - D). t_i is made less
 //   until no pair fails, and after a fixed number of rounds all stands still. It holds for every integrator.
+//   Ropes take part with their segments, as thick as twice their radius: a segment is met by the vertices that come near it
+// and by its edge, and its ends meet triangles. What hangs together with a rope is kept apart from it by no more than half of
+// the way between both at rest [rope_rest.h]. Bodies meet ropes otherwise, by their particles.
 //   Where the cloth starts through itself, nothing near there pushes or is guarded until it is apart [tangles.h].
 //   Bodies that are meshes take part: their corners meet the triangles of the cloth, and their edges its edges
 //   [surfaces.h]. A zone that touches one goes with it. Where cloth cannot be kept both off a body and off cloth, the body
@@ -46,6 +49,7 @@ inline constexpr double implicit_kappa = 30, explicit_kappa = 0.2;
 
 namespace internal {
 class Encounters;
+class RopeRest;
 struct Meeting;
 class Surfaces;
 class Tangles;
@@ -60,6 +64,14 @@ struct SelfFace {
   // What is worn over what: of two layers that cross the higher one comes out on the side where the normal of the lower
   // one points. Unset: no order is known.
   std::optional<int> layer = {};
+};
+
+// A segment of a rope between particles that takes part. Those of one rope follow each other.
+struct SelfSegment {
+  std::array<int, 2> particles;
+  double thickness;  // m, of the rope: twice its radius
+  double friction;   // mu
+  int sheet = 0;     // the rope that it is of, by a number that is no cloth's
 };
 
 // How two sheets rub, or one on itself, instead of by the friction of both.
@@ -143,12 +155,14 @@ class SelfContacts {
   ~SelfContacts();
 
   void add(const std::vector<SelfFace>& faces);
+  void add(const std::vector<SelfSegment>& segments);
   void set_friction(const SelfFriction& pair) { pairs_.push_back(pair); }  // of equal pairs the last counts
-  // Particle i gets the number particle_of[i]; a triangle of which two corners become one particle is removed.
+  // Particle i gets the number particle_of[i]; a triangle of which two corners become one particle is removed, and so is
+  // a segment of which both ends do.
   void renumber(const std::vector<int>& particle_of);
   // These particles may pass each other and what is beside them, such as those that are being sewn together.
   void let_pass(const std::vector<int>& particles);
-  bool any() const { return !faces_.empty(); }
+  bool any() const { return !faces_.empty() || !segments_.empty(); }
   bool touches_bodies() const {
     return std::any_of(touching_.begin(), touching_.end(), [](const SelfContact& c) { return c.body >= 0; });
   }
@@ -196,6 +210,7 @@ class SelfContacts {
   int pinched() const;  // particles that may pass a body, because it could not be kept out of there
 
  private:
+  void begin_anew();
   void prepare(const StepMotion& step, const std::vector<MovingBody>& bodies);
   void set_particles(const StepMotion& step);
   int cloth_particles() const;
@@ -219,7 +234,8 @@ class SelfContacts {
   // Prepares both searches for this motion; false: so much is near that there is no list.
   bool follow_all(const VecX& x, const VecX& x_new);
   std::vector<internal::Meeting>& near_ones(const StepMotion& step, internal::Encounters& encounters,
-                                            double thickest);
+                                            double thickest, double reach_of_all);
+  bool is_borne_otherwise(const internal::Meeting& edges) const;
   void look_at_ends(std::vector<internal::Meeting>::iterator begin,
                     std::vector<internal::Meeting>::iterator end) const;
   void find_contacts(const StepMotion& step);
@@ -231,12 +247,15 @@ class SelfContacts {
   double both_thicknesses(const Encounter& e) const;
   double thickness_of(const Encounter& e) const;
   double friction_of(const Encounter& e) const;
+  int one_of(const Encounter& e, bool second) const;
 
   std::vector<SelfFace> faces_;
+  std::vector<SelfSegment> segments_;
   std::vector<SelfFriction> pairs_;
   std::unique_ptr<internal::Encounters> encounters_, on_bodies_;  // cloth with cloth, cloth with bodies
   std::unique_ptr<internal::Surfaces> surfaces_;
   std::unique_ptr<internal::Tangles> tangles_;
+  std::unique_ptr<internal::RopeRest> ropes_;
   bool stale_ = true, look_again_ = true;
   double kappa_ = 0;                   // m/h^2
   double caution_ = 1;                 // SelfContact::spring of what slides in the next solve

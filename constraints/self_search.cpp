@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "constraints/encounters.h"
+#include "constraints/rope_rest.h"
 #include "constraints/self_contact.h"
 #include "constraints/surfaces.h"
 
@@ -37,16 +38,19 @@ const SelfContact* find(const std::vector<SelfContact>& sorted, const Encounter&
 
 bool SelfContacts::has_contact(const Encounter& e) const { return find(touching_, e) != nullptr; }
 
+int SelfContacts::one_of(const Encounter& e, bool second) const { return ropes_->one_of(e, second); }
+
 double SelfContacts::both_thicknesses(const Encounter& e) const {
   if (is_on_body(e)) return std::max(0.0, thickness_[std::max(e.v[0], e.v[3])]);
-  return 0.5 * (thickness_[e.v[0]] + thickness_[e.v[3]]);
+  return 0.5 * (thickness_[one_of(e, false)] + thickness_[one_of(e, true)]);
 }
 
 // The thickness at which the pair comes to rest: the mean of both sides. Where one piece of cloth is near itself at
 // rest, no more than half the distance there. Of what passes through each other at rest that says nothing: there it may
-// always be a quarter of the shortest edge between the four.
+// always be a quarter of the shortest edge between the four. What a rope is joined to: rope_rest.h.
 double SelfContacts::thickness_of(const Encounter& e) const {
   const double both = both_thicknesses(e);
+  if (ropes_->is_rope(e)) return std::min(both, 0.5 * ropes_->way(e));
   if (piece_[e.v[0]] != piece_[e.v[3]]) return both;
   const FourPoints x = corners(rest_, e);
   const double half = 0.5 * nearest(e.edges, x).distance;
@@ -60,10 +64,11 @@ double SelfContacts::thickness_of(const Encounter& e) const {
 
 double SelfContacts::friction_of(const Encounter& e) const {
   if (is_on_body(e)) return friction_[std::max(e.v[0], e.v[3])];
-  const auto between = std::minmax(sheet_[e.v[0]], sheet_[e.v[3]]);
+  const int first = one_of(e, false), second = one_of(e, true);
+  const auto between = std::minmax(sheet_[first], sheet_[second]);
   for (auto pair = pairs_.rbegin(); pair != pairs_.rend(); ++pair)
     if (std::minmax(pair->first, pair->second) == between) return pair->friction;
-  return std::sqrt(friction_[e.v[0]] * friction_[e.v[3]]);
+  return std::sqrt(friction_[first] * friction_[second]);
 }
 
 // Nothing where the contact could move none of its particles, or has no thickness.
@@ -135,20 +140,21 @@ bool SelfContacts::follow_all(const VecX& x, const VecX& x_new) {
   return !surfaces_->any() || on_bodies_->follow(x, x_new, body_reach_);
 }
 
-// The pairs that come within the thickness, and a little more, on the way to ahead_.
-std::vector<Meeting>& SelfContacts::near_ones(const StepMotion& step, Encounters& encounters,
-                                              double thickest) {
-  const double reach = reach_about(thickest), more = reach - thickest;
+// The pairs that come within the thickness, and a little more, on the way to ahead_. thickest: of pairs without a rope.
+std::vector<Meeting>& SelfContacts::near_ones(const StepMotion& step, Encounters& encounters, double thickest,
+                                              double reach_of_all) {
   const auto inside = [](double w) { return std::abs(w) > 1e-3 && std::abs(w) < 1 - 1e-3; };
   return encounters.select(
-      step.x, ahead_, reach,
+      step.x, ahead_, reach_of_all,
       [&](const Encounter& e, const FourPoints& start, const FourPoints& end, const Vec3& likely) {
         if (exempt(e) || std::all_of(e.v.begin(), e.v.end(), [&](int v) { return step.is_held(v); }))
           return Approach{};
+        const double most = ropes_->is_rope(e) ? thickness_of(e) : thickest;
+        const double reach = reach_about(most), more = reach - most;
         Approach near = approach(e.edges, start, end, reach, likely);
         if (near.apart) return near;
         const double own = thickness_of(e);
-        if (own < thickest) near = approach(e.edges, start, end, own + more);
+        if (own < most) near = approach(e.edges, start, end, own + more);
         near.until = approach_from_within(e.edges, start, end, 0.1 * own).until;  // below 1: they meet
         const auto& w = near.last.weights;
         near.apart = near.apart || (e.edges && !(inside(w[0]) && inside(w[2])));
@@ -165,21 +171,41 @@ void SelfContacts::look_at_ends(std::vector<Meeting>::iterator begin,
   for (auto m = begin; m != end; ++m) m->approach.last = nearest(m->who.edges, corners(ahead_, m->who));
 }
 
+// Whether an end of one of two edges, one of which is a rope's, is nearly as near to what the other edge is of: the contact
+// of that vertex bears it then. Those of vertices are in touching_, sorted by their vertices.
+bool SelfContacts::is_borne_otherwise(const Meeting& edges) const {
+  constexpr double nearly = 0.98;
+  const Encounter& e = edges.who;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const int other = sheet_[one_of(e, k < 2)];
+    auto c = std::lower_bound(touching_.begin(), touching_.end(), e.v[k], [](const SelfContact& one, int v) {
+      return !one.who.edges && one.who.v[0] < v;
+    });
+    for (; c != touching_.end() && !c->who.edges && c->who.v[0] == e.v[k]; ++c)
+      if (sheet_[one_of(c->who, true)] == other &&
+          edges.approach.last.distance > nearly * c->normal.dot(c->place))
+        return true;
+  }
+  return false;
+}
+
 // A vertex has one contact with each sheet beside it: the nearest, of triangles that share a particle and lie the
 // same way. What pushed the vertex over the inside of a triangle goes on: in a valley two triangles bear it, and would do so by
 // turns. Two edges that cross are a contact where they are clearly nearer than their ends are to the other sheet, and
 // stay one as long as they are near: or a rim would drop and be lifted by turns.
 void SelfContacts::find_contacts(const StepMotion& step) {
   touching_.clear();
-  const double thickest = *std::max_element(thickness_.begin(), thickness_.begin() + cloth_particles());
-  reach_ = reach_about(thickest);
+  double thickest = 0, thickest_rope = 0;
+  for (const SelfFace& face : faces_) thickest = std::max(thickest, face.thickness);
+  for (const SelfSegment& segment : segments_) thickest_rope = std::max(thickest_rope, segment.thickness);
+  reach_ = reach_about(std::max(thickest, thickest_rope));
   body_reach_ = reach_about(surfaces_->thickest());
   if (!follow_all(step.x, ahead_)) return;
   std::vector<Meeting>& found = found_;
-  found = near_ones(step, *encounters_, thickest);
+  found = near_ones(step, *encounters_, thickest, reach_);
   // Other methods look at a contact within the step, when the body is not yet where its end takes it.
   if (surfaces_->any() && step.foresight == Foresight::ahead) {
-    const std::vector<Meeting>& others = near_ones(step, *on_bodies_, surfaces_->thickest());
+    const std::vector<Meeting>& others = near_ones(step, *on_bodies_, surfaces_->thickest(), body_reach_);
     found.insert(found.end(), others.begin(), others.end());
   }
   const auto add = [&](const Meeting& m) {
@@ -203,7 +229,8 @@ void SelfContacts::find_contacts(const StepMotion& step) {
       const double of_a = a.approach.last.distance, of_b = b.approach.last.distance;
       return of_a != of_b ? of_a < of_b : a.who < b.who;
     });
-    nearest_[vertex] = first->approach.last.distance;
+    const auto cloth = std::find_if(first, last, [&](const Meeting& m) { return !ropes_->is_rope(m.who); });
+    if (cloth != last) nearest_[vertex] = cloth->approach.last.distance;
     for (; first != last; ++first) {
       bool told = false;
       if (goes_on(*first)) {
@@ -219,7 +246,10 @@ void SelfContacts::find_contacts(const StepMotion& step) {
     const auto farther = [&](int v) {
       return (is_on_body(m->who) && v < cloth_particles()) || m->approach.last.distance < 0.7 * nearest_[v];
     };
-    if (find(last_, m->who) || std::all_of(m->who.v.begin(), m->who.v.end(), farther)) add(*m);
+    if (find(last_, m->who) ||
+        (ropes_->is_rope(m->who) ? !is_borne_otherwise(*m)
+                                 : std::all_of(m->who.v.begin(), m->who.v.end(), farther)))
+      add(*m);
   }
 }
 

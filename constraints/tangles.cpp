@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <utility>
 
 namespace drape::internal {
@@ -40,6 +41,9 @@ bool can_move(const StepMotion& step, int particle) {
   return !step.is_held(particle) && step.mass(particle) > 0;
 }
 
+// Those of a triangle, or the two ends of a segment.
+std::span<const int> corners_of(const Triangle& t) { return {t.data(), t[1] == t[2] ? 2u : 3u}; }
+
 // Where an edge passes through a triangle: the point of the edge less that of the triangle is sum w_k x_k.
 struct Crossing {
   std::array<int, 5> particles;
@@ -61,12 +65,15 @@ struct Crossing {
 
     const Vec3 E = (x[passage.b] - x[passage.a]).normalized();
     const Triangle& own = triangles[passage.of];
-    const int third =
-        *std::find_if(own.begin(), own.end(), [&](int v) { return v != passage.a && v != passage.b; });
-    Vec3 R = normal_of(x, own).cross(N).normalized();
-    if (R.dot((x[third] - p) - E.dot(x[third] - p) * E) < 0) R = -R;
     const double slope = std::copysign(std::max(std::abs(E.dot(N)), steepest), E.dot(N));
     ahead = std::copysign(1.0, slope) * N;
+    shorter.setZero();
+    const auto beside =
+        std::find_if(own.begin(), own.end(), [&](int v) { return v != passage.a && v != passage.b; });
+    if (beside == own.end()) return;  // a segment
+    const int third = *beside;
+    Vec3 R = normal_of(x, own).cross(N).normalized();
+    if (R.dot((x[third] - p) - E.dot(x[third] - p) * E) < 0) R = -R;
     shorter = R - R.dot(E) / slope * N;
   }
   bool is_number() const {
@@ -77,9 +84,10 @@ struct Crossing {
 
 }  // namespace
 
-void Tangles::begin(std::vector<Triangle> triangles, std::vector<std::optional<int>> layers,
+void Tangles::begin(std::vector<Triangle> triangles, int segments, std::vector<std::optional<int>> layers,
                     const std::vector<char>& pass, const VecX& x) {
   triangles_ = std::move(triangles);
+  segments_ = segments;
   layers_ = std::move(layers);
   passes_.clear();
   for (const Triangle& t : triangles_)
@@ -106,7 +114,7 @@ void Tangles::look(const VecX& x) {
   places_.resize(static_cast<std::size_t>(x.size() / 3));
   for (std::size_t i = 0; i < places_.size(); ++i)
     places_[i] = x.segment<3>(3 * static_cast<Eigen::Index>(i));
-  found_ = crossing_contours(places_, triangles_);
+  found_ = crossing_contours(places_, triangles_, segments_);
   leave_out_passing();
   seen_ = x;
 }
@@ -284,13 +292,13 @@ void Tangles::spread(const StepMotion& step) {
     for (int k : near_) {
       double mass = 0;
       Vec3 mean = Vec3::Zero();
-      for (int v : triangles_[k]) {
+      for (int v : corners_of(triangles_[k])) {
         if (!can_move(step, v)) continue;
         mass += step.mass(v);
         mean += step.mass(v) * way_.segment<3>(3 * v);
       }
       if (mass == 0) continue;
-      for (int v : triangles_[k])
+      for (int v : corners_of(triangles_[k]))
         if (can_move(step, v))
           way_.segment<3>(3 * v) += spread_share * (mean / mass - way_.segment<3>(3 * v));
     }

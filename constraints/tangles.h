@@ -14,6 +14,7 @@
 //   These are displacements without velocity, which spread to two rings of triangles around, or to one when
 //   that has not helped for 1 s: narrow folds would move as wholes. Masses share them, so that no
 //   momentum is made. They are bounded by a speed, and by how much they stretch an edge in a step.
+//   A rope that passes through cloth is divided by it, and comes back as cloth does; it has no contour to make shorter.
 //   The number of pairs that cross goes up and down while a contour moves over triangles. It may exceed its least so far
 //   by a quarter and a few; where a step makes more, the tangles that grow move as wholes. When it has not become less for
 //   2 s, the tangles are left as they are.
@@ -31,8 +32,9 @@ namespace drape::internal {
 class Tangles {
  public:
   // Looks where the triangles cross. pass: for each particle whether what is near it may cross; two triangles that both
-  // have such a one make no tangle. layers: of the triangles, see SelfFace.
-  void begin(std::vector<Triangle> triangles, std::vector<std::optional<int>> layers,
+  // have such a one make no tangle. layers: of the triangles, see SelfFace. segments: so many of the last triangles are
+  // segments of ropes, see crossing_contours().
+  void begin(std::vector<Triangle> triangles, int segments, std::vector<std::optional<int>> layers,
              const std::vector<char>& pass, const VecX& x);
   void end_step(const VecX& x);  // the step has ended at x
 
@@ -62,6 +64,7 @@ class Tangles {
   void limit_relief(double most);
 
   std::vector<Triangle> triangles_;
+  int segments_ = 0;
   std::vector<std::optional<int>> layers_;
   std::vector<char> passes_;  // by triangle
   std::vector<int> first_,

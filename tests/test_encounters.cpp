@@ -29,7 +29,7 @@ struct TwoSheets {
     }
     x.resize(6 * half);
     for (int i = 0; i < 2 * half; ++i) x.segment<3>(3 * i) = places[i];
-    encounters.set(triangles, 2 * half, body ? triangles.size() / 2 : triangles.size(), x);
+    encounters.set(triangles, {}, 2 * half, body ? triangles.size() / 2 : triangles.size(), x);
   }
 
   bool upper(int vertex) const { return vertex >= half; }

@@ -266,7 +266,7 @@ TEST_CASE("a woven cloth is read, and refused where its directions are not known
       {cloth + "self_contact = true\nlayer = {}\n", "scene.toml:4:", "names no group"},
       {cloth + "self_contact = true\nlayer = { pocket = \"out\" }\n", "scene.toml:4:", "pocket"},
       {cloth + "self_contact = true\n[[pair]]\nbetween = [\"sheet\", \"coat\"]\nfriction = 0.3\n",
-       "scene.toml:4:", "no cloth or soft body 'coat'"},
+       "scene.toml:4:", "no cloth, soft body or rope 'coat'"},
       {cloth + "[[pair]]\nbetween = [\"sheet\", \"sheet\"]\nfriction = 0.3\n",
        "scene.toml:3:", "set its self_contact = true"},
       {cloth + "[[pair]]\nbetween = [\"sheet\"]\nfriction = 0.3\n", "scene.toml:4:", "two names"},

@@ -58,13 +58,16 @@ void print(const Sheets& sheets, const char* title = "crossings") {
   print(sheets, contours);
 }
 
-// `parts` are those of `sheets`, in their order.
+// `parts` are those of `sheets`, in their order. A rope has no faces that could be marked.
 void write_marked(const std::filesystem::path& folder, const Sheets& sheets,
                   const std::vector<Sheet>& parts) {
   const std::vector<std::vector<int>> crossing = sheets.crossing_triangles();
+  const auto is_marked = [&](std::size_t k) {
+    return !crossing[k].empty() && parts[k].mesh->triangle_count() > 0;
+  };
   Names names;
   for (std::size_t k = 0; k < parts.size(); ++k)
-    if (!crossing[k].empty()) names.push_back(parts[k].name + ".obj");
+    if (is_marked(k)) names.push_back(parts[k].name + ".obj");
   if (names.empty()) {
     std::printf("nothing is written, for nothing crosses\n");
     return;
@@ -74,7 +77,7 @@ void write_marked(const std::filesystem::path& folder, const Sheets& sheets,
   std::size_t next = 0;
   std::string told;
   for (std::size_t k = 0; k < parts.size(); ++k) {
-    if (crossing[k].empty()) continue;
+    if (!is_marked(k)) continue;
     TriangleMesh mesh = *parts[k].mesh;
     mesh.document = std::make_shared<ObjDocument>(with_group(mesh, crossing[k], group));
     files.write(names[next], format_obj(mesh, parts[k].positions));
@@ -89,10 +92,18 @@ void write_marked(const std::filesystem::path& folder, const Sheets& sheets,
 // At the end the places are those of the OBJ files, which have all digits.
 Sheets sheets_of(const Recording& recording, int frame) {
   Sheets sheets;
-  for (std::size_t s = 0; s < recording.shapes().size(); ++s)
-    if (const RecordedShape& shape = recording.shapes()[s]; !shape.body)
-      sheets.add(shape.name, shape.mesh.triangles,
-                 frame + 1 == recording.frames() ? shape.mesh.positions : recording.positions(s, frame));
+  for (const bool ropes : {false, true})
+    for (std::size_t s = 0; s < recording.shapes().size(); ++s) {
+      const RecordedShape& shape = recording.shapes()[s];
+      const bool is_rope = shape.radius > 0;
+      if (shape.body || is_rope != ropes) continue;
+      const std::vector<Vec3>& places =
+          frame + 1 == recording.frames() ? shape.mesh.positions : recording.positions(s, frame);
+      if (is_rope)
+        sheets.add_rope(shape.name, places);
+      else
+        sheets.add(shape.name, shape.mesh.triangles, places);
+    }
   return sheets;
 }
 

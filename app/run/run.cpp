@@ -27,7 +27,8 @@ int crossings_as_written(const Simulation& simulation) {
 bool all_meet(const Scene& scene) {
   const auto meets = [](const auto& part) { return part.self_contact; };
   return std::all_of(scene.cloths.begin(), scene.cloths.end(), meets) &&
-         std::all_of(scene.softs.begin(), scene.softs.end(), meets);
+         std::all_of(scene.softs.begin(), scene.softs.end(), meets) &&
+         std::all_of(scene.ropes.begin(), scene.ropes.end(), meets);
 }
 
 using Clock = std::chrono::steady_clock;

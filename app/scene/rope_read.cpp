@@ -63,7 +63,9 @@ void read_material(Table& table, RopeMaterial& material) {
   table.read("bend_damping", material.bend_damping, dimension::rope_bend_damping, Range::not_negative,
              "of bending: the moment at a rate of curvature of 1/(m s)");
   table.read("radius", material.radius, dimension::length, Range::positive,
-             "its axis rests that far, and a margin, off a body; it is drawn that thick");
+             "its axis rests that far, and a margin, off a body, and as far off cloth, beside half of its "
+             "thickness; "
+             "it is drawn that thick");
 }
 
 AnchorEntry read_anchor(Table& table) {
@@ -100,6 +102,7 @@ RopeEntry read_rope(Table& table, const std::filesystem::path& folder) {
   rope.where = table.where();
   read_course(table, folder, rope);
   read_material(table, rope.material);
+  rope.has_own_radius = table.has("radius");
   for (Table& anchor : table.tables("anchors", "ends that are fastened to bodies"))
     rope.anchors.push_back(read_anchor(anchor));
   for (Table& join : table.tables("joins", "ends that are joined to cloths, soft bodies or ropes"))

@@ -130,13 +130,16 @@ struct RopeEntry {
   std::optional<double> spacing;  // m, the same by their length
   Placement placement;
   RopeMaterial material;
+  bool has_own_radius = false;  // the scene gives it
+  bool self_contact = false;    // whether it meets itself, cloths, soft bodies and other ropes
+  RopeContact self;             // how, where it does
   std::vector<AnchorEntry> anchors;
   std::vector<JoinEntry> joins;
   std::vector<PinEntry> pins;
   std::string where;
 };
 
-// How two cloths or soft bodies rub on each other, or one on itself.
+// How two cloths, soft bodies or ropes rub on each other, or one on itself.
 struct FrictionEntry {
   std::array<std::string, 2> between;  // names
   double friction = 0;

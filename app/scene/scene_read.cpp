@@ -201,6 +201,7 @@ SoftEntry read_whole_soft(Table& table, const fs::path& folder) {
 
 RopeEntry read_whole_rope(Table& table, const fs::path& folder) {
   RopeEntry rope = read_rope(table, folder);
+  read_self_contact(table, rope);
   rope.name = read_name(table, rope.mesh.empty() ? fs::path("rope") : rope.mesh);
   for (Table& pin : table.tables("pins", pins_about))
     rope.pins.push_back(read_pin(pin, folder, PinsOf::rope));
@@ -244,8 +245,8 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path
                      softs = table.tables("soft", "each a soft body, a lattice of springs"),
                      ropes = table.tables("rope", "each a rope, a line of particles"),
                      obstacles = table.tables("obstacle", "each a body that the cloth meets"),
-                     pairs = table.tables(
-                         "pair", {"each how two cloths or soft bodies meet", "by what is said of both"});
+                     pairs = table.tables("pair", {"each how two cloths, soft bodies or ropes meet",
+                                                   "by what is said of both"});
   refuse_misplaced(table, "scene");
   table.finish();  // before anything is missed: it may be there with its name mistyped
   if (simulation.size() > 1) table.fail("simulation", "there may be only one");

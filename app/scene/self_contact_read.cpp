@@ -71,11 +71,22 @@ void read_self_contact(Table& table, SoftEntry& soft) {
   require_switch(table);
 }
 
+void read_self_contact(Table& table, RopeEntry& rope) {
+  table.read(
+      "self_contact", rope.self_contact,
+      "whether it meets itself, and cloths, soft bodies and other ropes that have this: without it they "
+      "pass through each other");
+  table.read("friction", rope.self.friction, dimension::number, Range::not_negative,
+             "with self_contact: Coulomb's coefficient; between two things it is the root of the product of "
+             "both, unless [[pair]] says otherwise. On bodies theirs counts");
+  require_switch(table);
+}
+
 FrictionEntry read_friction_pair(Table& table) {
   FrictionEntry entry;
   entry.where = table.where();
   Names between;
-  table.read_required("between", between, "names of two cloths or soft bodies, or of one and itself");
+  table.read_required("between", between, "names of two cloths, soft bodies or ropes, or of one and itself");
   if (between.size() != 2) table.fail("between", "expected two names, such as [\"shirt\", \"coat\"]");
   std::copy(between.begin(), between.end(), entry.between.begin());
   table.read_required("friction", entry.friction, dimension::number, Range::not_negative,
@@ -92,6 +103,7 @@ void check_friction_pair(const FrictionEntry& entry, const Scene& scene) {
   };
   for (const ClothEntry& cloth : scene.cloths) add(cloth);
   for (const SoftEntry& soft : scene.softs) add(soft);
+  for (const RopeEntry& rope : scene.ropes) add(rope);
   const auto same = [&](const FrictionEntry& other) {
     return std::is_permutation(other.between.begin(), other.between.end(), entry.between.begin());
   };
@@ -102,7 +114,7 @@ void check_friction_pair(const FrictionEntry& entry, const Scene& scene) {
   for (const std::string& name : entry.between) {
     const std::string start = entry.where + ": between: ";
     if (std::find(names.begin(), names.end(), name) == names.end())
-      throw InputError(start + "there is no cloth or soft body '" + one_line(name) + "'; " +
+      throw InputError(start + "there is no cloth, soft body or rope '" + one_line(name) + "'; " +
                        suggestion(name, names));
     if (std::find(meeting.begin(), meeting.end(), name) == meeting.end())
       throw InputError(start + one_line(name) + " passes through others; set its self_contact = true");

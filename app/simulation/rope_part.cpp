@@ -101,6 +101,7 @@ RopePart load_rope(const RopeEntry& entry, Simulation& simulation) {
   part.name = entry.name;
   part.material = entry.material;
   part.points = points_of(entry);
+  if (entry.self_contact) part.self_contact = entry.self;
   tell_of_segments(entry, part.points.size(), simulation.messages);
   for (const JoinEntry& join : entry.joins)
     (join.last ? part.last : part.first) =

@@ -7,7 +7,10 @@
 namespace drape::app {
 
 Sheets::Sheets(const std::vector<Cloth>& cloths, const VecX& x) {
-  for (const Cloth& cloth : cloths) add(cloth.name, cloth.mesh.triangles, cloth.embedding.positions(x));
+  for (const Cloth& cloth : cloths)
+    if (!cloth.rope) add(cloth.name, cloth.mesh.triangles, cloth.embedding.positions(x));
+  for (const Cloth& cloth : cloths)
+    if (cloth.rope) add_rope(cloth.name, cloth.embedding.positions(x));
 }
 
 void Sheets::add(const std::string& name, const std::vector<Triangle>& triangles,
@@ -18,12 +21,19 @@ void Sheets::add(const std::string& name, const std::vector<Triangle>& triangles
   positions_.insert(positions_.end(), positions.begin(), positions.end());
 }
 
+void Sheets::add_rope(const std::string& name, const std::vector<Vec3>& points) {
+  std::vector<Triangle> segments;
+  for (int k = 1; k < static_cast<int>(points.size()); ++k) segments.push_back({k - 1, k, k});
+  add(name, segments, points);
+  segments_ += static_cast<int>(segments.size());
+}
+
 std::vector<CrossingContour> Sheets::contours() const {
   const std::vector<int> number = welded(positions_);
   std::vector<Triangle> triangles = triangles_;
   for (Triangle& t : triangles)
     for (int& v : t) v = number[v];
-  return crossing_contours(positions_, triangles);
+  return crossing_contours(positions_, triangles, segments_);
 }
 
 std::size_t Sheets::part_of(int triangle) const {

@@ -168,6 +168,25 @@ void tell_of_self_contact(const SoftEntry& entry, Names& messages) {
                        rounded(1000 * entry.spacing[0], 3) + " mm) outside its mesh");
 }
 
+// A rope meets what has self_contact, too, and passes through the rest.
+void tell_of_self_contact(const RopeEntry& entry, const Scene& scene, Names& messages) {
+  if (!entry.self_contact) return;
+  if (!entry.has_own_radius)
+    messages.push_back("note: rope " + entry.name + ": no radius is given: it is " +
+                       rounded(2000 * entry.material.radius, 3) + " mm thick");
+  Names passed;
+  const auto look = [&](const auto& parts) {
+    for (const auto& part : parts)
+      if (!part.self_contact) passed.push_back(part.name);
+  };
+  look(scene.cloths);
+  look(scene.softs);
+  look(scene.ropes);
+  if (!passed.empty())
+    messages.push_back("note: rope " + entry.name + " passes through " + listed(passed) +
+                       (passed.size() == 1 ? ", which has" : ", which have") + " no self_contact = true");
+}
+
 void warn_if_limp(const Cloth& cloth, Names& messages) {
   const double curvature = cloth.limp_below;
   if (!(curvature > 2 * limp_curvature(mean_bend(cloth.fabric), cloth.fabric.area_density))) return;
@@ -256,6 +275,7 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
     tell_of_self_contact(scene.cloths[k], simulation.cloths[k], simulation.messages);
   }
   for (const SoftEntry& soft : scene.softs) tell_of_self_contact(soft, simulation.messages);
+  for (const RopeEntry& rope : scene.ropes) tell_of_self_contact(rope, scene, simulation.messages);
   warn_of_vertices_inside(scene, simulation);
   warn_of_crossed_bodies(scene, simulation);
   warn_of_overlapping_bodies(scene, simulation);

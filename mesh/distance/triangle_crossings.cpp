@@ -14,6 +14,8 @@ namespace {
 using internal::Face;
 using internal::MovingBoxes;
 
+bool is_segment(const Triangle& t) { return t[1] == t[2] && t[0] != t[1]; }
+
 struct PairPassage : Passage {
   int pair;  // place in the list of pairs
 
@@ -40,9 +42,11 @@ class Search {
   std::vector<CrossingContour> contours();
 
  private:
-  // Finds the edges of one triangle that pass through the other.
+  // Finds the edges of one triangle that pass through the other; a segment has its edge twice.
   void look_through(int of, int through) {
+    const auto before = passages_.size();
     internal::passing_edges(x_, triangles_[of], triangles_[through], [&](int a, int b) {
+      if (is_segment(triangles_[of]) && passages_.size() > before) return;
       passages_.push_back({{a, b, of, through}, static_cast<int>(pairs_.size())});
     });
   }
@@ -101,15 +105,17 @@ std::vector<CrossingContour> Search::contours() {
   return contours;
 }
 
-// first_kind: as of MovingBoxes, in triangles.
+// first_kind: as of MovingBoxes, in triangles. segments: as of crossing_contours().
 std::vector<CrossingContour> contours_of(const std::vector<Vec3>& positions,
-                                         const std::vector<Triangle>& triangles, int first_kind) {
+                                         const std::vector<Triangle>& triangles, int first_kind,
+                                         int segments) {
   std::vector<Face> faces;
   int faces_of_first = 0;
   std::vector<int> triangle_of;  // by face
   for (int k = 0; k < static_cast<int>(triangles.size()); ++k) {
     const Triangle& t = triangles[k];
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+    const bool may_be_segment = k + segments >= static_cast<int>(triangles.size());
+    if (may_be_segment ? !is_segment(t) : t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
     if (!std::all_of(t.begin(), t.end(), [&](int v) { return positions[v].allFinite(); })) continue;
     faces.push_back({t, {-1, -1, -1}});
     faces_of_first += k < first_kind;
@@ -131,14 +137,14 @@ std::vector<CrossingContour> contours_of(const std::vector<Vec3>& positions,
 }  // namespace
 
 std::vector<CrossingContour> crossing_contours(const std::vector<Vec3>& positions,
-                                               const std::vector<Triangle>& triangles) {
-  return contours_of(positions, triangles, 0);
+                                               const std::vector<Triangle>& triangles, int segments) {
+  return contours_of(positions, triangles, 0, segments);
 }
 
 std::vector<CrossingContour> contours_between(const std::vector<Vec3>& positions,
                                               const std::vector<Triangle>& triangles, int count) {
   if (count == 0) return {};
-  return contours_of(positions, triangles, count);
+  return contours_of(positions, triangles, count, 0);
 }
 
 int crossing_count(const std::vector<CrossingContour>& contours) {

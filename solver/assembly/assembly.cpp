@@ -295,6 +295,8 @@ void Assembly::use(MakeIntegrator make) {
     faces_ = {};
     if (!self_.empty()) constraints->add_self_faces(self_);
     self_ = {};
+    if (!self_segments_.empty()) constraints->add_self_segments(self_segments_);
+    self_segments_ = {};
     make_system(std::exchange(masses_, {}), std::exchange(forces_, {}));
   }
   make_integrator = std::move(make);

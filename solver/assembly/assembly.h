@@ -69,6 +69,7 @@ struct Assembly {
 
   void meet(const Cloth& cloth, const SelfContactOptions& options, const std::vector<Triangle>& faces,
             const std::vector<std::optional<int>>& layers);
+  void meet(const Cloth& rope, const RopeContact& options);
   Cloth& take(Cloth cloth, const std::vector<Vec3>& positions, const std::vector<double>& masses);
   // Adds the forces of a part, as far as it has been sewn, and notes its edges.
   void connect(Cloth& cloth, Forces& forces) const;
@@ -80,10 +81,11 @@ struct Assembly {
   Vec3 gravity_;
   std::optional<Air> air_;
   // These are in use until the system is made.
-  std::vector<double> masses_;    // kg
-  Forces forces_;                 // of all parts
-  std::vector<ClothFace> faces_;  // of all parts
-  std::vector<SelfFace> self_;    // of the cloths that meet cloth
+  std::vector<double> masses_;              // kg
+  Forces forces_;                           // of all parts
+  std::vector<ClothFace> faces_;            // of all parts
+  std::vector<SelfFace> self_;              // of the cloths that meet cloth
+  std::vector<SelfSegment> self_segments_;  // of the ropes that do
 };
 
 }  // namespace drape

@@ -81,12 +81,19 @@ struct SoftPart {
   std::optional<SelfContactOptions> self_contact = {};  // unset: cloth passes through it
 };
 
+// How a rope meets itself, other ropes, cloths and soft bodies that have the like (constraints/self_contact.h): as thick as
+// its material's radius says.
+struct RopeContact {
+  double friction = 0.3;  // mu: as in SelfContactOptions
+};
+
 struct RopePart {
   std::string name = "rope";  // used in messages
   std::vector<Vec3> points;   // m, as the rope starts, which is as long as it rests
   RopeMaterial material = {};
   // An end that is joined is that particle of a part that was added before, and starts where it is.
   std::optional<int> first = {}, last = {};
+  std::optional<RopeContact> self_contact = {};  // unset: it passes through all but rigid bodies
 };
 
 // A pair of particles whose strain l / L - 1 [-] is watched.

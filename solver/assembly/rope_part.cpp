@@ -1,5 +1,6 @@
 // A rope becomes a part of an assembly: its points become particles, but for ends that are joined to others.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "mesh/base/errors.h"
@@ -26,6 +27,16 @@ MeshReport report_of(const std::vector<Vec3>& points, std::vector<double> length
 }
 
 }  // namespace
+
+// Lets the segments of the next rope take part in contact with cloth and ropes.
+void Assembly::meet(const Cloth& rope, const RopeContact& options) {
+  if (!(options.friction >= 0) || !std::isfinite(options.friction))
+    throw InputError(rope.name + ": friction = " + std::to_string(options.friction) +
+                     ": it is finite and not negative");
+  for (const RestEdge& edge : rope.edges)
+    self_segments_.push_back(
+        {{edge.i, edge.j}, 2 * rope.rope->radius, options.friction, static_cast<int>(cloths.size())});
+}
 
 Cloth& Assembly::add(RopePart part) {
   if (system) throw InputError(part.name + ": is added after use(); add all ropes before it");
@@ -74,6 +85,7 @@ Cloth& Assembly::add(RopePart part) {
   }
   cloth.report = report_of(part.points, std::move(lengths));
   connect(cloth, forces_);
+  if (part.self_contact) meet(cloth, *part.self_contact);
   return take(std::move(cloth), own, own_masses);
 }
 
