@@ -80,6 +80,24 @@ void SelfContacts::renumber(const std::vector<int>& particle_of) {
   stale_ = true;
 }
 
+void SelfContacts::part(const Parting& parting) {
+  for (SelfFace& face : faces_) face.particles = parting.face(face.particles);
+  if (rest_.size() > 0) {
+    const VecX rest = rest_;
+    const std::vector<char> tangled = tangled_;
+    rest_.resize(3 * static_cast<Eigen::Index>(parting.source.size()));
+    tangled_.resize(tangled.empty() ? 0 : parting.source.size());
+    for (std::size_t i = 0; i < parting.source.size(); ++i) {
+      const int original = parting.source[i];
+      rest_.segment<3>(3 * static_cast<Eigen::Index>(i)) = rest.segment<3>(3 * original);
+      if (!tangled.empty()) tangled_[i] = tangled[static_cast<std::size_t>(original)];
+    }
+  }
+  touching_.clear();
+  last_.clear();
+  stale_ = true;
+}
+
 void SelfContacts::let_pass(const std::vector<int>& particles) {
   pass_.clear();
   for (int particle : particles) {

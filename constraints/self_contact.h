@@ -36,6 +36,7 @@
 
 #include "constraints/contact.h"
 #include "constraints/moving_body.h"
+#include "constraints/parting.h"
 #include "constraints/step_motion.h"
 #include "mesh/distance/approach.h"
 
@@ -146,6 +147,8 @@ class SelfContacts {
   void set_friction(const SelfFriction& pair) { pairs_.push_back(pair); }  // of equal pairs the last counts
   // Particle i gets the number particle_of[i]; a triangle of which two corners become one particle is removed.
   void renumber(const std::vector<int>& particle_of);
+  // The two sides of a cut begin at the same place: they touch, and do not push each other before they are apart.
+  void part(const Parting& parting);
   // These particles may pass each other and what is beside them, such as those that are being sewn together.
   void let_pass(const std::vector<int>& particles);
   bool any() const { return !faces_.empty(); }
