@@ -255,7 +255,7 @@ class SelfContacts {
   std::vector<int> stops_;                       // how often its way was shortened in this step
   std::vector<char> pass_;                       // let_pass()
   VecX rest_;                                    // places of the cloth when the faces were added [m]
-  std::vector<char> tangled_;                    // whether it was in a tangle there
+  std::vector<char> tangled_;                    // whether it was in a tangle there, or is beside a cut
   std::vector<SelfContact> touching_, last_;     // of this step and of the last one, sorted
   std::vector<SelfContact> met_;                 // scratch
   std::vector<internal::Meeting> found_;         // scratch
