@@ -57,6 +57,19 @@ void Constraints::merge(const std::vector<int>& particle_of) {
   step_.x_end.resize(0);
 }
 
+void Constraints::part(const Parting& parting) {
+  if (!step_.radius.empty()) {
+    std::vector<double> radius;
+    for (int original : parting.source) radius.push_back(step_.radius_of(original));
+    step_.radius = std::move(radius);
+  }
+  pins_.part(parting);
+  faces_.part(parting);
+  self_.part(parting);
+  step_.held.clear();
+  step_.x_end.resize(0);
+}
+
 void Constraints::prepare(int particles, const std::vector<double>& masses) {
   const auto n = static_cast<std::size_t>(particles);
   if (step_.held.size() == n && step_.masses == masses && contacts_.prepared(particles, bodies_.size()))

@@ -8,6 +8,7 @@
 #include "constraints/body_meeting.h"
 #include "constraints/face_contact.h"
 #include "constraints/particle_contacts.h"
+#include "constraints/parting.h"
 #include "constraints/pin_set.h"
 #include "constraints/pins.h"
 #include "constraints/self_contact.h"
@@ -42,6 +43,8 @@ class Constraints {
   // any of its parts was, in the way of the lowest-numbered part that was pinned. Contacts are found anew;
   // bodies stay as they are. The new particle has the largest radius of its parts.
   void merge(const std::vector<int>& particle_of);
+  // Particles part. A copy is pinned in the way of its original, and has its radius. Contacts are found anew.
+  void part(const Parting& parting);
 
   // Adds the triangles of the cloth, so that corners and rims of bodies do not come through between the
   // vertices. The triangles are pushed by a force, which the System needs, too:

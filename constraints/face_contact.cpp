@@ -101,6 +101,13 @@ void FaceContacts::renumber(const std::vector<int>& particle_of) {
   last_.clear();
 }
 
+void FaceContacts::part(const Parting& parting) {
+  for (ClothFace& face : faces_) face.particles = parting.face(face.particles);
+  room_.clear();
+  touching_.clear();
+  last_.clear();
+}
+
 void FaceContacts::measure_travel(const MovingBody& body, const VecX& x, const VecX& x_new) {
   travel_.resize(static_cast<std::size_t>(x.size() / 3));
   for_chunks(static_cast<int>(travel_.size()), [&](int begin, int end) {

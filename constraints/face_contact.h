@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "constraints/moving_body.h"
+#include "constraints/parting.h"
 
 namespace drape {
 
@@ -75,6 +76,7 @@ class FaceContacts {
   // Particle i gets the number particle_of[i]; a triangle of which two corners become one particle is
   // removed.
   void renumber(const std::vector<int>& particle_of);
+  void part(const Parting& parting);
   const std::vector<ClothFace>& all() const { return faces_; }
 
   // x -> x_new is the predicted motion. recovery: how far a triangle that starts inside a body is brought out

@@ -39,6 +39,23 @@ void PinSet::renumber(const std::vector<int>& number_of) {
   pinned_.erase(std::unique(pinned_.begin(), pinned_.end()), pinned_.end());
 }
 
+void PinSet::part(const Parting& parting) {
+  std::vector<int> pinned;
+  std::vector<MovingPin> moving;
+  for (std::size_t i = 0; i < parting.source.size(); ++i) {
+    const int original = parting.source[i];
+    if (!has(original)) continue;
+    pinned.push_back(static_cast<int>(i));
+    const auto pin = std::find_if(moving_.begin(), moving_.end(),
+                                  [&](const MovingPin& one) { return one.particle == original; });
+    if (pin == moving_.end()) continue;
+    moving.push_back(*pin);
+    moving.back().particle = static_cast<int>(i);
+  }
+  pinned_ = std::move(pinned);
+  moving_ = std::move(moving);
+}
+
 void PinSet::move(const std::vector<MovingBody>& bodies, const StepMotion& step) {
   if (moving_.empty()) return;
   velocity_.setZero(step.x.size());

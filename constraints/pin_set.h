@@ -5,6 +5,7 @@
 
 #include "constraints/filter.h"
 #include "constraints/moving_body.h"
+#include "constraints/parting.h"
 #include "constraints/step_motion.h"
 
 namespace drape {
@@ -25,6 +26,7 @@ class PinSet {
   // Particle i gets the number number[i]; where several pins become one, the pin of the lowest particle
   // stays.
   void renumber(const std::vector<int>& number);
+  void part(const Parting& parting);  // copies of pinned particles are pinned in the same way
 
   const std::vector<int>& pinned() const { return pinned_; }  // ascending
   const std::vector<MovingPin>& moving() const { return moving_; }

@@ -97,6 +97,34 @@ void SelfContacts::renumber(const std::vector<int>& particle_of) {
   stale_ = true;
 }
 
+// How near the sides of a cut are at rest says nothing of their thickness: they are one place there, and only the guard would
+// keep them apart, by holding them together.
+void SelfContacts::part(const Parting& parting) {
+  for (SelfFace& face : faces_) face.particles = parting.face(face.particles);
+  if (rest_.size() > 0) {
+    const VecX rest = rest_;
+    const std::vector<char> tangled = tangled_;
+    rest_.resize(3 * static_cast<Eigen::Index>(parting.source.size()));
+    tangled_.resize(parting.source.size());
+    std::vector<int> parts(parting.number.size(), 0);
+    for (std::size_t i = 0; i < parting.source.size(); ++i) {
+      const int original = parting.source[i];
+      rest_.segment<3>(3 * static_cast<Eigen::Index>(i)) = rest.segment<3>(3 * original);
+      tangled_[i] = tangled.at(static_cast<std::size_t>(original));
+      ++parts[static_cast<std::size_t>(original)];
+    }
+    const auto is_cut = [&](int i) {
+      return parts[static_cast<std::size_t>(parting.source[static_cast<std::size_t>(i)])] > 1;
+    };
+    for (const SelfFace& face : faces_)
+      if (std::any_of(face.particles.begin(), face.particles.end(), is_cut))
+        for (const int i : face.particles) tangled_[static_cast<std::size_t>(i)] = 1;
+  }
+  touching_.clear();
+  last_.clear();
+  stale_ = true;
+}
+
 void SelfContacts::let_pass(const std::vector<int>& particles) {
   pass_.clear();
   for (int particle : particles) {

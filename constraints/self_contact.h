@@ -39,6 +39,7 @@
 
 #include "constraints/contact.h"
 #include "constraints/moving_body.h"
+#include "constraints/parting.h"
 #include "constraints/step_motion.h"
 #include "mesh/distance/approach.h"
 
@@ -160,6 +161,8 @@ class SelfContacts {
   // Particle i gets the number particle_of[i]; a triangle of which two corners become one particle is removed, and so is
   // a segment of which both ends do.
   void renumber(const std::vector<int>& particle_of);
+  // The two sides of a cut begin at the same place: they touch, and do not push each other before they are apart.
+  void part(const Parting& parting);
   // These particles may pass each other and what is beside them, such as those that are being sewn together.
   void let_pass(const std::vector<int>& particles);
   bool any() const { return !faces_.empty() || !segments_.empty(); }
@@ -271,7 +274,7 @@ class SelfContacts {
   std::vector<int> stops_;                       // how often its way was shortened in this step
   std::vector<char> pass_;                       // let_pass()
   VecX rest_;                                    // places of the cloth when the faces were added [m]
-  std::vector<char> tangled_;                    // whether it was in a tangle there
+  std::vector<char> tangled_;                    // whether it was in a tangle there, or is beside a cut
   std::vector<SelfContact> touching_, last_;     // of this step and of the last one, sorted
   std::vector<SelfContact> met_;                 // scratch
   std::vector<internal::Meeting> found_;         // scratch

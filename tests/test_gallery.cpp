@@ -69,6 +69,7 @@ const Part gallery[] = {
     {"rotating-ball", 4.8, 1},    // the ball turns from 3 s on, the fastest at 4.5 s
     {"sheet-in-bowl", 0.6, 1},
     {"sheet-on-ball", 0.6, 1},
+    {"sheet-torn", 0.7, 2},       // tears, and the ball goes through
     {"skirt-sewn", 0.6, 4},
     {"sleeve-twist", 1.6, 4},     // winds itself up from 1 s on
     {"soft-bowl", 0.8, 10},

@@ -15,7 +15,7 @@ AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
   beside_.replace_filename("." + path_.filename().string() + "." + std::to_string(getpid()) + ".part");
   errno = 0;
   if (std::filesystem::is_directory(path_)) fail(EISDIR);
-  file_ = std::fopen(beside_.c_str(), "wb");
+  file_ = std::fopen(beside_.c_str(), "w+b");
   if (!file_) fail(errno);
 }
 
@@ -40,6 +40,11 @@ void AtomicFile::fail(int error) const {
 void AtomicFile::write(const void* bytes, std::size_t count) {
   errno = 0;
   if (std::fwrite(bytes, 1, count, file_) != count) fail(errno);
+}
+
+void AtomicFile::read(void* bytes, std::size_t count) {
+  errno = 0;
+  if (std::fread(bytes, 1, count, file_) != count) fail(errno);
 }
 
 void AtomicFile::seek(long position) {

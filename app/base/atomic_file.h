@@ -8,7 +8,7 @@
 
 namespace drape::app {
 
-// The functions that write throw InputError "out/sheet.pc2: cannot write: No space left on device; ...". The
+// The functions that write or read throw InputError "out/sheet.pc2: cannot write: No space left on device; ...". The
 // destructor removes a file that keep() was not called for.
 class AtomicFile {
  public:
@@ -19,7 +19,8 @@ class AtomicFile {
 
   void write(const void* bytes, std::size_t count);
   void write(std::string_view text) { write(text.data(), text.size()); }
-  void seek(long position);  // bytes from the start
+  void read(void* bytes, std::size_t count);  // what was written before
+  void seek(long position);                   // bytes from the start; stands between writing and reading
   void close();              // throws when not all bytes could be handed to the system
   void keep();               // closes the file and gives it its name
 

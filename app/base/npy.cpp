@@ -4,11 +4,14 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
+#include <functional>
 #include <iterator>
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "app/base/padded_frames.h"
 #include "mesh/base/errors.h"
 
 namespace drape::app {
@@ -57,7 +60,7 @@ NpyWriter::NpyWriter(std::filesystem::path path, Kind kind, std::vector<int> fra
 
 void NpyWriter::write_header() {
   std::string text = "{'descr': '" + std::string(descriptions[static_cast<std::size_t>(kind_)]) +
-                     "', 'fortran_order': False, 'shape': (" + std::to_string(frames_) + ",";
+                     "', 'fortran_order': False, 'shape': (" + std::to_string(lengths_.size()) + ",";
   for (std::size_t k = 0; k < frame_shape_.size(); ++k)
     text += (k > 0 ? ", " : " ") + std::to_string(frame_shape_[k]);
   text += "), }";
@@ -77,7 +80,7 @@ void NpyWriter::add_words(const Numbers& frame) {
     for (int shift = 0; shift < 32; shift += 8)
       bytes_.push_back(static_cast<unsigned char>(std::bit_cast<std::uint32_t>(number) >> shift));
   file_.write(bytes_.data(), bytes_.size());
-  ++frames_;
+  lengths_.push_back(static_cast<int>(frame.size()) / width());
 }
 
 void NpyWriter::add(const std::vector<float>& frame) { add_words(frame); }
@@ -85,10 +88,19 @@ void NpyWriter::add(const std::vector<std::int32_t>& frame) { add_words(frame); 
 
 void NpyWriter::add(const std::vector<std::uint8_t>& frame) {
   file_.write(frame.data(), frame.size());
-  ++frames_;
+  lengths_.push_back(static_cast<int>(frame.size()) / width());
 }
 
-void NpyWriter::close() {
+int NpyWriter::width() const {
+  return std::accumulate(frame_shape_.begin() + 1, frame_shape_.end(), 1, std::multiplies<>());
+}
+
+void NpyWriter::close(const std::vector<int>& copy_of) {
+  if (!copy_of.empty()) {
+    const std::size_t size = size_of(kind_) * static_cast<std::size_t>(width());
+    pad_frames(file_, header_size, size, lengths_, frame_shape_.front(), copy_of);
+    frame_shape_.front() += static_cast<int>(copy_of.size());
+  }
   file_.seek(0);
   write_header();
   file_.close();

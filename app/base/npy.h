@@ -23,18 +23,21 @@ class NpyWriter {
   void add(const std::vector<float>& frame);
   void add(const std::vector<std::int32_t>& frame);
   void add(const std::vector<std::uint8_t>& frame);
-  void close();  // writes the number of frames into the header
+  // Writes the number of frames into the header. All frames become as long along their first axis as the last: what
+  // was not there yet has the numbers of its original (app/base/padded_frames.h).
+  void close(const std::vector<int>& copy_of = {});
   void keep() { file_.keep(); }
 
  private:
   void write_header();
+  int width() const;  // numbers in each place along the first axis
   template <class Numbers>
   void add_words(const Numbers& frame);
 
   AtomicFile file_;
   Kind kind_;
   std::vector<int> frame_shape_;
-  int frames_ = 0;
+  std::vector<int> lengths_;  // of the frames, along their first axis
   std::vector<unsigned char> bytes_;
 };
 

@@ -6,12 +6,13 @@
 #include <cstring>
 #include <utility>
 
+#include "app/base/padded_frames.h"
 #include "mesh/base/errors.h"
 
 namespace drape::app {
 namespace {
 
-constexpr long samples_at = 28;  // place of the number of samples in the header
+constexpr long points_at = 16, samples_at = 28;  // places of their numbers in the header
 constexpr std::uintmax_t header_size = 32;
 constexpr char signature[12] = "POINTCACHE2";
 
@@ -35,7 +36,7 @@ float float_at(const unsigned char* bytes) { return std::bit_cast<float>(word_at
 
 }  // namespace
 
-Pc2Writer::Pc2Writer(std::filesystem::path path, int points) : file_(std::move(path)) {
+Pc2Writer::Pc2Writer(std::filesystem::path path, int points) : file_(std::move(path)), points_(points) {
   bytes_.assign(signature, signature + sizeof signature);
   append(bytes_, 1);
   append(bytes_, points);
@@ -50,15 +51,21 @@ void Pc2Writer::add(const std::vector<Vec3>& positions) {
   for (const Vec3& x : positions)
     for (double coordinate : x) append(bytes_, static_cast<float>(coordinate));
   file_.write(bytes_.data(), bytes_.size());
-  ++samples_;
+  points_of_each_.push_back(static_cast<int>(positions.size()));
 }
 
-void Pc2Writer::close() {
-  bytes_.clear();
-  append(bytes_, samples_);
-  file_.seek(samples_at);
-  file_.write(bytes_.data(), bytes_.size());
+void Pc2Writer::close(const std::vector<int>& copy_of) {
+  if (!copy_of.empty()) pad_frames(file_, header_size, 12, points_of_each_, points_, copy_of);
+  write_number(points_at, points_ + static_cast<int>(copy_of.size()));
+  write_number(samples_at, static_cast<int>(points_of_each_.size()));
   file_.close();
+}
+
+void Pc2Writer::write_number(long place, int number) {
+  bytes_.clear();
+  append(bytes_, number);
+  file_.seek(place);
+  file_.write(bytes_.data(), bytes_.size());
 }
 
 Pc2Reader::Pc2Reader(const std::filesystem::path& path, Damaged damaged)

@@ -19,16 +19,23 @@ class Pc2Writer {
  public:
   Pc2Writer(std::filesystem::path path, int points);
 
-  void add(const std::vector<Vec3>& positions);  // adds a sample: the positions of all points, m
-  void close();                                  // writes the number of samples into the header
+  // Adds a sample: the positions of all points [m]. There may be more from sample to sample, copies of points.
+  void add(const std::vector<Vec3>& positions);
+  // Writes the number of samples into the header. All samples get all points: copy k, which is a copy of point
+  // copy_of[k], is where its original is as long as it is not there.
+  void close(const std::vector<int>& copy_of = {});
   void keep() { file_.keep(); }
   // Hands over the closed file, to be kept together with others.
   AtomicFile take_file() { return std::move(file_); }
   const std::filesystem::path& path() const { return file_.path(); }
+  int points() const { return points_; }  // that there were at first
 
  private:
+  void write_number(long place, int number);
+
   AtomicFile file_;
-  int samples_ = 0;
+  int points_;                       // that there were at first
+  std::vector<int> points_of_each_;  // of the samples
   std::vector<unsigned char> bytes_;
 };
 

@@ -70,6 +70,7 @@ void add_reports_of_steps(py::module_& m) {
       .def_readonly("body_contacts", &StepReport::body_contacts, "points at which bodies press on each other")
       .def_readonly("body_overlap", &StepReport::body_overlap,
                     "m, how far bodies were inside each other at the start")
+      .def_readonly("torn", &StepReport::torn, "edges of cloth that were cut at the end")
       .def_readonly("residual", &StepReport::residual,
                     "relative, the worst of the solves that the step ended with")
       .def_readonly("converged", &StepReport::converged,

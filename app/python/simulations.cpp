@@ -157,12 +157,12 @@ class PartialRun {
   }
 
  private:
-  // By a step. Where seams may close, arrays may get other memory: so also what stands for that.
+  // By a step. Where seams may close or cloth may tear, arrays may get other memory: so also what stands for that.
   std::vector<const void*> used() const {
     const Simulation& simulation = whole_->simulation;
     std::vector<const void*> all = {&simulation.state, this};
-    const auto sewn = [](const Cloth& cloth) { return !cloth.seams.empty(); };
-    if (std::any_of(simulation.cloths.begin(), simulation.cloths.end(), sewn))
+    const auto changes = [](const Cloth& cloth) { return !cloth.seams.empty() || cloth.tearing; };
+    if (std::any_of(simulation.cloths.begin(), simulation.cloths.end(), changes))
       all.push_back(&simulation.state.x);
     return all;
   }

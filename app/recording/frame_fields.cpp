@@ -17,6 +17,12 @@ int main_particle(const Embedding& embedding, int vertex) {
 
 }  // namespace
 
+std::vector<int> copies_since(const Cloth& cloth, int vertices) {
+  if (!cloth.tearing) return {};
+  const std::vector<int>& all = cloth.tearing->copy_of;
+  return {all.end() - (cloth.mesh.vertex_count() - vertices), all.end()};
+}
+
 bool has_polygons(const TriangleMesh& mesh) {
   if (!mesh.document) return false;
   const auto& start = mesh.document->face_start;
@@ -35,13 +41,11 @@ FrameFields::FrameFields(const std::filesystem::path& folder, const Cloth& cloth
                 {cloth.mesh.vertex_count(), 3}),
       strain_(field_path(folder, cloth.name, "strain"), NpyWriter::Kind::float32,
               {cloth.mesh.vertex_count()}),
-      contact_(field_path(folder, cloth.name, "contact"), NpyWriter::Kind::byte,
-               {cloth.mesh.vertex_count()}) {
+      contact_(field_path(folder, cloth.name, "contact"), NpyWriter::Kind::byte, {cloth.mesh.vertex_count()}),
+      vertices_(cloth.mesh.vertex_count()) {
   if (!has_polygons(cloth.mesh)) return;
   triangles_.emplace(field_path(folder, cloth.name, "triangles"), NpyWriter::Kind::int32,
                      std::vector<int>{3});
-  for (const Triangle& t : cloth.mesh.triangles)
-    triangles_->add(std::vector<std::int32_t>(t.begin(), t.end()));
 }
 
 void FrameFields::mark_touches(const Constraints& constraints, int particles) {
@@ -80,11 +84,15 @@ void FrameFields::add(const Cloth& cloth, const State& state, const Constraints&
   contact_.add(contact);
 }
 
-void FrameFields::close() {
-  velocity_.close();
-  strain_.close();
-  contact_.close();
-  if (triangles_) triangles_->close();
+void FrameFields::close(const Cloth& cloth) {
+  const std::vector<int> copy_of = copies_since(cloth, vertices_);
+  velocity_.close(copy_of);
+  strain_.close(copy_of);
+  contact_.close(copy_of);
+  if (!triangles_) return;
+  for (const Triangle& t : cloth.mesh.triangles)
+    triangles_->add(std::vector<std::int32_t>(t.begin(), t.end()));
+  triangles_->close();
 }
 
 void FrameFields::keep() {

@@ -23,7 +23,7 @@ class FrameFields {
   FrameFields(const std::filesystem::path& folder, const Cloth& cloth);
 
   void add(const Cloth& cloth, const State& state, const Constraints& constraints);
-  void close();
+  void close(const Cloth& cloth);  // as it is at the end
   void keep();
 
  private:
@@ -31,9 +31,13 @@ class FrameFields {
 
   NpyWriter velocity_, strain_, contact_;
   std::optional<NpyWriter> triangles_;
+  int vertices_;  // that there were at first
   std::vector<double> particle_strain_;
   std::vector<std::uint8_t> particle_contact_;
 };
+
+// What the vertices are copies of that a cloth got since it had so many, because it tore.
+std::vector<int> copies_since(const Cloth& cloth, int vertices);
 
 // Whether faces have to be cut: some have more than three corners.
 bool has_polygons(const TriangleMesh& mesh);

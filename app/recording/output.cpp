@@ -132,8 +132,11 @@ void Output::frame(const State& state) {
 void Output::finish(const State& state, RunRecord& record) {
   record.frames = frames_ == Frames::pc2 ? "pc2" : frames_ == Frames::obj ? "obj" : "none";
   record.frame_times = frame_times_;
-  for (Pc2Writer& cache : caches_) cache.close();
-  for (FrameFields& fields : fields_) fields.close();
+  for (std::size_t k = 0; k < simulation_.cloths.size(); ++k) {
+    const Cloth& cloth = simulation_.cloths[k];
+    if (frames_ == Frames::pc2) caches_[k].close(copies_since(cloth, caches_[k].points()));
+    if (frames_ != Frames::none) fields_[k].close(cloth);
+  }
   steps_->close();
   std::vector<AtomicFile> texts;
   for (const Cloth& cloth : simulation_.cloths) {

@@ -34,6 +34,10 @@ std::vector<RecordedPlane> Recording::planes(int frame) const {
 std::vector<Vec3> Recording::positions(std::size_t k, int frame) const {
   std::vector<Vec3> positions = read_positions(k, frame);
   const std::size_t expected = shapes_[k].mesh.positions.size();
+  const std::vector<int>& copy_of = sources_[k].copy_of;
+  if (const std::size_t first = expected - copy_of.size(); positions.size() >= first)  // of an OBJ file
+    for (std::size_t v = positions.size(); v < expected; ++v)
+      positions.push_back(Vec3(positions[static_cast<std::size_t>(copy_of[v - first])]));
   if (positions.size() != expected)
     throw InputError(frame_path(folder_, shapes_[k].name, frame + 1).string() + ": has " +
                      counted(static_cast<long>(positions.size()), "vertex") + ", expected the " +

@@ -2,6 +2,7 @@
 // the exports all start here.
 //   A run without frames has a single one, its last state. Frames count from 0; vertices have the order of
 //   the input file.
+//   Where a cloth tears, vertices part. All frames have the vertices of the end; before they part they are at one place.
 //   What is missing or damaged is reported as data (missing()), and the rest can still be shown.
 #pragma once
 
@@ -75,6 +76,7 @@ class Recording {
     bool files = false;           // true when they are frames/NAME_0001.obj
     std::vector<Pose> poses;      // of each frame; empty when it is not moved as a whole
     Pose last;                    // the pose that the mesh is in
+    std::vector<int> copy_of;     // of a cloth that tore: the last vertices of the mesh are copies of these
     Names fields;                 // names of the fields that are there and complete
   };
 
@@ -85,6 +87,7 @@ class Recording {
   void add_body(const Json& body, const std::string& name,
                 const std::map<std::string, std::vector<Pose>>& poses);
   void find_shapes();
+  void read_copies(const Json& copies);
   void find_frames(std::size_t shape);
   void use_cache(std::size_t shape, const std::filesystem::path& cache);
   // Whether the run wrote frames of this kind, as far as run.json tells.

@@ -192,7 +192,9 @@ void Recording::find_shapes() {
     for (const Json& part : run_[kind].items()) {
       const std::size_t before = shapes_.size();
       add_shape(part["name"].text(), folder_ / (part["name"].text() + ".obj"), false);
-      if (shapes_.size() > before) shapes_.back().radius = part["material"]["radius"].number(0);
+      if (shapes_.size() == before) continue;
+      shapes_.back().radius = part["material"]["radius"].number(0);
+      read_copies(part["copy_of"]);
     }
   for (std::size_t k = 0; k < shapes_.size(); ++k) find_frames(k);
 
@@ -205,6 +207,22 @@ void Recording::find_shapes() {
   for (const Json& body : run_["bodies"].items()) bodies.push_back(body["name"].text());
   const Names files = body_file_names(bodies, cloths);
   for (std::size_t k = 0; k < bodies.size(); ++k) add_body(run_["bodies"].items()[k], files[k], poses);
+}
+
+// Of the shape that was added last: of which of its vertices the last ones are copies.
+void Recording::read_copies(const Json& copies) {
+  const int vertices = shapes_.back().mesh.vertex_count();
+  const auto count = static_cast<int>(copies.items().size());
+  std::vector<int>& copy_of = sources_.back().copy_of;
+  for (const Json& copy : copies.items()) {
+    const double of = copy.number(-1);
+    if (count >= vertices || !(of >= 0 && of < vertices - count + static_cast<int>(copy_of.size()))) {
+      copy_of.clear();
+      return miss(folder_ / "run.json",
+                  "copy_of of '" + shapes_.back().name + "' names no vertices before them");
+    }
+    copy_of.push_back(static_cast<int>(of));
+  }
 }
 
 // name: of its files.

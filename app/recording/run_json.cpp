@@ -19,7 +19,10 @@ Json cloths_json(const std::vector<ClothCounts>& cloths) {
                                  {"fabric", c.fabric},
                                  {"imperfection", c.imperfection},
                                  {"pins", c.pins},
-                                 {"seams", c.seams}});
+                                 {"seams", c.seams},
+                                 {"tear", c.tear ? Json(*c.tear) : Json()},
+                                 {"torn", c.torn},
+                                 {"copy_of", c.copy_of}});
   return list;
 }
 
@@ -139,6 +142,8 @@ std::string run_json(const RunRecord& record) {
       {"contact_residual", record.contact_residual},
       {"self_contacts", Json::Members{{"end", record.self_contacts}, {"max", record.self_contacts_max}}},
       {"self_guarded", record.self_guarded},
+      {"torn", Json::Members{{"edges", record.torn},
+                             {"first_time", record.first_torn ? Json(*record.first_torn) : Json()}}},
       {"pinched", Json::Members{{"end", record.pinched}, {"max", record.pinched_max}}},
       {"crossings",
        Json::Members{

@@ -17,6 +17,10 @@ struct ClothCounts {
   int particles = 0, triangles = 0, edges = 0, diagonals = 0;
   Json fabric = {}, pins = {}, seams = {};  // app/recording/scene_record.h
   double imperfection = 0;                  // m
+  // Of a cloth that may tear: the edges that were cut, and what the last vertices are copies of.
+  std::optional<double> tear = {};
+  int torn = 0;
+  std::vector<int> copy_of = {};
 };
 
 struct SoftCounts {
@@ -84,6 +88,8 @@ struct RunRecord {
   int pinched = 0, pinched_max = 0;              // particles that a body may pass, at the end and at most
   // Pairs of triangles that pass through each other: at the start, at the end, and the most of all frames.
   int crossings_at_start = 0, crossings = 0, crossings_max = 0;
+  long torn = 0;                     // edges of cloth that were cut
+  std::optional<double> first_torn;  // s, at the end of the step that cut the first
   bool settled = false, interrupted = false;
   std::string state_hash;
   std::string frames;               // how they were written: pc2, obj, none

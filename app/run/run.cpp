@@ -128,7 +128,7 @@ void Run::describe() {
     else
       record_.cloths.push_back({c.name, c.mesh.vertex_count(), c.mesh.triangle_count(), c.report.edges,
                                 c.report.diagonals, fabric_json(scene.cloths[k], &c), pins, seams_json(c),
-                                c.imperfection});
+                                c.imperfection, c.tearing ? std::optional(c.tearing->limit) : std::nullopt});
   }
 }
 
@@ -202,6 +202,8 @@ void Run::record_step(const StepRow& row) {
   record_.self_contacts = report.self_contacts;
   record_.self_contacts_max = std::max(record_.self_contacts_max, report.self_contacts);
   record_.self_guarded += report.self_guarded;
+  record_.torn += report.torn;
+  if (report.torn > 0 && !record_.first_torn) record_.first_torn = row.time;
   record_.pinched = report.pinched;
   record_.pinched_max = std::max(record_.pinched_max, report.pinched);
   record_.inner_steps.push_back(report.inner_steps);
@@ -299,8 +301,20 @@ void Run::tell_of_open_seams() {
     }
 }
 
+// Where a cloth tears it gets more particles.
+void Run::describe_tears() {
+  for (std::size_t k = 0; k < record_.cloths.size(); ++k) {
+    const Cloth& cloth = simulation_.cloths[k];
+    if (!cloth.tearing) continue;
+    record_.cloths[k].particles = cloth.mesh.vertex_count();
+    record_.cloths[k].torn = cloth.tearing->cuts;
+    record_.cloths[k].copy_of = cloth.tearing->copy_of;
+  }
+}
+
 const RunRecord& Run::finish() {
   record_.interrupted = !over();
+  describe_tears();
   if (!framed_) write_frame();  // the last frame is the end
   record_.simulated_seconds = simulation_.state.time;
   record_.settled = record_.steps > 0 && slow(record_.max_speed);
@@ -327,6 +341,7 @@ int run(const Scene& scene, const RunOptions& options) {
     for (const std::string& message : simulation.messages)
       std::fprintf(stderr, "%s\n", one_line(message).c_str());
   catch_interrupts();
+  simulation.keep_outgrown = false;
   Run run(simulation, options);
   march(run, [](const StepRow&) { return true; });
   if (!run.failure().empty()) std::fprintf(stderr, "error: %s\n", run.failure().c_str());

@@ -45,6 +45,7 @@ class Run {
 
   void describe();
   void describe_rope(const RopeEntry& entry, const Cloth& rope, const Json& pins);
+  void describe_tears();
   bool at_rest(const StepRow& row) const;
   bool slow(double cloth_speed) const;
   void record_step(const StepRow& row);

@@ -91,6 +91,9 @@ std::string summary(const RunRecord& record, const Output& output) {
             rounded(100 * record.strains.least, 3) + " % (one in a hundred below " +
             rounded(100 * record.strains.first_percent, 3) + " %) to " +
             rounded(100 * record.strains.largest, 3) + " %\n";
+  if (record.torn > 0)
+    text += "torn: " + counted(record.torn, "edge") + " cut, the first at " + rounded(*record.first_torn, 4) +
+            " s\n";
   text += hints(record, output);
   for (const auto& [path, amount] : output.written())
     text += "wrote " + path.string() + (amount.empty() ? "" : " (" + amount + ")") + "\n";

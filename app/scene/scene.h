@@ -82,6 +82,7 @@ struct ClothEntry {
   std::optional<double> imperfection;  // m, how far the start is off the mesh; unset: by the model
   bool self_contact = false;           // whether the cloth meets itself and others
   SelfContactOptions self;             // how, where it does
+  std::optional<double> tear;          // strain above which it tears; unset: never
   std::string fabric_name;             // empty when the scene names none
   Fabric fabric;
   FabricRecord fabric_record;

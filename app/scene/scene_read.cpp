@@ -109,6 +109,19 @@ void read_hysteresis(Table& table, ClothEntry& cloth) {
   }
 }
 
+void read_tear(Table& table, ClothEntry& cloth) {
+  table.read(
+      "tear", cloth.tear, dimension::number, Range::positive,
+      {"strain l / L - 1 of an edge above which the cloth tears there: 0.4 or \"40 %\"; the file that is "
+       "written has the new borders, and the copies of vertices after the others",
+       "it does not tear"});
+  if (!cloth.tear) return;
+  if (!cloth.seams.empty()) table.fail("tear", "cloth with seams does not tear; leave one of them out");
+  if (cloth.fabric.neighbour_weighting)
+    table.fail("tear",
+               "with neighbour_weighting a tear would change the mass of the cloth; leave one of them out");
+}
+
 // A woven cloth has no connections, and a cloth of connections no warp.
 void check_model(const Table& table, const ClothEntry& cloth) {
   const bool woven = cloth.model == "woven";
@@ -184,6 +197,7 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
   read_rest_angle(table, cloth);
   read_bending(table, cloth);
   read_hysteresis(table, cloth);
+  read_tear(table, cloth);
   check_model(table, cloth);
   for (Table& pin : table.tables("pins", pins_about)) cloth.pins.push_back(read_pin(pin, folder));
   table.finish();

@@ -91,8 +91,8 @@ class GridSearch {
   }
 
   // Checks every vertex by the numbers of quads and edges around it. A vertex inside has 4 quads and 4 edges.
-  // A vertex on a boundary has at most three quads, and one edge more than quads. Two corners of holes may
-  // touch.
+  // A vertex on a boundary has at most three quads, four where a slit ends, and one edge more than quads. Two corners of
+  // holes may touch.
   void check_vertices(int vertices) const {
     std::vector<int> quads(static_cast<std::size_t>(vertices), 0), edges = quads;
     for (const Quad& quad : grid_.quads)
@@ -104,10 +104,10 @@ class GridSearch {
     }
     for (std::size_t v = 0; v < quads.size(); ++v) {
       const int q = quads[v], e = edges[v];
-      const bool inside = q == 4 && e == 4, boundary = q <= 3 && e == q + 1, touch = q == 2 && e == 4;
+      const bool inside = q == 4 && e == 4, boundary = q <= 4 && e == q + 1, touch = q == 2 && e == 4;
       if (q == 0 || inside || boundary || touch) continue;
       throw InputError("vertex " + std::to_string(v) + " has " + std::to_string(q) + " quads around it" +
-                       (e == q ? ", a vertex inside a grid has 4" : ", on a boundary a grid has at most 3"));
+                       (e == q ? ", a vertex inside a grid has 4" : ", on a boundary a grid has at most 4"));
     }
   }
 

@@ -1,5 +1,5 @@
 // Finds a regular grid of quads from the faces alone. The order of vertices and faces does not matter; the
-// grid may have holes, and may be closed to a tube.
+// grid may have holes and slits, and may be closed to a tube.
 //   regular  every face has four corners, every edge has one or two faces, and a vertex inside has four
 #pragma once
 

@@ -11,6 +11,7 @@
 #include "mesh/triangles/extent.h"
 #include "mesh/triangles/normals.h"
 #include "mesh/triangles/topology.h"
+#include "solver/assembly/cloth_parts.h"
 #include "solver/assembly/imperfection.h"
 #include "solver/assembly/soft_forces.h"
 #include "solver/forces/choi_ko.h"
@@ -36,7 +37,9 @@ Connections connections_of(const Cloth& cloth, const TriangleMesh& mesh) {
                                             : noh_jung_connections(mesh, cloth.rest, cloth.fabric);
 }
 
-std::vector<double> masses_of(const Cloth& cloth) {
+}  // namespace
+
+std::vector<double> internal::cloth_masses(const Cloth& cloth) {
   const double density = cloth.fabric.area_density;
   std::vector<double> masses = cloth.model == ClothModel::choi_ko
                                    ? choi_ko_mass(cloth.mesh, cloth.rest, density)
@@ -44,6 +47,8 @@ std::vector<double> masses_of(const Cloth& cloth) {
   if (!cloth.fabric.neighbour_weighting || cloth.model == ClothModel::woven) return masses;
   return neighbour_weighted(std::move(masses), connections_of(cloth, cloth.mesh));
 }
+
+namespace {
 
 // The edges of a woven cloth, from its first particle; where two triangles differ about a length, the first's.
 std::vector<RestEdge> rest_edges(const Cloth& cloth, const TriangleMesh& mesh) {
@@ -204,8 +209,9 @@ Cloth& Assembly::add(ClothPart part) {
   cloth.end_particle = cloth.first_particle + cloth.mesh.vertex_count();
   cloth.embedding = Embedding::each(cloth.first_particle, cloth.mesh.vertex_count());
 
-  const std::vector<double> masses = masses_of(cloth);
+  const std::vector<double> masses = internal::cloth_masses(cloth);
   connect(cloth, forces_);
+  if (part.tear) cloth.tearing = internal::tearing_of(part, cloth);
   const int first = cloth.first_particle;
   const double stiffness = cloth.fabric.stretch_spring.value_or(mean_stretch(cloth.fabric));
   std::vector<Triangle> faces = cloth.mesh.triangles;
@@ -321,8 +327,10 @@ StepReport Assembly::advance(double h) {
       integrator->count_given(std::max(0.0, more));
       given += more;
     }
-  const StepReport report = integrator->advance(state, h);
-  if (!open || !report.done) return report;
+  StepReport report = integrator->advance(state, h);
+  if (!report.done) return report;
+  report.torn = tear_cloths();
+  if (!open) return report;
   const double before = system->total_energy(state);
   if (merge_closed_seams()) {
     integrator = make_integrator(*system, *constraints);

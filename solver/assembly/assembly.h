@@ -7,12 +7,16 @@
 // Where two particles are merged their masses and momenta are added. Positions are averaged by mass, so that
 // the centre of mass stays; a pinned particle stays where its first pin holds it. Then the system and the
 // integrator are made anew.
+//   Where a cloth tears (solver/assembly/tear_rule.h), a particle parts: its copies have its place and its velocity, and
+// all of them together have its mass. Copies come after the particles of their cloth, so those of later parts get higher
+// numbers; the system and the integrator are made anew here, too.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "solver/assembly/cloth.h"
@@ -33,9 +37,11 @@ struct Assembly {
   std::unique_ptr<Constraints> constraints;
   std::unique_ptr<Integrator> integrator;  // refers to `system` and `constraints`
   State state;
-  // The states from before particles became one; they are kept because arrays may still look at them.
+  // The states from before particles became one or parted; they are kept because arrays may still look at them.
   std::vector<State> outgrown;
-  // Makes the integrator, at first and again whenever particles have become one.
+  bool keep_outgrown =
+      true;  // false: none of them is kept where particles part, because nothing looks at them
+  // Makes the integrator, at first and again whenever particles have become one or parted.
   MakeIntegrator make_integrator;
   // Energy that seams have given so far [J]: by their pull, and to the cloth when they are merged.
   double given = 0;
@@ -59,7 +65,8 @@ struct Assembly {
   void use(MakeIntegrator make);
   void use(const std::string& integrator, const std::string& linear_solver, const StepOptions& options = {});
 
-  // Takes one step of h [s]. Seams go on closing in it; those that have closed are merged after it.
+  // Takes one step of h [s]. Seams go on closing in it; those that have closed are merged after it, and what is
+  // strained too far is torn.
   StepReport advance(double h);
 
   const Cloth& cloth_of(int particle) const;
@@ -76,6 +83,8 @@ struct Assembly {
   void make_system(std::vector<double> masses, Forces forces);
   bool merge_closed_seams();
   void let_stitches_pass();
+  int tear_cloths();  // returns how many edges it has cut
+  void part_particles(const std::vector<std::vector<std::pair<int, int>>>& cuts);  // edges to cut, by cloth
   State merged_state(const std::vector<double>& masses, const std::vector<int>& number) const;
 
   Vec3 gravity_;

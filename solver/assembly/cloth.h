@@ -17,6 +17,7 @@
 #include "mesh/obj/examine.h"
 #include "mesh/tetrahedra/tetrahedral_mesh.h"
 #include "solver/assembly/seam.h"
+#include "solver/assembly/tearing.h"
 #include "solver/forces/connections.h"
 #include "solver/forces/plate_friction.h"
 #include "solver/forces/rope.h"
@@ -59,6 +60,9 @@ struct ClothPart {
   std::optional<double> imperfection = {};
   std::vector<SeamPlan> seams = {};
   std::optional<SelfContactOptions> self_contact = {};  // unset: the cloth passes through cloth
+  // The strain l / L - 1 of an edge above which the cloth tears there (solver/assembly/tear_rule.h); unset: it never
+  // tears.
+  std::optional<double> tear = {};
   std::optional<MeshReport> report = {};  // what examine() says of the mesh; unset: examine() is called
 };
 
@@ -109,7 +113,7 @@ struct LatticeCounts {
 
 struct Cloth {
   std::string name;
-  TriangleMesh mesh;  // as the cloth starts
+  TriangleMesh mesh;  // as the cloth starts, with the borders that it has now
   MeshReport report;
   int first_particle = 0, end_particle = 0;  // particles of the system
   Embedding embedding;                       // of the mesh in the particles
@@ -121,6 +125,7 @@ struct Cloth {
   std::vector<Vec3> warp;   // direction in the rest shape, of each triangle; [0, 0, 0] where nothing says it
   double imperfection = 0;  // m, how far the start is off `mesh`
   std::shared_ptr<BendMemory> memory;  // of a woven cloth whose threads rub
+  std::optional<Tearing> tearing;      // set: it may tear; copies of vertices come after the others
   double limp_below = 0;  // curvature [1/m] below which the cloth is limp (solver/forces/connections.h)
 
   std::optional<LatticeCounts> soft;  // set: this is a soft body and no cloth

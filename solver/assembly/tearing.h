@@ -1,0 +1,20 @@
+// What a cloth that tears remembers from step to step. solver/assembly/tear_rule.h says where it tears, and
+// solver/assembly/tear.cpp makes the torn cloth.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+namespace drape {
+
+struct Tearing {
+  double limit = 0;  // strain l / L - 1 of an edge above which the cloth tears there [-]
+  std::vector<int>
+      copy_of;   // vertex n + k of the mesh is a copy of vertex copy_of[k]; n: vertices at the start
+  int cuts = 0;  // edges that were cut so far
+  std::vector<char> at_cut;         // by vertex: whether it is an end of an edge that was cut
+  std::vector<double> rests_until;  // s, by vertex: until then it draws back, because it has parted
+  double last = -std::numeric_limits<double>::infinity();  // s, when something was cut last
+};
+
+}  // namespace drape

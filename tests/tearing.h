@@ -1,0 +1,43 @@
+// What the tests of cloth that tears share.
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "mesh/obj/obj.h"
+#include "mesh/triangles/topology.h"
+
+namespace drape::test {
+
+// A sheet of quads, nx by nz vertices, x and z from 0 in steps of h [m], with uv; two groups, near (low z) and far.
+inline std::string quads(int nx, int nz, double h) {
+  std::string text, faces;
+  for (int j = 0; j < nz; ++j)
+    for (int i = 0; i < nx; ++i)
+      text += "v " + std::to_string(h * i) + " 0 " + std::to_string(h * j) + "\nvt " +
+              std::to_string(0.1 * i) + " " + std::to_string(0.1 * j) + "\n";
+  for (int j = 0; j + 1 < nz; ++j) {
+    if (j == 0) faces += "g near\n";
+    if (j == nz / 2) faces += "g far\n";
+    for (int i = 0; i + 1 < nx; ++i) {
+      faces += "f";
+      for (const int v : {j * nx + i, (j + 1) * nx + i, (j + 1) * nx + i + 1, j * nx + i + 1})
+        faces += " " + std::to_string(v + 1) + "/" + std::to_string(v + 1);
+      faces += "\n";
+    }
+  }
+  return text + faces;
+}
+inline TriangleMesh quad_sheet(int nx, int nz, double h) { return parse_obj(quads(nx, nz, h), "quads.obj"); }
+
+inline int pieces(const TriangleMesh& mesh) {
+  const std::vector<int> piece = connected_pieces(mesh);
+  return 1 + *std::max_element(piece.begin(), piece.end());
+}
+
+inline double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+}  // namespace drape::test
