@@ -4,8 +4,10 @@
 #pragma once
 
 #include <string_view>
+#include <utility>
 
 #include "constraints/body_meeting.h"
+#include "constraints/carriers.h"
 #include "constraints/face_contact.h"
 #include "constraints/particle_contacts.h"
 #include "constraints/parting.h"
@@ -93,6 +95,11 @@ class Constraints {
   BodyMeeting meeting_;
   StepMotion step_;  // the step under way, and what is known from the last one
   VecX x_new_;       // scratch
+  // Of carriers: what they took in the last response, the bodies as they see them, and what these got from them.
+  std::vector<CarriedContact> carried_;
+  std::vector<CarriedBody> carried_bodies_;
+  std::vector<std::pair<Vec3, Vec3>> carried_by_;  // impulse [N s] and its moment [N m s]
+  VecX carried_x_, carried_v_, carried_before_;    // scratch: the motion as carriers change it
 };
 
 }  // namespace drape

@@ -80,6 +80,7 @@ void ParticleContacts::prepare(int particles, std::size_t bodies) {
   responses_.resize(chunks);
   deepest_.resize(chunks);
   guarded_.resize(chunks);
+  for (auto* contacts : {&first_, &all_}) contacts->reserve(n);
   trial_.reserve(n);  // so that no step allocates, however many particles touch
   committed_.reserve(n);
   friction_.reserve(n);

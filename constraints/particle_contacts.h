@@ -43,11 +43,13 @@ struct ContactReport {
 
 // An impulse of a body on a particle, see constraints/response.h.
 struct ContactResponse {
-  int body;
+  int particle, body;
   Vec3 impulse;        // N s, on the particle
   Vec3 place;          // m
   Vec3 body_velocity;  // m/s
   double approach;     // m/s
+  Vec3 normal;         // of the plane, out of the body
+  double gap;          // m, when the step begins
 };
 
 class ParticleContacts {
@@ -87,6 +89,10 @@ class ParticleContacts {
   // bodies.
   void respond(ContactMode mode, const Bodies& bodies, const StepMotion& step, const VecX& x, const VecX& v,
                VecX& x_new, VecX& v_new);
+  // The same for a motion that carriers have changed: what touched stays known as touching.
+  void respond_again(ContactMode mode, const Bodies& bodies, const StepMotion& step, const VecX& x,
+                     const VecX& v, VecX& x_new, VecX& v_new);
+  double recovery_speed() const { return recovery_speed_; }  // m/s
   template <class F>  // f(response) for every one, in the order of the particles
   void each_response(const F& f) const {
     for (const auto& responses : responses_)
@@ -142,6 +148,7 @@ class ParticleContacts {
   double recovery_speed_;  // m/s
   std::size_t particles_ = 0;
   std::vector<Contact> trial_, committed_;      // contacts of the step under way; of the last completed one
+  std::vector<Contact> first_, all_;            // scratch of respond_again
   std::vector<int> contact_of_, committed_of_;  // particle -> its place in those; -1: none
   // By body and particle: a distance within which there was no surface of the body [m].
   std::vector<double> clearance_;

@@ -74,6 +74,9 @@ class ReactingBody {
   bool correct(Pose& end, double noise = 0);
   bool converged(double share = well) const;
 
+  // What other bodies change of its motion in this step.
+  Vec3 met_velocity() const { return meets_ ? Vec3(met_.head<3>()) : Vec3(Vec3::Zero()); }        // m/s
+  Vec3 met_spin() const { return meets_ ? Vec3(met_.tail<3>() / radius_) : Vec3(Vec3::Zero()); }  // rad/s
   // What other bodies do to it. The motion without that, by gravity and by the impulses of the cloth, of which there are
   // those of the last step before the first solve:
   Vec3 free_velocity() const { return v_ + h_ * body_.gravity + J_ / body_.mass; }

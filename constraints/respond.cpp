@@ -1,5 +1,6 @@
 // Applies the response of constraints/response.h to a free motion; it takes the place of a filter.
 #include <algorithm>
+#include <iterator>
 
 #include "constraints/particle_contacts.h"
 #include "mesh/base/parallel.h"
@@ -28,6 +29,16 @@ void ParticleContacts::respond(ContactMode mode, const Bodies& bodies, const Ste
   });
   trial_.clear();
   for (const auto& found : found_) trial_.insert(trial_.end(), found.begin(), found.end());
+}
+
+void ParticleContacts::respond_again(ContactMode mode, const Bodies& bodies, const StepMotion& step,
+                                     const VecX& x, const VecX& v, VecX& x_new, VecX& v_new) {
+  first_.swap(trial_);
+  respond(mode, bodies, step, x, v, x_new, v_new);
+  all_.clear();
+  std::set_union(trial_.begin(), trial_.end(), first_.begin(), first_.end(), std::back_inserter(all_),
+                 [](const Contact& a, const Contact& b) { return a.particle < b.particle; });
+  trial_.swap(all_);
 }
 
 void ParticleContacts::respond(ContactMode mode, int particle, const Bodies& bodies, const StepMotion& step,
@@ -66,8 +77,9 @@ bool ParticleContacts::respond(ContactMode mode, const MovingBody& body, const S
     if (!changed) return false;
     add_deepest(contact, plane);
     const Vec3 impulse = step.mass(contact.particle) * (velocities.end - before);
-    responses_[chunk].push_back({body.number(), impulse, x + h * velocities.mean, plane.body_velocity,
-                                 (plane.body_velocity - before).norm()});
+    responses_[chunk].push_back({contact.particle, body.number(), impulse, x + h * velocities.mean,
+                                 plane.body_velocity, (plane.body_velocity - before).norm(), plane.normal,
+                                 plane.gap});
     return true;
   };
   const SurfacePoint start = body.at_start(x);

@@ -91,6 +91,7 @@ std::string material_words(const Json& material) {
   for (const char* kind : {"structural", "shear", "bend"})
     words.number(std::string(kind) + " ", material[kind], " N/m");
   words.number("damping ", material["damping"], " N s/m " + material["damping_kind"].text());
+  if (material["viscosity"].number(0) > 0) words.number("viscosity ", material["viscosity"], " s");
   return words.text();
 }
 
@@ -232,7 +233,8 @@ Json material_json(const SoftMaterial& m) {
                        {"shear", spring(m.shear)},
                        {"bend", spring(m.bend)},
                        {"damping", m.damping},
-                       {"damping_kind", damping_name(m.damping_kind)}};
+                       {"damping_kind", damping_name(m.damping_kind)},
+                       {"viscosity", m.viscosity}};
 }
 
 Json rope_material_json(const RopeMaterial& m) {
@@ -314,6 +316,7 @@ Json::Members scene_json(const Scene& scene, const Simulation* simulation) {
     const ClothEntry& entry = scene.cloths[k];
     Json::Members json = {{"name", entry.name},
                           {"fabric", fabric_json(entry, simulation ? &simulation->cloths[k] : nullptr)}};
+    if (entry.clusters) json.emplace_back("clusters", "faces");
     if (simulation) {
       json.emplace_back("pins", pins_json(entry.pins, simulation->cloths[k]));
       json.emplace_back("seams", seams_json(simulation->cloths[k]));

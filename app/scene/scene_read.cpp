@@ -122,6 +122,28 @@ void read_tear(Table& table, ClothEntry& cloth) {
                "with neighbour_weighting a tear would change the mass of the cloth; leave one of them out");
 }
 
+// Faces that are clusters, in place of springs or of a membrane.
+void read_clusters(Table& table, ClothEntry& cloth) {
+  std::string what;
+  table.read(
+      "clusters", what, Names{"faces"},
+      {"what holds the cloth together in its plane instead of springs or a membrane, for `pbd`: each face "
+       "is drawn to its own shape, as stiff as `stretch` says, and resists compression too; it bends as "
+       "the model has it",
+       "by the model"});
+  if (what.empty()) return;
+  cloth.clusters = true;
+  if (cloth.model == "choi-ko")
+    table.fail("clusters",
+               "the springs of model = \"choi-ko\" are those of a grid; expected \"noh-jung\" or \"woven\"");
+  const Fabric& f = cloth.fabric;
+  if (f.stretch_spring || f.neighbour_weighting)
+    table.fail("clusters", std::string(f.stretch_spring ? "stretch_spring" : "neighbour_weighting") +
+                               " is of springs, and faces that are clusters have none; give stretch");
+  if (table.has("compression"))
+    table.fail("compression", "is of a membrane, and faces that are clusters resist it");
+}
+
 // A woven cloth has no connections, and a cloth of connections no warp.
 void check_model(const Table& table, const ClothEntry& cloth) {
   const bool woven = cloth.model == "woven";
@@ -192,6 +214,7 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
        "pushed in its plane would stay in it",
        "1 um with model = \"woven\", else 0"});
   read_fabric(table, cloth.fabric, cloth.fabric_record);
+  read_clusters(table, cloth);
   read_self_contact(table, cloth);
   cloth.has_own_damping = table.has("damping");
   read_rest_angle(table, cloth);

@@ -92,6 +92,11 @@ void read_material(Table& table, SoftMaterial& material) {
   std::string kind = "axial";
   table.read("damping_kind", kind, Names{"relative", "axial"},
              "axial: of what goes along the spring; relative: of every difference of velocity");
+  table.read(
+      "viscosity", material.viscosity, dimension::time, Range::not_negative,
+      {"of clusters: viscosity over stiffness; a mode of the angular frequency w dies away with the rate "
+       "w^2 viscosity / 2, and what moves rigidly is not slowed",
+       "0"});
   material.damping_kind = kind == "axial" ? DampingKind::axial : DampingKind::relative;
 }
 
@@ -117,7 +122,10 @@ SoftEntry read_soft(Table& table, const std::filesystem::path& folder) {
   read_material(table, soft.material);
   if (!soft.material.young && (soft.clusters || is_tetrahedra(soft.mesh)))
     table.fail("structural", "is of the springs of a lattice; expected young");
-  if (soft.clusters && table.has("damping")) table.fail("damping", "is of springs, and clusters have none");
+  if (soft.clusters && table.has("damping"))
+    table.fail("damping", "is of springs, and clusters have none; they take viscosity");
+  if (!soft.clusters && table.has("viscosity"))
+    table.fail("viscosity", "is of clusters; springs take damping");
   return soft;
 }
 

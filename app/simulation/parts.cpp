@@ -76,6 +76,7 @@ ClothPart load_cloth(const ClothEntry& entry, Names& messages) {
   part.group_warps = entry.group_warps;
   part.imperfection = entry.imperfection;
   part.tear = entry.tear;
+  part.clusters = entry.clusters;
   if (entry.self_contact) part.self_contact = entry.self;
   part.mesh = placed(is_pattern(entry.mesh) ? cut_pattern(entry, messages) : read_obj(entry.mesh),
                      {.scale = entry.placement.scale}, entry.mesh.string());

@@ -15,6 +15,7 @@
 #include "solver/assembly/imperfection.h"
 #include "solver/assembly/soft_forces.h"
 #include "solver/forces/choi_ko.h"
+#include "solver/forces/face_clusters.h"
 #include "solver/forces/face_contact_force.h"
 #include "solver/forces/noh_jung.h"
 #include "solver/forces/self_contact_force.h"
@@ -199,6 +200,12 @@ Cloth& Assembly::add(ClothPart part) {
   cloth.fabric = part.fabric;
   cloth.model = part.model;
   cloth.warp = warps_of(part, cloth);
+  cloth.face_clusters = part.clusters;
+  if (cloth.face_clusters && cloth.model == ClothModel::choi_ko)
+    throw InputError(
+        cloth.name +
+        ": the springs of \"choi-ko\" are those of a grid, not of faces; faces that are clusters go "
+        "with \"noh-jung\" and \"woven\"");
   if (cloth.fabric.weave.rest_angle > 0 && !part.seams.empty())
     throw InputError(cloth.name +
                      ": rest_angle: where panels are sewn the mesh has no angle; expected 0 with seams");
@@ -256,7 +263,11 @@ void Assembly::connect(Cloth& cloth, Forces& forces) const {
   const TriangleMesh mesh = between_particles(cloth);
   if (cloth.model == ClothModel::woven) {
     if (!cloth.memory) cloth.memory = std::make_shared<BendMemory>();
-    append(woven(mesh, cloth.rest, cloth.fabric, cloth.warp, cloth.first_particle, cloth.memory), forces);
+    append(
+        cloth.face_clusters
+            ? clustered_woven(mesh, cloth.rest, cloth.fabric, cloth.warp, cloth.first_particle, cloth.memory)
+            : woven(mesh, cloth.rest, cloth.fabric, cloth.warp, cloth.first_particle, cloth.memory),
+        forces);
     cloth.edges = rest_edges(cloth, mesh);
   } else {
     const Connections connections = connections_of(cloth, mesh);
@@ -264,7 +275,9 @@ void Assembly::connect(Cloth& cloth, Forces& forces) const {
     cloth.edges.clear();
     for (const StretchConnection& s : connections.stretch)
       if (s.L > 0) cloth.edges.push_back({cloth.first_particle + s.i, cloth.first_particle + s.j, s.L});
-    append(forces_of(connections, cloth.fabric, cloth.first_particle), forces);
+    append(cloth.face_clusters ? clustered_noh_jung(mesh, cloth.rest, cloth.fabric, cloth.first_particle)
+                               : forces_of(connections, cloth.fabric, cloth.first_particle),
+           forces);
   }
   if (air_) forces.push_back(air_drag(mesh, *air_, cloth.first_particle));
   for (Cloth::Stitched& open : cloth.seams) {

@@ -59,6 +59,8 @@ struct ClothPart {
   // cloth, 0 of the others.
   std::optional<double> imperfection = {};
   std::vector<SeamPlan> seams = {};
+  bool clusters =
+      false;  // whether each face is a cluster in place of what stretches (solver/forces/face_clusters.h)
   std::optional<SelfContactOptions> self_contact = {};  // unset: the cloth passes through cloth
   // The strain l / L - 1 of an edge above which the cloth tears there (solver/assembly/tear_rule.h); unset: it never
   // tears.
@@ -122,8 +124,9 @@ struct Cloth {
 
   Fabric fabric;  // of a cloth
   ClothModel model = ClothModel::noh_jung;
-  std::vector<Vec3> warp;   // direction in the rest shape, of each triangle; [0, 0, 0] where nothing says it
-  double imperfection = 0;  // m, how far the start is off `mesh`
+  std::vector<Vec3> warp;  // direction in the rest shape, of each triangle; [0, 0, 0] where nothing says it
+  bool face_clusters = false;          // in place of what stretches
+  double imperfection = 0;             // m, how far the start is off `mesh`
   std::shared_ptr<BendMemory> memory;  // of a woven cloth whose threads rub
   std::optional<Tearing> tearing;      // set: it may tear; copies of vertices come after the others
   double limp_below = 0;  // curvature [1/m] below which the cloth is limp (solver/forces/connections.h)

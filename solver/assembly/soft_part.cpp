@@ -81,12 +81,14 @@ std::unique_ptr<Force> clusters_of(const Cloth& soft) {
   Clusters clusters(sets, all, stacked(rest), soft.name);
   const double mass = std::accumulate(own.begin(), own.end(), 0.0);
   const double k = cluster_stiffness(clusters, *soft.material.young, mass / volume_of(soft));
-  return std::make_unique<ClusterForce>(std::move(clusters), k);
+  return std::make_unique<ClusterForce>(std::move(clusters), k, soft.material.viscosity);
 }
 
 }  // namespace
 
 std::vector<std::unique_ptr<Force>> internal::soft_forces(const Cloth& soft) {
+  if (!soft.clusters && soft.material.viscosity > 0)
+    throw InputError(soft.name + ": viscosity is of clusters; springs take damping");
   if (!soft.clusters)
     return soft.tetrahedra ? soft_body(*soft.tetrahedra, soft.material, soft.first_particle)
                            : soft_body(*soft.lattice, soft.material, soft.first_particle);

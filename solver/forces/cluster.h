@@ -15,6 +15,12 @@
 // alpha = k h^2 / (1 + k h^2) for a step h [s]. For clusters that do not overlap that is the step of implicit Euler, exactly:
 // c and Q are the same before and after it.
 //
+// Viscosity resists the change of the shape and no rigid motion, with the time tau [s] of viscosity over stiffness: a Kelvin-Voigt
+// solid, whose modes of the angular frequency omega [rad/s] die away with the rate omega^2 tau / 2 [1/s].
+//   f_i = -k w_i (d_i + tau d_i'),   d_i = x_i - g_i,   d_i' = its rate of change as the cluster sees it, which turns
+// In a step of implicit Euler that is a cluster with the stiffness k (1 + tau/h) whose shape at rest is part of the way to the
+// shape that it has when the step begins:  b_i + s (Q_0^T (x_0,i - c_0) - b_i),  s = tau / (h + tau).
+//
 // The rotation is that of mesh/base/rotation.h: proper, and defined for flat, collinear and inverted sets.
 #pragma once
 
@@ -55,6 +61,11 @@ void project(std::span<const ClusterMember> cluster, const ClusterPose& pose, do
 
 class Clusters {
  public:
+  struct Place {  // where a particle is a member
+    int cluster;
+    std::size_t member;
+  };
+
   Clusters() = default;
   // sets[c]: the particles of cluster c. masses [kg] and rest positions [m] are those of all particles.
   // Throws InputError, after `name`, when a set has fewer than 3 particles, names a particle twice or one that is not
@@ -67,16 +78,23 @@ class Clusters {
     return {members_.data() + start_[cluster], start_[cluster + 1] - start_[cluster]};
   }
 
+  // Where the particle is a member, by cluster; nowhere of one that is in no cluster.
+  std::span<const Place> places_of(int particle) const {
+    const auto i = static_cast<std::size_t>(particle);
+    if (i + 1 >= places_start_.size()) return {};
+    return {places_.data() + places_start_[i], places_start_[i + 1] - places_start_[i]};
+  }
+  const ClusterMember& member(const Place& place) const { return members_[place.member]; }
+
   // Brings `poses`, one per cluster, from the last step to positions x.
   void match(const VecX& x, std::vector<ClusterPose>& poses) const;
+  // Takes the shapes at rest of `others`, of the same sets, and brings them the share s of the way to the shapes at x and
+  // their poses there.
+  void take_shapes(const Clusters& others, const std::vector<ClusterPose>& poses, double s, const VecX& x);
   // Moves all particles at once by alpha of the way to the mean of their goals. The same bits on any number of threads.
   void project(const std::vector<ClusterPose>& poses, double alpha, VecX& x) const;
 
  private:
-  struct Place {  // where a particle is a member
-    int cluster;
-    std::size_t member;
-  };
   void list_places(int particles);
 
   std::vector<std::size_t> start_ = {0};  // clusters + 1 entries into members_

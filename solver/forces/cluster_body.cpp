@@ -6,7 +6,7 @@
 namespace drape {
 namespace {
 
-constexpr double no_inertia = 1e-10;  // of the largest eigenvalue of I, or of sum m |b|^2
+constexpr double no_inertia = 1e-10;  // of the largest eigenvalue of I, or of sum w |b|^2
 
 Vec3 at(const VecX& x, int particle) { return x.segment<3>(3 * particle); }
 
@@ -33,7 +33,7 @@ Mat3 inertia_of(std::span<const ClusterMember> cluster, const Vec3& centre, cons
   Mat3 inertia = Mat3::Zero();
   for (const ClusterMember& member : cluster) {
     const Vec3 r = at(x, member.particle) - centre;
-    inertia += member.mass * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+    inertia += member.share * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
   }
   return inertia;
 }
@@ -42,9 +42,9 @@ ClusterBody body_of(std::span<const ClusterMember> cluster, const VecX& x) {
   ClusterBody body{0, Vec3::Zero(), Mat3::Zero()};
   double at_rest = 0;
   for (const ClusterMember& member : cluster) {
-    at_rest += member.mass * member.rest.squaredNorm();
-    body.mass += member.mass;
-    body.centre += member.mass * at(x, member.particle);
+    at_rest += member.share * member.rest.squaredNorm();
+    body.mass += member.share;
+    body.centre += member.share * at(x, member.particle);
   }
   body.centre /= body.mass;
   body.inverse_inertia = pseudo_inverse(inertia_of(cluster, body.centre, x), at_rest);
@@ -55,7 +55,7 @@ ClusterMotion motion_of(std::span<const ClusterMember> cluster, const ClusterBod
                         const VecX& v) {
   Vec3 momentum = Vec3::Zero(), angular = Vec3::Zero();
   for (const ClusterMember& member : cluster) {
-    const Vec3 p = member.mass * at(v, member.particle);
+    const Vec3 p = member.share * at(v, member.particle);
     momentum += p;
     angular += (at(x, member.particle) - body.centre).cross(p);
   }
@@ -70,7 +70,8 @@ void push(std::span<const ClusterMember> cluster, const ClusterBody& body, const
           const VecX& x, VecX& v) {
   const ClusterMotion change{J / body.mass, body.inverse_inertia * r.cross(J)};
   for (const ClusterMember& member : cluster)
-    v.segment<3>(3 * member.particle) += change.at(at(x, member.particle) - body.centre);
+    v.segment<3>(3 * member.particle) +=
+        member.share / member.mass * change.at(at(x, member.particle) - body.centre);
 }
 
 }  // namespace drape

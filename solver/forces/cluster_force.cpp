@@ -1,6 +1,9 @@
 #include "solver/forces/cluster_force.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "solver/forces/cluster_body.h"
 
 namespace drape {
 
@@ -14,8 +17,16 @@ double cluster_stiffness(const Clusters& clusters, double young, double density)
   return 3 * young * mass / (density * moment);
 }
 
-ClusterForce::ClusterForce(Clusters clusters, double k)
-    : clusters_(std::move(clusters)), k_(k), poses_(static_cast<std::size_t>(clusters_.count())) {
+ClusterForce::ClusterForce(Clusters clusters, double k, double viscosity)
+    : clusters_(std::move(clusters)),
+      k_(k),
+      poses_(static_cast<std::size_t>(clusters_.count())),
+      viscosity_(viscosity),
+      contacts_(clusters_) {
+  if (viscosity_ > 0) {
+    viscous_ = clusters_;
+    start_ = poses_;
+  }
   for (int c = 0; c < clusters_.count(); ++c)
     for (const ClusterMember& member : clusters_[c]) {
       const auto i = static_cast<std::size_t>(member.particle);
@@ -34,13 +45,27 @@ double ClusterForce::energy(const VecX& x) const {
   return sum;
 }
 
-void ClusterForce::add_force(const VecX& x, const VecX&, VecX& f) const {
+void ClusterForce::add_force(const VecX& x, const VecX& v, VecX& f) const {
   for (int c = 0; c < clusters_.count(); ++c) {
     const ClusterPose here = pose(c, x);
     for (const ClusterMember& member : clusters_[c])
       f.segment<3>(3 * member.particle) +=
           k_ * member.share * (here.goal(member) - Vec3(x.segment<3>(3 * member.particle)));
+    if (viscosity_ == 0) continue;
+    const ClusterBody body = body_of(clusters_[c], x);
+    const ClusterMotion motion = motion_of(clusters_[c], body, x, v);
+    for (const ClusterMember& member : clusters_[c]) {
+      const Vec3 rigid = motion.at(Vec3(x.segment<3>(3 * member.particle)) - body.centre);
+      f.segment<3>(3 * member.particle) -=
+          k_ * viscosity_ * member.share * (Vec3(v.segment<3>(3 * member.particle)) - rigid);
+    }
   }
+}
+
+// Viscosity is as if the shapes at rest followed those at the start of the substep.
+void ClusterForce::take_up_viscosity(const Substep& substep) {
+  clusters_.match(substep.start, start_);
+  viscous_.take_shapes(clusters_, start_, viscosity_ / (substep.h + viscosity_), substep.start);
 }
 
 // A particle that is held does not move, and one that a body carries moves as the body gives way: the impulse on it is that of
@@ -53,8 +78,10 @@ void ClusterForce::project(Substep& substep) {
       x_free_.segment<3>(3 * static_cast<Eigen::Index>(i)) -=
           moved_.segment<3>(3 * static_cast<Eigen::Index>(i));
   x_new_ = x_free_;
-  clusters_.match(x_free_, poses_);
-  clusters_.project(poses_, goal_share(k_, substep.h), x_new_);
+  if (viscosity_ > 0 && substep.first) take_up_viscosity(substep);
+  const Clusters& shapes = viscosity_ > 0 ? viscous_ : clusters_;
+  shapes.match(x_free_, poses_);
+  shapes.project(poses_, goal_share(k_ * (1 + viscosity_ / substep.h), substep.h), x_new_);
   for (std::size_t i = 0; i < masses_.size(); ++i) {
     const auto at = 3 * static_cast<Eigen::Index>(i);
     const double gives_way = substep.mobility[i] * masses_[i];

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "solver/forces/cluster.h"
+#include "solver/forces/cluster_contacts.h"
 #include "solver/forces/force.h"
 
 namespace drape {
@@ -21,8 +22,8 @@ double cluster_stiffness(const Clusters& clusters, double young, double density)
 
 class ClusterForce final : public Force {
  public:
-  // k [1/s^2]. The particles are those of the clusters.
-  ClusterForce(Clusters clusters, double k);
+  // k [1/s^2], and the time tau of the viscosity [s]. The particles are those of the clusters.
+  ClusterForce(Clusters clusters, double k, double viscosity = 0);
 
   std::string_view name() const override { return "clusters"; }
   bool only_projects() const override { return true; }
@@ -34,16 +35,22 @@ class ClusterForce final : public Force {
                       VecX&) const override {}
   bool projects() const override { return true; }
   void project(Substep& substep) override;
+  Carriers* carriers() override { return &contacts_; }
 
  private:
   ClusterPose pose(int cluster, const VecX& x) const;
+  void take_up_viscosity(const Substep& substep);
 
   Clusters clusters_;
   std::vector<double> masses_;      // kg, of the particles; 0 of one that is in no cluster
   double k_;                        // 1/s^2
   std::vector<ClusterPose> poses_;  // of the last substep
   VecX moved_;                      // by the clusters in this substep [m]
-  VecX x_free_, x_new_;             // scratch: without that, and with what it is to be
+  double viscosity_;                // s
+  Clusters viscous_;                // with the shapes that viscosity makes of those at rest in this substep
+  std::vector<ClusterPose> start_;  // where the substep begins
+  ClusterContacts contacts_;
+  VecX x_free_, x_new_;  // scratch: without that, and with what it is to be
 };
 
 }  // namespace drape

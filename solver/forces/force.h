@@ -13,6 +13,8 @@
 
 namespace drape {
 
+class Carriers;
+
 // What damping slows: all relative motion, or only that along the connection (solver/forces/damping.h).
 enum class DampingKind { relative, axial };
 
@@ -83,6 +85,8 @@ class Force {
   virtual void begin_substep(int /*particles*/) {}
   // Takes every element in turn, once.
   virtual void project(Substep&) {}
+  // What carries its particles where they meet bodies (constraints/carriers.h); null: each is on its own.
+  virtual Carriers* carriers() { return nullptr; }
 };
 
 }  // namespace drape

@@ -29,6 +29,7 @@ void check(const SoftMaterial& m) {
   require(m.structural >= 0, "structural", m.structural, "N/m", "a stiffness is not negative");
   require(m.shear >= 0, "shear", m.shear, "N/m", "a stiffness is not negative");
   require(m.bend >= 0, "bend", m.bend, "N/m", "a stiffness is not negative");
+  require(m.viscosity >= 0, "viscosity", m.viscosity, "s", "a time is not negative");
   require(m.damping >= 0, "damping", m.damping, "N.s/m", "a damping coefficient is not negative");
 }
 

@@ -27,6 +27,8 @@ struct SoftMaterial {
   double structural = 0, shear = 0, bend = 0;  // N/m, of every spring
   double damping = 0;                          // N s/m, of every spring
   DampingKind damping_kind = DampingKind::axial;
+  double viscosity =
+      0;  // s, viscosity over stiffness, of clusters (solver/forces/cluster.h), which have no springs
 };
 
 // Throws InputError, which names the field, when a value is negative, not finite, or zero where it may not

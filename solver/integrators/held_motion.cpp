@@ -101,7 +101,7 @@ bool HeldMotion::finish(const VecX& x, const VecX& v, double h, const StepOption
       note_contacts(imbalance, options, report);
     } else {
       const Stopwatch watch(report.collide_ms);
-      contacts_->respond(contact_, x, v, pulled_, x_new_, v_new_, impulse_noise(h));
+      contacts_->respond(contact_, x, v, pulled_, {}, x_new_, v_new_, impulse_noise(h));
     }
     contacts_->settle_faces(x_new_, v_new_);
     if (!contacts_->bodies_agree(0.5)) {  // a smaller difference counts as not converged

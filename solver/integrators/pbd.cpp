@@ -25,10 +25,12 @@ void check(const ProjectionOptions& options) {
 Pbd::Pbd(System& system, Constraints& constraints, const StepOptions& options, ContactMode contact)
     : system_(system), constraints_(constraints), options_(options), contact_(contact) {
   check(options.projection);
-  for (const auto& force : system.forces())
+  for (const auto& force : system.forces()) {
+    if (Carriers* const carriers = force->carriers()) carriers_.push_back(carriers);
     if (!force->projects())
       throw InputError("integrator \"pbd\": the force '" + std::string(force->name()) +
                        "' has no position-based form; leave it out, or take \"implicit-euler\"");
+  }
 }
 
 StepReport Pbd::advance(State& state, double h) {
@@ -150,7 +152,7 @@ void Pbd::meet_bodies(const State& state, double h) {
   const double heaviest = *std::max_element(masses.begin(), masses.end());
   free_ = x_ - moved_;
   free_v_ = (free_ - state.x) / h;
-  contacts_->respond(contact_, free_, free_v_, pulled_, x_, v_,
+  contacts_->respond(contact_, free_, free_v_, pulled_, carriers_, x_, v_,
                      round_off * heaviest * h * system_.gravity_acceleration().norm());
   moved_ = x_ - free_;
   for (const MovingPin& pin : contacts_->moving_pins()) moved_.segment<3>(3 * pin.particle).setZero();

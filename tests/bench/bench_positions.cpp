@@ -1,6 +1,6 @@
 // The integrator "pbd" on sheets of 1 m that swing down from two corners: 0.2 kg/m^2, 1000 N/m, 10 uN.m, springs; steps of
 // 10 ms in 30 substeps of one iteration. Beside it the same springs by a plain loop, in the order of the mesh and in one
-// thread, as one would write it first; and implicit Euler. Strain: the largest of an edge at the end. Arguments: SIDE ...
+// thread, as one would write it first; the same sheet with faces that are clusters; and implicit Euler. Strain: the largest of an edge at the end. Arguments: SIDE ...
 // (vertices along an edge; 32, 100 and 200 unless given), --steps N (100).
 #include <cmath>
 #include <cstdio>
@@ -11,6 +11,7 @@
 #include "mesh/base/threads.h"
 #include "solver/drape.h"
 #include "solver/forces/buckling_spring.h"
+#include "solver/forces/face_clusters.h"
 #include "solver/forces/noh_jung.h"
 #include "solver/forces/tension_spring.h"
 #include "tests/bench/bench.h"
@@ -29,9 +30,9 @@ struct Hung {
   Constraints constraints;
   State state;
 
-  explicit Hung(int side)
+  explicit Hung(int side, bool clusters = false)
       : mesh(grid(side, side, 1, 1)), system(lumped_mass(mesh, fabric.area_density)), state(at_rest(mesh)) {
-    system.add(noh_jung(mesh, fabric));
+    system.add(clusters ? clustered_noh_jung(mesh, mesh, fabric) : noh_jung(mesh, fabric));
     system.add(Gravity{});
     constraints.pin({0, side - 1});
   }
@@ -53,9 +54,9 @@ double strain(const TriangleMesh& mesh, const VecX& x) {
   return largest;
 }
 
-Measured by_integrator(const char* name, int side, int steps, int thread_count) {
+Measured by_integrator(const char* name, int side, int steps, int thread_count, bool clusters = false) {
   set_threads(thread_count);
-  Hung sheet(side);
+  Hung sheet(side, clusters);
   StepOptions options{.tolerance = 1e-4};
   options.projection.substeps = substeps;
   auto stepper = make_integrator(name, sheet.system, sheet.constraints, make_linear_solver("auto"), options);
@@ -150,6 +151,8 @@ int main(int count, char** arguments) {
     };
     row("plain loop", 1, plain);
     for (int threads : {1, 2}) row("`pbd`", threads, by_integrator("pbd", side, steps, threads));
+    for (int threads : {1, 2})
+      row("`pbd`, clusters", threads, by_integrator("pbd", side, steps, threads, true));
     for (int threads : {1, 2})
       row("`implicit-euler`", threads, by_integrator("implicit-euler", side, steps, threads));
   }

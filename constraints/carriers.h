@@ -1,0 +1,57 @@
+// What carries particles where they meet a body: sets of them that are pushed as one, such as clusters that keep their shape
+// (solver/forces/cluster_contacts.h). They are asked after ContactStep::respond has found what each particle meets by itself,
+// and change the free motion of all that they carry; then the particles are looked at again, for what is left to each.
+#pragma once
+
+#include <vector>
+
+#include "constraints/obstacle.h"
+#include "constraints/response.h"
+
+namespace drape {
+
+// A particle that meets a body.
+struct CarriedContact {
+  int particle, body;
+  Vec3 normal;         // unit, out of the body
+  double gap;          // m, to the surface offset by the margin when the step begins
+  Vec3 body_velocity;  // m/s, in the step
+  Friction friction;
+  double restitution;
+  // N s, which the carriers give to the particle, and the body gets the opposite. Carriers find those of their own particles, and
+  // take the others as they are.
+  Vec3 impulse = Vec3::Zero();
+};
+
+// How a body moves in the step without the impulses of carriers.
+struct CarriedBody {
+  bool reacts = false;           // else its velocity is that of each contact, whatever is given to it
+  Vec3 centre = Vec3::Zero();    // m, of mass
+  Vec3 velocity = Vec3::Zero();  // m/s, of the centre
+  Vec3 spin = Vec3::Zero();      // rad/s
+  Vec3 velocity_before = Vec3::Zero(), spin_before = Vec3::Zero();  // when the step begins
+  double inverse_mass = 0;                                          // 1/kg
+  Mat3 inverse_inertia = Mat3::Zero();                              // 1/(kg m^2)
+};
+
+// The motion of the particles in the step as it would be without bodies; carriers change it.
+struct CarriedMotion {
+  ContactMode mode;
+  double h;                       // s
+  double recovery_speed;          // m/s, at which a particle comes out of a body at most
+  const std::vector<char>& held;  // by particle
+  const VecX& start;              // m
+  const std::vector<CarriedBody>& bodies;
+  VecX& before;  // m/s, when the step begins: an impact changes it
+  VecX& x;       // m, at the end
+  VecX& v;       // m/s, at the end
+};
+
+class Carriers {
+ public:
+  virtual ~Carriers() = default;
+  // Adds the impulses to `met`; true when there are any.
+  virtual bool carry(std::vector<CarriedContact>& met, const CarriedMotion& motion) = 0;
+};
+
+}  // namespace drape
