@@ -101,6 +101,8 @@ void SelfContacts::renumber(const std::vector<int>& particle_of) {
 // keep them apart, by holding them together.
 void SelfContacts::part(const Parting& parting) {
   for (SelfFace& face : faces_) face.particles = parting.face(face.particles);
+  for (SelfSegment& segment : segments_)
+    for (int& particle : segment.particles) particle = parting.number[static_cast<std::size_t>(particle)];
   if (rest_.size() > 0) {
     const VecX rest = rest_;
     const std::vector<char> tangled = tangled_;
