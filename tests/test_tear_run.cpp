@@ -259,6 +259,36 @@ TEST_CASE("parts beside a cloth that tears keep their places, pins, masses and j
   CHECK(sum(all.system->masses()) == Approx(mass).epsilon(1e-13));
 }
 
+TEST_CASE("a rope is held up by another while cloth beside them tears", "[tear]") {
+  constexpr int nx = 5, nz = 9;
+  Assembly all(Vec3::Zero());
+  ClothPart cloth = part(ClothModel::noh_jung, quad_sheet(nx, nz, 0.02));
+  cloth.self_contact = SelfContactOptions{};
+  const Cloth& strip = all.add(std::move(cloth));
+  all.constraints->pin(row(strip, nx, 0));
+  all.constraints->pin_along(row(strip, nx, nz - 1),
+                             Motion::constant({0, 0, 1}, Vec3::Zero(), Vec3::Zero(), 0, 0.1), all.state.x);
+  const RopeMaterial material{.bend = 1e-6, .radius = 2e-3};
+  const auto rope = [&](const std::string& name, const Vec3& middle, const Vec3& way) {
+    std::vector<Vec3> points;
+    for (int k = -2; k <= 2; ++k) points.push_back(middle + 0.02 * k * way);
+    all.add(RopePart{.name = name, .points = points, .material = material, .self_contact = RopeContact{}});
+  };
+  rope("lower", {1, 0, 0}, {1, 0, 0});
+  all.constraints->pin({all.cloths[1].first_particle, all.cloths[1].end_particle - 1});
+  rope("upper", {1.003, 0.01, 0.003}, {0, 0, 1});
+  const auto middle = [&](std::size_t k) { return all.cloths[k].first_particle + 2; };
+  for (int i = all.cloths[2].first_particle; i < all.cloths[2].end_particle; ++i)
+    all.state.v[3 * i + 1] = -0.3;
+  all.use("implicit-euler", "mpcg");
+  int torn = 0;
+  for (int step = 0; step < 60; ++step) torn += all.advance(0.005).torn;
+  REQUIRE(torn > 0);
+  REQUIRE(all.cloths[0].end_particle > nx * nz);
+  CHECK(all.state.x[3 * all.cloths[2].first_particle + 1] < -0.01);  // its ends go on
+  CHECK(all.state.x[3 * middle(2) + 1] > all.state.x[3 * middle(1) + 1]);
+}
+
 TEST_CASE("limits that make no sense are refused, with what and where", "[tear]") {
   const TriangleMesh mesh = quad_sheet(3, 3, 0.1);
   const auto add = [](ClothPart cloth) { Assembly().add(std::move(cloth)); };
