@@ -171,10 +171,12 @@ void SelfContacts::look_at_ends(std::vector<Meeting>::iterator begin,
   for (auto m = begin; m != end; ++m) m->approach.last = nearest(m->who.edges, corners(ahead_, m->who));
 }
 
-// Whether an end of one of two edges, one of which is a rope's, is nearly as near to what the other edge is of: the contact
-// of that vertex bears it then. Those of vertices are in touching_, sorted by their vertices.
+// Whether an end of one of two edges, one of which is a rope's and one a cloth's, is nearly as near to what the other edge is
+// of: the contact of that vertex bears it then. Those of vertices are in touching_, sorted by their vertices. Where two
+// ropes cross, their edges meet in any case: or they would sink into each other wherever no vertex is near.
 bool SelfContacts::is_borne_otherwise(const Meeting& edges) const {
   constexpr double nearly = 0.98;
+  if (ropes_->are_ropes(edges.who)) return false;
   const Encounter& e = edges.who;
   for (std::size_t k = 0; k < 4; ++k) {
     const int other = sheet_[one_of(e, k < 2)];

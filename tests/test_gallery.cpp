@@ -54,6 +54,7 @@ const Part gallery[] = {
     {"nails", 0.5, 1},            // hangs over the nails
     {"needle", 0.3, 1},           // is driven in at 0.1 s and drawn back
     {"net", 0.9, 1},              // the ball comes to it after 0.32 s
+    {"net-on-table", 1.2, 4},     // the ball lies on the table
     {"noh-jung-100", 0.5, 1},
     {"noh-jung-200", 0.5, 1},
     {"pocket", 0.4, 4},           // comes apart in 0.3 s
@@ -65,6 +66,7 @@ const Part gallery[] = {
     {"rope-box", 1.0, 2},         // swings through below its pin
     {"rope-chain", 0.6, 2},
     {"rope-drum", 1.5, 2},        // is hauled over the drum
+    {"rope-on-sheet", 0.7, 4},    // the first coil lies
     {"rope-sheet", 0.6, 2},       // the ball has come to the sheet
     {"rotating-ball", 4.8, 1},    // the ball turns from 3 s on, the fastest at 4.5 s
     {"sheet-clusters", 0.6, 2},   // swings down

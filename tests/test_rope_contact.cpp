@@ -205,12 +205,12 @@ TEST_CASE("a rope sticks on a slope below its friction and slides as Coulomb say
 TEST_CASE("a rope drawn over a cylinder of cloth pulls exp(mu phi) times as hard as what holds it back",
           "[rope-contact]") {
   constexpr double R = 0.1, mass = 1;  // m, kg
-  constexpr int sides = 96;
+  constexpr int sides = 106;  // no multiple of the rope's segments, or all would pass its edges at once
   for (const double mu : {0.2, 0.4}) {
     TriangleMesh drum;
-    const std::vector<Vec3> axis = straight({0, 0, -0.06}, {0, 0, 0.06}, 12);
+    const std::vector<Vec3> axis = straight({0, 0, -0.02}, {0, 0, 0.02}, 4);
     drum.positions = tube_positions(axis, R, sides);
-    drum.triangles = tube_triangles(13, sides);
+    drum.triangles = tube_triangles(5, sides);
     Meeting all;
     all.add_sheet(drum, mu);
     all.hold(0);
@@ -219,7 +219,7 @@ TEST_CASE("a rope drawn over a cylinder of cloth pulls exp(mu phi) times as hard
     for (int k = 0; k <= 96; ++k)
       course.emplace_back(-r * std::cos(M_PI * k / 96), r * std::sin(M_PI * k / 96), 0);
     course.emplace_back(r, -0.2, 0);
-    const int segments = static_cast<int>(std::lround(length_of(course) / (M_PI * r / 24)));
+    const int segments = static_cast<int>(std::lround(length_of(course) / (M_PI * r / 49)));
     all.add_rope(evenly_divided(course, segments), mu,
                  {.mass_per_length = 2e-3, .stretch = 5e3, .bend = 0, .damping = 5, .radius = radius});
     const int first = all.cloths[1].first_particle, last = first + segments;
@@ -231,15 +231,15 @@ TEST_CASE("a rope drawn over a cylinder of cloth pulls exp(mu phi) times as hard
                                              .centre = hook,
                                              .gravity = {0, -g, 0}}});
     all.constraints->pin_to_body({first}, 0, all.state.x);
-    all.constraints->pin_along({last}, Motion::constant({0, -0.05, 0}, Vec3::Zero(), Vec3::Zero()),
+    all.constraints->pin_along({last}, Motion::constant({0, -0.1, 0}, Vec3::Zero(), Vec3::Zero()),
                                all.state.x);
-    all.use("implicit-euler", "eigen-ldlt");
+    all.use("implicit-euler", "auto", {.tolerance = 1e-6});
     double low = 0, high = 0;
-    for (int n = 0; n < 800; ++n) {
+    for (int n = 0; n < 300; ++n) {
       all.go(2e-3, 1);
-      if (n < 400) continue;
-      low += all.tension(1, 2) / 400;
-      high += all.tension(1, segments - 3) / 400;
+      if (n < 150) continue;
+      low += all.tension(1, 2) / 150;
+      high += all.tension(1, segments - 3) / 150;
     }
     CAPTURE(mu, low, high, high / low);
     CHECK(low == Approx(g * mass).epsilon(0.01));
@@ -282,7 +282,10 @@ TEST_CASE("a rope that is thrown at a sheet does not pass, however fast", "[rope
     std::vector<Vec3> points;
     for (int k = 0; k <= 30; ++k)
       points.emplace_back(-0.1 + 0.2 * k / 30, 0.05 + 0.01 * std::sin(0.7 * k), 0.02 * std::cos(0.5 * k));
-    all.add_rope(points);
+    if (std::string_view(name) == "symplectic-euler")  // soft enough for such steps
+      all.add_rope(points, 0.3, {.mass_per_length = 0.05, .stretch = 50, .bend = 1e-6, .radius = radius});
+    else
+      all.add_rope(points);
     all.use(name, "auto", {.tolerance = 1e-4});
     all.throw_at(1, {0.5, -10, 0.2});
     for (int n = 0; n * h < 0.1; ++n) {
@@ -312,23 +315,23 @@ TEST_CASE("ropes that collide keep their momentum", "[rope-contact]") {
     const double size = before.norm() * 0.1;  // of the momentum about the origin
     double energy = all.system->total_energy(all.state);
     int met = 0;
-    for (int n = 0; n < 100; ++n) {
-      met = std::max(met, all.go(2e-3, 1).self_contacts);
+    for (int n = 0; n < 300; ++n) {
+      met = std::max(met, all.go(5e-4, 1).self_contacts);
       const double now = all.system->total_energy(all.state);
       CHECK(now < energy * (1 + 1e-3));
       energy = now;
     }
     CHECK(met > 0);
     CHECK((all.momentum() - before).norm() < 1e-7 * before.norm());
-    CHECK((all.momentum_about_origin() - about).norm() < 0.02 * size);
-    double lower = 0;  // it was pushed
+    CHECK((all.momentum_about_origin() - about).norm() < 0.02 * size);  // of first order in the step
+    double lower = 0;                                                   // it was pushed
     for (int i = 0; i < all.cloths[0].end_particle; ++i)
       lower += all.system->masses()[i] * all.state.v[3 * i + 1];
     CHECK(lower < 0.2 * before[1]);
   }
 }
 
-TEST_CASE("what follows along a rope does not push, and a loop that is drawn tight does", "[rope-contact]") {
+TEST_CASE("what follows along a rope does not push, and a knot that is drawn tight does", "[rope-contact]") {
   SECTION("straight, and bent to twice the radius") {
     for (const double bend : {0.0, 1 / (2 * radius)}) {  // 1/m
       CAPTURE(bend);
@@ -349,29 +352,31 @@ TEST_CASE("what follows along a rope does not push, and a loop that is drawn tig
       CHECK(all.go(1e-3, 1).self_contacts == 0);
     }
   }
-  SECTION("a loop") {
-    for (const int segments : {40, 160}) {
+  SECTION("a knot") {
+    for (const int segments : {60, 240}) {
       CAPTURE(segments);
-      std::vector<Vec3> course;  // a turn and a half of a wide screw, drawn out at both ends
-      course.emplace_back(-0.2, -0.012, 0.05);
-      for (int k = 0; k <= 48; ++k) {
-        const double turn = 2 * M_PI * k / 48;
-        course.emplace_back(0.05 * std::sin(turn), -0.012 + 0.024 * k / 48, 0.05 * std::cos(turn));
-      }
-      course.emplace_back(0.2, 0.012, 0.05);
+      constexpr double a = 0.02;  // m
+      const auto trefoil = [&](double t) {
+        return Vec3(
+            a * Vec3(std::sin(t) + 2 * std::sin(2 * t), std::cos(t) - 2 * std::cos(2 * t), -std::sin(3 * t)));
+      };
+      std::vector<Vec3> course = {Vec3::Zero()};  // an overhand knot, which is a trefoil that is cut open
+      for (int k = 1; k < 60; ++k) course.push_back(trefoil(M_PI / 3 + 2 * M_PI * k / 60));
+      const Vec3 out = trefoil(M_PI / 3).normalized(), way = (course[2] - course[1]).normalized();
+      course[0] = course[1] + 0.06 * out + 0.1 * way;
+      course.push_back(course.back() + 0.06 * out - 0.1 * way);
       Meeting all(Vec3::Zero());
       all.add_rope(evenly_divided(course, segments));
-      const auto out = [](double speed) {
-        return Motion::constant({speed, 0, 0}, Vec3::Zero(), Vec3::Zero());
-      };
-      all.constraints->pin_along({0}, out(-0.2), all.state.x);
-      all.constraints->pin_along({segments}, out(0.2), all.state.x);
+      const auto draw = [](const Vec3& v) { return Motion::constant(v, Vec3::Zero(), Vec3::Zero()); };
+      all.constraints->pin_along({0}, draw(0.4 * way), all.state.x);
+      all.constraints->pin_along({segments}, draw(-0.4 * way), all.state.x);
       all.use("implicit-euler", "auto", {.tolerance = 1e-5});
       int met = 0;
       for (int n = 0; n < 100; ++n) {
         met = std::max(met, all.go(5e-3, 1).self_contacts);
-        REQUIRE(all.between(0, 0, 5 * radius) > 1.7 * radius);
+        REQUIRE(all.between(0, 0, 5 * radius) > 1.6 * radius);
       }
+      CHECK(all.between(0, 0, 5 * radius) < 2.1 * radius);  // the knot is still there
       CHECK(met > 0);
     }
   }
