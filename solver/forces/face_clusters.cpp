@@ -103,11 +103,14 @@ void FaceClusterForce::begin_substep(int particles) {
 }
 
 void FaceClusterForce::project(Substep& substep) {
-  colours_.run([&](int k) {
-    const auto face = static_cast<std::size_t>(k);
-    if (substep.first) pulls_[face].setZero();
-    relax(faces_[face], substep, pulls_[face]);
-  });
+  const auto relax_range = [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) {
+      const auto face = static_cast<std::size_t>(k);
+      if (substep.first) pulls_[face].setZero();
+      relax(faces_[face], substep, pulls_[face]);
+    }
+  };
+  colours_.run(relax_range, relax_range);
 }
 
 void FaceClusterForce::relax(const FaceCluster& face, Substep& substep, Pull& pull) const {
