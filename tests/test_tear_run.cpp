@@ -234,6 +234,7 @@ TEST_CASE("parts beside a cloth that tears keep their places, pins, masses and j
   const int joined = 2 * nx;  // of the strip
   all.add(RopePart{.points = {all.state.x.segment<3>(3 * joined), Vec3(-0.1, 0, 0.04), Vec3(-0.2, 0, 0.04)},
                    .first = joined});
+  all.constraints->add(Obstacle{.shape = Sphere{{0, -9, 0}, 0.1}});
   all.use("implicit-euler", "mpcg");
   const auto of = [&](std::size_t k, const VecX& x) {
     const Cloth& c = all.cloths[k];
@@ -251,6 +252,15 @@ TEST_CASE("parts beside a cloth that tears keep their places, pins, masses and j
   CHECK((of(2, all.state.x) - soft).lpNorm<Eigen::Infinity>() < 1e-9);  // nothing acts on it
   const Vec3 end = all.state.x.segment<3>(3 * (all.cloths[1].first_particle + 12));
   CHECK((end - start - Vec3(0, 0, 0.01 * all.state.time)).norm() < 1e-12);
+  std::vector<Triangle> faces;  // of both cloths, one after the other
+  for (const std::size_t k : {0, 1})
+    for (Triangle t : all.cloths[k].mesh.triangles) {
+      for (int& v : t) v += all.cloths[k].first_particle;
+      faces.push_back(t);
+    }
+  REQUIRE(all.constraints->faces().all().size() >= faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    CHECK(all.constraints->faces().all()[f].particles == faces[f]);
   const std::vector<int>& pinned = all.constraints->pinned();
   for (const int v : {0, 3})
     CHECK(std::binary_search(pinned.begin(), pinned.end(), all.cloths[1].first_particle + v));
