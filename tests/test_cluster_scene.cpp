@@ -13,17 +13,17 @@ namespace {
 const std::string cloth = "[[cloth]]\nmesh = \"sheet-625.obj\"\nclusters = \"faces\"\n";  // three lines
 const std::string soft = "[[soft]]\nparticles = [4, 3, 5]\nspacing = \"10 cm\"\n";        // three lines
 
-Scene read(const std::string& text) {
+Scene scene_of(const std::string& text) {
   return read_scene(parse_toml(text, "scene.toml"), {}, source_dir() + "/data/meshes", "scene.toml");
 }
 
 }  // namespace
 
 TEST_CASE("a scene says that faces are clusters, and what viscosity soft ones have", "[clusters]") {
-  CHECK(read(cloth).cloths[0].clusters);
-  CHECK_FALSE(read("[[cloth]]\nmesh = \"a.obj\"\n").cloths[0].clusters);
-  CHECK(read(cloth + "model = \"woven\"\n").cloths[0].clusters);
-  CHECK(read(soft + "clusters = \"cells\"\nviscosity = \"5 ms\"\n").softs[0].material.viscosity ==
+  CHECK(scene_of(cloth).cloths[0].clusters);
+  CHECK_FALSE(scene_of("[[cloth]]\nmesh = \"a.obj\"\n").cloths[0].clusters);
+  CHECK(scene_of(cloth + "model = \"woven\"\n").cloths[0].clusters);
+  CHECK(scene_of(soft + "clusters = \"cells\"\nviscosity = \"5 ms\"\n").softs[0].material.viscosity ==
         Approx(0.005));
 }
 
@@ -41,7 +41,7 @@ TEST_CASE("a mistake about clusters is told with its line", "[clusters]") {
       {soft + "clusters = \"cells\"\nviscosity = -1\n", "scene.toml:5:", "viscosity"},
       {soft + "clusters = \"faces\"\n", "scene.toml:4:", "expected \"cells\""},
   };
-  check_mistakes(table, read);
+  check_mistakes(table, scene_of);
 }
 
 TEST_CASE("clusters of a scene need pbd, and are run and recorded by it", "[clusters]") {

@@ -1,0 +1,157 @@
+// The response of bodies to a free motion, and what carriers (constraints/carriers.h) take of it.
+#include <algorithm>
+#include <utility>
+
+#include "constraints/contact_step.h"
+
+namespace drape {
+namespace {
+
+bool before(const CarriedContact& a, const CarriedContact& b) {
+  return std::pair(a.particle, a.body) < std::pair(b.particle, b.body);
+}
+
+// Whether a body that reacts meets the particle by a carrier.
+bool is_carried(const std::vector<CarriedContact>& met, const std::vector<CarriedBody>& bodies, int particle,
+                int body) {
+  if (met.empty() || !bodies[body].reacts) return false;
+  CarriedContact wanted{};
+  wanted.particle = particle, wanted.body = body;
+  const auto place = std::lower_bound(met.begin(), met.end(), wanted, before);
+  return place != met.end() && !before(wanted, *place) && !place->impulse.isZero(0);
+}
+
+// Adds the contact to those that are sorted by particle and body; of the same two, the impulse stays.
+void note(CarriedContact contact, std::vector<CarriedContact>& met) {
+  const auto place = std::lower_bound(met.begin(), met.end(), contact, before);
+  if (place == met.end() || before(contact, *place)) {
+    met.insert(place, contact);
+    return;
+  }
+  contact.impulse = place->impulse;
+  *place = contact;
+}
+
+}  // namespace
+
+// The bodies as carriers see them: without what these gave them in the last response, which may be that of the step before.
+void ContactStep::see_bodies() {
+  const std::vector<MovingBody>& bodies = constraints_->bodies_;
+  std::vector<CarriedBody>& seen = constraints_->carried_bodies_;
+  auto& given = constraints_->carried_by_;
+  seen.resize(bodies.size());
+  given.resize(bodies.size(), {Vec3::Zero(), Vec3::Zero()});
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const ReactingBody* const body = bodies[b].reacting();
+    seen[b] = {};
+    if (!body) continue;
+    const Mat3 inverse_inertia = body->inverse_inertia();
+    seen[b] = {.reacts = true,
+               .centre = body->centre(),
+               .velocity = body->free_velocity() + body->met_velocity() - given[b].first / body->mass(),
+               .spin = body->free_spin() + body->met_spin() - inverse_inertia * given[b].second,
+               .velocity_before = body->velocity(),
+               .spin_before = body->spin(),
+               .inverse_mass = 1 / body->mass(),
+               .inverse_inertia = inverse_inertia};
+  }
+}
+
+// Lets carriers take what their particles meet, and then the particles what is left.
+void ContactStep::carry(ContactMode mode, const VecX& x, const VecX& v,
+                        const std::vector<Carriers*>& carriers, VecX& x_new, VecX& v_new) {
+  if (carriers.empty()) return;
+  StepMotion& step = constraints_->step_;
+  ParticleContacts& contacts = constraints_->contacts_;
+  std::vector<CarriedContact>& met = constraints_->carried_;
+  see_bodies();
+  // What was met in an earlier round stays known, also where a body that reacts now gives way faster than the particle comes:
+  // the impact has made it do so.
+  for (CarriedContact& c : met)
+    c.body_velocity = constraints_->bodies_[c.body].velocity(step.place(c.particle));
+  contacts.each_response([&](const ContactResponse& r) {
+    const Obstacle& obstacle = constraints_->bodies_[r.body].obstacle();
+    note({r.particle, r.body, r.normal, r.gap, r.body_velocity, obstacle.friction, obstacle.restitution},
+         met);
+  });
+  if (met.empty()) return;
+  constraints_->carried_x_ = x;
+  constraints_->carried_v_ = v;
+  constraints_->carried_before_ = step.v;
+  const CarriedMotion motion{mode,
+                             step.h,
+                             contacts.recovery_speed(),
+                             step.held,
+                             step.x,
+                             constraints_->carried_bodies_,
+                             constraints_->carried_before_,
+                             constraints_->carried_x_,
+                             constraints_->carried_v_};
+  bool any = false;
+  for (Carriers* const one : carriers) any = one->carry(met, motion) || any;
+  if (!any) return;
+  step.v.swap(constraints_->carried_before_);
+  contacts.respond_again(mode, constraints_->bodies_, step, constraints_->carried_x_,
+                         constraints_->carried_v_, x_new, v_new);
+  step.v.swap(constraints_->carried_before_);
+  // Where a body reacts, the carriers know better than the plane how it moves with what they push it by.
+  for (const CarriedContact& c : met) {
+    if (!constraints_->carried_bodies_[c.body].reacts || c.impulse.isZero(0)) continue;
+    x_new.segment<3>(3 * c.particle) = constraints_->carried_x_.segment<3>(3 * c.particle);
+    v_new.segment<3>(3 * c.particle) = constraints_->carried_v_.segment<3>(3 * c.particle);
+  }
+}
+
+// Gives the bodies what carriers took of them; v: without bodies.
+void ContactStep::push_carried(const VecX& v, const VecX& x_new) {
+  const StepMotion& step = constraints_->step_;
+  for (auto& [impulse, moment] : constraints_->carried_by_) {
+    impulse.setZero();
+    moment.setZero();
+  }
+  for (const CarriedContact& c : constraints_->carried_) {
+    if (c.impulse.isZero(0)) continue;
+    const Vec3 place = x_new.segment<3>(3 * c.particle);
+    const CarriedBody& body = constraints_->carried_bodies_[c.body];
+    auto& [impulse, moment] = constraints_->carried_by_[c.body];
+    impulse -= c.impulse;
+    moment -= (place - (body.centre + step.h * body.velocity)).cross(c.impulse);
+    constraints_->step_.work += c.body_velocity.dot(c.impulse);
+    constraints_->bodies_[c.body].push(-c.impulse, place,
+                                       (c.body_velocity - Vec3(v.segment<3>(3 * c.particle))).norm());
+  }
+}
+
+void ContactStep::respond(ContactMode mode, const VecX& x, const VecX& v, const VecX& pulled,
+                          const std::vector<Carriers*>& carriers, VecX& x_new, VecX& v_new, double noise) {
+  const StepMotion& step = constraints_->step_;
+  const PinSet& pins = constraints_->pins_;
+  for (MovingBody& body : constraints_->bodies_) body.begin_corrections();
+  constraints_->carried_.clear();
+  bool moved = false;
+  for (bool again = true; again; moved = moved || again) {
+    constraints_->contacts_.respond(mode, constraints_->bodies_, step, x, v, x_new, v_new);
+    carry(mode, x, v, carriers, x_new, v_new);
+    clear_impulses();
+    push_carried(v, x_new);
+    constraints_->contacts_.each_response([&](const ContactResponse& r) {
+      if (is_carried(constraints_->carried_, constraints_->carried_bodies_, r.particle, r.body)) return;
+      constraints_->step_.work += r.body_velocity.dot(r.impulse);
+      constraints_->bodies_[r.body].push(-r.impulse, r.place, r.approach);
+    });
+    receive_faces(v_new);
+    for (const MovingPin& pin : moving_pins()) {
+      const Vec3 brought = pins.velocity(pin.particle) - step.velocity(pin.particle);
+      receive_pin(pin, pulled.segment<3>(3 * pin.particle) + step.mass(pin.particle) * brought);
+    }
+    again = move_bodies(noise);
+  }
+  if (!moved) return;
+  for (const MovingPin& pin : moving_pins()) {  // the body that carries them has changed its motion
+    const Vec3 velocity = pins.velocity(pin.particle);
+    x_new.segment<3>(3 * pin.particle) = step.place(pin.particle) + step.h * velocity;
+    v_new.segment<3>(3 * pin.particle) = velocity;
+  }
+}
+
+}  // namespace drape
