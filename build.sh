@@ -347,7 +347,7 @@ pictures() {
   get_required python3-scipy
   say "making the motion of a body"
   "$python" data/meshes/make_motion.py || die "the motion could not be made, see above"
-  for scene in bias boxes-stack choi-ko-{100,200} dressed-turn fast-ball funnel layers ls-ball-{0,09} nails net net-on-table noh-jung-{100,200} poncho poncho-sewn rope-{box,chain,drum,on-sheet,sheet} rotating-ball sheet-torn skirt-sewn sleeve-twist \
+  for scene in bias boxes-stack choi-ko-{100,200} dressed-turn fast-ball funnel layers ls-ball-{0,09} nails net net-on-table noh-jung-{100,200} poncho poncho-sewn rope-{box,chain,drum,on-sheet,sheet} rotating-ball sheet-{clusters,torn} skirt-sewn sleeve-twist \
     soft-{bowl,sphere,stack} stack tablecloth-pull tee towel; do
     say "running $scene into $out/$scene"
     build/release/drape simulate "data/scenes/$scene.toml" --out "$out/$scene" || die "$scene failed, see above"
@@ -372,6 +372,7 @@ pictures() {
   draw rope-on-sheet 1200x440 30,30 1,25,38,last rope-on-sheet
   draw net-on-table 1200x440 30,20 1,25,100,last net-on-table
   draw rope-sheet 1200x440 -25,14 1,20,40,last rope-sheet
+  draw sheet-clusters 1200x400 -25,14 10,25,35,last sheet-clusters
   draw sheet-torn 1200x400 120,50 1,21,24,last sheet-torn
   draw boxes-stack 1200x440 -25,14 1,20,40,last boxes-stack
   draw rotating-ball 1200x340 -20,10 76,101,114,last rotating-ball
