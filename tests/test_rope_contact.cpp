@@ -435,7 +435,7 @@ TEST_CASE("a rope that starts through a sheet comes out of it", "[rope-contact]"
   for (const Vec3& x : all.points(1)) CHECK(x[1] > 0);  // on the side of the heavier part
 }
 
-TEST_CASE("a rope without a radius, and with a friction that makes no sense, is refused", "[rope-contact]") {
+TEST_CASE("a friction of a rope that makes no sense is refused", "[rope-contact]") {
   Assembly all;
   CHECK_THROWS_WITH(all.add(RopePart{.points = straight(Vec3::Zero(), {1, 0, 0}, 3),
                                      .self_contact = RopeContact{.friction = -1}}),
