@@ -39,8 +39,8 @@ struct Assembly {
   State state;
   // The states from before particles became one or parted; they are kept because arrays may still look at them.
   std::vector<State> outgrown;
-  bool keep_outgrown =
-      true;  // false: none of them is kept where particles part, because nothing looks at them
+  // false: none of them is kept where particles part, because nothing looks at them.
+  bool keep_outgrown = true;
   // Makes the integrator, at first and again whenever particles have become one or parted.
   MakeIntegrator make_integrator;
   // Energy that seams have given so far [J]: by their pull, and to the cloth when they are merged.

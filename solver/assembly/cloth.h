@@ -59,8 +59,8 @@ struct ClothPart {
   // cloth, 0 of the others.
   std::optional<double> imperfection = {};
   std::vector<SeamPlan> seams = {};
-  bool clusters =
-      false;  // whether each face is a cluster in place of what stretches (solver/forces/face_clusters.h)
+  // Whether each face is a cluster in place of what stretches (solver/forces/face_clusters.h).
+  bool clusters = false;
   std::optional<SelfContactOptions> self_contact = {};  // unset: the cloth passes through cloth
   // The strain l / L - 1 of an edge above which the cloth tears there (solver/assembly/tear_rule.h); unset: it never
   // tears.
