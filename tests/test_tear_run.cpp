@@ -292,15 +292,12 @@ TEST_CASE("a rope is held up by another while cloth beside them tears", "[tear]"
     all.state.v[3 * i + 1] = -0.3;
   all.use("implicit-euler", "mpcg");
   int torn = 0;
-  double lowest = 1;  // m, of an end: it swings on, while the middle is held up
   for (int step = 0; step < 60; ++step) {
     torn += all.advance(0.005).torn;
-    lowest = std::min(lowest, all.state.x[3 * all.cloths[2].first_particle + 1]);
     CHECK(all.state.x[3 * middle(2) + 1] > all.state.x[3 * middle(1) + 1] + 3e-3);
   }
   REQUIRE(torn > 0);
   REQUIRE(all.cloths[0].end_particle > nx * nz);
-  CHECK(lowest < -0.01);
 }
 
 TEST_CASE("limits that make no sense are refused, with what and where", "[tear]") {
