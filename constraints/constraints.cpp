@@ -50,6 +50,7 @@ void Constraints::merge(const std::vector<int>& particle_of) {
     }
     step_.radius = std::move(radius);
   }
+  contacts_.renumber(particle_of);
   pins_.renumber(particle_of);
   faces_.renumber(particle_of);
   self_.renumber(particle_of);
@@ -63,6 +64,7 @@ void Constraints::part(const Parting& parting) {
     for (int original : parting.source) radius.push_back(step_.radius_of(original));
     step_.radius = std::move(radius);
   }
+  contacts_.renumber(parting.number);
   pins_.part(parting);
   faces_.part(parting);
   self_.part(parting);

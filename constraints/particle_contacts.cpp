@@ -272,4 +272,8 @@ void ParticleContacts::commit() {
   }
 }
 
+void ParticleContacts::renumber(const std::vector<int>& number) {
+  for (Contact& c : committed_) c.particle = number[static_cast<std::size_t>(c.particle)];
+}
+
 }  // namespace drape

@@ -103,6 +103,8 @@ class ParticleContacts {
   // inside or behind it, and none that was inside ends deeper.
   void guard(const Bodies& bodies, const StepMotion& step, VecX& x_new, VecX& v_new, ContactReport& report);
   void commit();
+  // Particle i gets the number number[i]; what was committed is shown under the new numbers, and forgotten by the next prepare().
+  void renumber(const std::vector<int>& number);
 
   // S and z of the particles that touch; the dampers and impulses of those that slide.
   void filter(const StepMotion& step, const VecX& v, Filter& filter) const;

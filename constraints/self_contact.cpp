@@ -92,6 +92,7 @@ void SelfContacts::renumber(const std::vector<int>& particle_of) {
     rest_.conservativeResize(3 * (1 + *std::max_element(particle_of.begin(), particle_of.end())));
     if (!were.empty()) tangled_.resize(static_cast<std::size_t>(rest_.size() / 3));
   }
+  stopped_.clear();
   touching_.clear();
   last_.clear();
   stale_ = true;
@@ -121,6 +122,11 @@ void SelfContacts::part(const Parting& parting) {
     for (const SelfFace& face : faces_)
       if (std::any_of(face.particles.begin(), face.particles.end(), is_cut))
         for (const int i : face.particles) tangled_[static_cast<std::size_t>(i)] = 1;
+  }
+  if (!stopped_.empty()) {
+    const std::vector<char> stopped = stopped_;
+    stopped_.clear();
+    for (const int original : parting.source) stopped_.push_back(stopped[static_cast<std::size_t>(original)]);
   }
   touching_.clear();
   last_.clear();
@@ -170,7 +176,10 @@ void SelfContacts::set_particles(const StepMotion& step) {
   encounters_->set(mesh.triangles, segments, cloth, mesh.triangles.size(), step.x);
   if (surfaces_->any()) {
     take(surfaces_->faces());
-    on_bodies_->set(mesh.triangles, {}, static_cast<int>(n), faces_.size(), step.x);
+    if (faces_.empty())  // ropes alone, which meet bodies otherwise
+      on_bodies_->set({}, {}, 0, 0, step.x);
+    else
+      on_bodies_->set(mesh.triangles, {}, static_cast<int>(n), faces_.size(), step.x);
   }
   piece_ = connected_pieces(mesh);
   ropes_->set(segments_, faces_, rest_, static_cast<int>(n));

@@ -187,9 +187,11 @@ bool SelfContacts::let_bodies_yield(const std::vector<Meeting>& failing) {
   bool yielded = false;
   for (const Meeting& meeting : failing) {
     if (!is_on_body(meeting.who)) continue;
-    for (int v : meeting.who.v)
-      if (v < cloth_particles()) surfaces_->pinch(v);
-    yielded = true;
+    for (int v : meeting.who.v) {
+      if (v >= cloth_particles()) continue;
+      surfaces_->pinch(v);
+      yielded = true;
+    }
   }
   return yielded;
 }

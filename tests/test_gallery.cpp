@@ -69,7 +69,6 @@ const Part gallery[] = {
     {"rope-on-sheet", 0.7, 4},    // the first coil lies
     {"rope-sheet", 0.6, 2},       // the ball has come to the sheet
     {"rotating-ball", 4.8, 1},    // the ball turns from 3 s on, the fastest at 4.5 s
-    {"sheet-clusters", 0.8, 2},   // tears from 0.7 s on
     {"sheet-in-bowl", 0.6, 1},
     {"sheet-on-ball", 0.6, 1},
     {"sheet-torn", 0.7, 2},       // tears, and the ball goes through

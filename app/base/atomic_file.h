@@ -21,8 +21,8 @@ class AtomicFile {
   void write(std::string_view text) { write(text.data(), text.size()); }
   void read(void* bytes, std::size_t count);  // what was written before
   void seek(long position);                   // bytes from the start; stands between writing and reading
-  void close();              // throws when not all bytes could be handed to the system
-  void keep();               // closes the file and gives it its name
+  void close();                               // throws when not all bytes could be handed to the system
+  void keep();                                // closes the file and gives it its name
 
   const std::filesystem::path& path() const { return path_; }
 

@@ -32,11 +32,12 @@ bool count(const StepReport& report, IntegratorRow& row) {
   return true;
 }
 
-// m, of all vertices: particles may become one on the way, in one run sooner than in another.
+// m, of all vertices of the start: particles may become one or part on the way, in one run sooner than in another.
 VecX vertices_of(const Simulation& simulation) {
   std::vector<Vec3> all;
   for (const Cloth& cloth : simulation.cloths) {
-    const std::vector<Vec3> x = cloth.embedding.positions(simulation.state.x);
+    std::vector<Vec3> x = cloth.embedding.positions(simulation.state.x);
+    if (cloth.tearing) x.resize(x.size() - cloth.tearing->copy_of.size());
     all.insert(all.end(), x.begin(), x.end());
   }
   return stacked(all);

@@ -177,7 +177,7 @@ void add_parts(py::module_& m) {
       .def_property_readonly("name", [](const Part& part) { return part.cloth().name; })
       .def_property_readonly(
           "mesh", [](const Part& part) { return TriangleMesh(part.cloth().mesh); },
-          "as the file has it, placed: a copy")
+          "as the file has it, placed, with the borders that tears have given it: a copy")
       .def_property_readonly(
           "soft", [](const Part& part) { return part.cloth().soft.has_value(); }, "a soft body, and no cloth")
       .def_property_readonly(

@@ -194,7 +194,9 @@ double ClusterContacts::part_after_impact(const CarriedMotion& motion) const {
 // Moves all particles of the clusters that were pushed.
 void ClusterContacts::move(double part, const CarriedMotion& motion) const {
   for (const Body& body : bodies_) {
-    if (body.impact.velocity.isZero(0) && body.support.velocity.isZero(0)) continue;
+    if (body.impact.velocity.isZero(0) && body.support.velocity.isZero(0) && body.impact.spin.isZero(0) &&
+        body.support.spin.isZero(0))
+      continue;
     for (const ClusterMember& m : clusters_[body.cluster]) {
       const Vec3 arm = at(motion.start, m.particle) - body.body.centre;
       const double share = m.share / m.mass;
