@@ -300,6 +300,30 @@ TEST_CASE("a rope is held up by another while cloth beside them tears", "[tear]"
   REQUIRE(all.cloths[0].end_particle > nx * nz);
 }
 
+TEST_CASE("in the step that tears, what touches a body is told under its new number", "[tear]") {
+  constexpr int nx = 5, nz = 9;
+  Assembly all;
+  const Cloth& strip = all.add(part(ClothModel::noh_jung, quad_sheet(nx, nz, 0.02)));
+  all.constraints->pin(row(strip, nx, 0));
+  all.constraints->pin_along(row(strip, nx, nz - 1),
+                             Motion::constant({0, 0, 1}, Vec3::Zero(), Vec3::Zero(), 0, 0.1), all.state.x);
+  TriangleMesh other = grid(4, 4, 0.1, 0.1);
+  for (Vec3& x : other.positions) x.y() = -0.499;
+  all.add(ClothPart{.name = "other", .mesh = other});
+  all.constraints->add(Obstacle{.shape = Plane{{0, -0.5, 0}, {0, 1, 0}}, .friction = 0.3, .margin = 1e-3});
+  all.use("implicit-euler", "mpcg");
+  int torn = 0;
+  for (int step = 0; step < 60; ++step) {
+    if (all.advance(0.005).torn == 0) continue;
+    ++torn;
+    REQUIRE(all.constraints->contacts().size() == 16);
+    for (const Contact& contact : all.constraints->contacts())
+      CHECK((contact.particle >= all.cloths[1].first_particle &&
+             contact.particle < all.cloths[1].end_particle));
+  }
+  CHECK(torn > 0);
+}
+
 TEST_CASE("limits that make no sense are refused, with what and where", "[tear]") {
   const TriangleMesh mesh = quad_sheet(3, 3, 0.1);
   const auto add = [](ClothPart cloth) { Assembly().add(std::move(cloth)); };
