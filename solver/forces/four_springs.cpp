@@ -10,6 +10,8 @@ namespace drape {
 namespace {
 
 using internal::Four;
+// The same where memory is aligned: a template does not know of Four that it may not be.
+typedef double Aligned __attribute__((vector_size(32)));
 
 template <class Rest>
 using FourRests = std::array<const Rest*, 4>;
@@ -40,8 +42,9 @@ void find_tension(const FourRests<BucklingSpring::Rest>& r, const Four& l, Four&
   const auto buckled = delta > of(r, &Rest::crossing);
   if (!(buckled[0] | buckled[1] | buckled[2] | buckled[3])) return;
   const Four k_b = of(r, &Rest::k_b), anything = none + 0.5;
-  Four y, force, stiffness;
-  internal::find_buckling(buckled ? delta : anything, y, force, stiffness);
+  const Aligned chosen = buckled ? delta : anything;
+  Aligned y, force, stiffness;
+  internal::find_buckling(chosen, y, force, stiffness);
   t = buckled ? k_b / (L * L) * force : t;
   dt = buckled ? k_b / (L * L * L) * stiffness : dt;
 }
