@@ -17,7 +17,9 @@ class Random {
   }
   Vec3 vector(double size = 1) { return {between(-size, size), between(-size, size), between(-size, size)}; }
   Quaternion rotation() {
-    return Quaternion(Eigen::Vector4d(normal(), normal(), normal(), normal()).normalized());
+    Eigen::Vector4d q;  // in an order of its own: that of arguments is the compiler's
+    for (int k = 3; k >= 0; --k) q[k] = normal();
+    return Quaternion(q.normalized());
   }
 
  private:
