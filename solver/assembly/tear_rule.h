@@ -7,7 +7,7 @@
 // such pairs of edges those are cut for which sigma is largest: so the cloth tears across its stretch, as straight as the
 // mesh allows. One end of an edge is parted: that at a border rather than that inside, else that of the larger sigma. Where sigma is
 // below half the limit, nothing holds on the other side, as at the end of a loose strip, and nothing is cut.
-//   - Tears that are there grow before others begin: at each of their ends by one vertex in a step, where an edge is strained
+//   - Tears that are there grow before others begin: at each vertex of theirs that does not rest, mostly at their ends, by one vertex in a step, where an edge is strained
 //     too far, the most strained first. No two cuts of a step have a vertex in common, but those that part one vertex.
 //   - A tear begins at the most strained edge where this is possible, one in a step, and only where nothing was cut for
 //     `draw_back`: a tear relieves the cloth round it, which would shatter otherwise.

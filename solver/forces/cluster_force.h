@@ -13,27 +13,21 @@
 
 #include "solver/forces/cluster.h"
 #include "solver/forces/cluster_contacts.h"
-#include "solver/forces/force.h"
+#include "solver/forces/projected_force.h"
 
 namespace drape {
 
 // k [1/s^2] of a solid with this modulus [Pa] and density [kg/m^3].
 double cluster_stiffness(const Clusters& clusters, double young, double density);
 
-class ClusterForce final : public Force {
+class ClusterForce final : public ProjectedForce {
  public:
   // k [1/s^2], and the time tau of the viscosity [s]. The particles are those of the clusters.
   ClusterForce(Clusters clusters, double k, double viscosity = 0);
 
   std::string_view name() const override { return "clusters"; }
-  bool only_projects() const override { return true; }
-  void list_pairs(std::vector<ParticlePair>&) const override {}
-  void bind(const BlockLayout&) override {}
   double energy(const VecX& x) const override;
   void add_force(const VecX& x, const VecX& v, VecX& f) const override;
-  void add_linearised(const VecX&, const VecX&, const VecX&, double, Stiffness, BlockMatrix&,
-                      VecX&) const override {}
-  bool projects() const override { return true; }
   void project(Substep& substep) override;
   Carriers* carriers() override { return &contacts_; }
 

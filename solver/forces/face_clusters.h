@@ -34,8 +34,8 @@
 #include "mesh/triangles/triangle_mesh.h"
 #include "solver/forces/colours.h"
 #include "solver/forces/fabric.h"
-#include "solver/forces/force.h"
 #include "solver/forces/plate_friction.h"
+#include "solver/forces/projected_force.h"
 #include "solver/forces/rest_corners.h"
 
 namespace drape {
@@ -51,20 +51,14 @@ struct FaceCluster {
 std::vector<FaceCluster> face_clusters(const TriangleMesh& mesh, const TriangleMesh& rest, double stretch,
                                        int first_particle = 0);
 
-class FaceClusterForce final : public Force {
+class FaceClusterForce final : public ProjectedForce {
  public:
   // viscosity [s]: tau of solver/forces/cluster.h.
   explicit FaceClusterForce(std::vector<FaceCluster> faces, double viscosity = 0);
 
   std::string_view name() const override { return "clusters"; }
-  bool only_projects() const override { return true; }
-  void list_pairs(std::vector<ParticlePair>&) const override {}
-  void bind(const BlockLayout&) override {}
   double energy(const VecX& x) const override;
   void add_force(const VecX& x, const VecX& v, VecX& f) const override;
-  void add_linearised(const VecX&, const VecX&, const VecX&, double, Stiffness, BlockMatrix&,
-                      VecX&) const override {}
-  bool projects() const override { return true; }
   void begin_substep(int particles) override;
   void project(Substep& substep) override;
 
