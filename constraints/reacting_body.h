@@ -112,16 +112,16 @@ class ReactingBody {
   // These belong to the step under way.
   double h_ = 0;
   Vec3 J_ = Vec3::Zero(), T_ = Vec3::Zero();
-  bool meets_ = false;                          // another body
   Vec3 A_ = Vec3::Zero();                       // moment of what other bodies do
   Vec6 met_ = Vec6::Zero(), y_ = Vec6::Zero();  // what they change of q', and of the pose alone
   double relaxation_ = 0;                       // a above; 0: nothing touches the body
   double approach_ = 0;                         // the largest approach of the last solve [m/s]
   double meeting_ = 0;                          // the approach at the start of the step [m/s]
   Vec6 q_ = Vec6::Zero(), q_free_ = Vec6::Zero();
-  bool known_ = false;  // last_q_ and last_d_ are those of a solve before
   Vec6 last_q_ = Vec6::Zero(), last_d_ = Vec6::Zero();
   int corrections_ = 0, changes_ = 0;
+  bool meets_ = false;  // another body
+  bool known_ = false;  // last_q_ and last_d_ are those of a solve before
   Eigen::Matrix<double, 6, most_changes> dq_, dd_;
 };
 
