@@ -45,7 +45,7 @@ void BodyMeeting::add(const Bodies& bodies) {
             "Debian or Ubuntu: apt install libbullet-dev, and build again");
 }
 
-void BodyMeeting::begin_step(Bodies& bodies, double h, double recovery_speed) {
+void BodyMeeting::begin_step(Bodies& bodies, std::vector<Nip>& nips, double h, double recovery_speed) {
   meetings_.clear();
   settled_ = true;
   if (forms_.empty()) return;
@@ -61,11 +61,12 @@ void BodyMeeting::begin_step(Bodies& bodies, double h, double recovery_speed) {
   }
   take_free(bodies);
   find(bodies, h);
+  for (std::size_t k = 0; k < nips.size(); ++k) add_nip(bodies, nips, static_cast<int>(k));
   if (meetings_.empty()) return;
-  recall(bodies, last_h_ > 0 ? h / last_h_ : 0);
+  recall(bodies, nips, last_h_ > 0 ? h / last_h_ : 0);
   push_apart(h, recovery_speed);
   sweep_until_settled();
-  give(bodies);
+  give(bodies, nips);
   for (std::size_t k = 0; k < bodies.size(); ++k)
     if (movers_[k].meets && movers_[k].reacts) bodies[k].expect(apart_[k].first, apart_[k].second);
 }
@@ -83,12 +84,25 @@ void BodyMeeting::find(const Bodies& bodies, double h) {
     }
 }
 
-void BodyMeeting::add_touch(const Bodies& bodies, int a, int b, const Touch& touch) {
+// Cloth between two surfaces gives way, so it does not throw them back, and of its two sides the smoother slides.
+void BodyMeeting::add_nip(const Bodies& bodies, const std::vector<Nip>& nips, int number) {
+  const Nip& nip = nips[static_cast<std::size_t>(number)];
+  Meeting& m = add_touch(bodies, nip.a, nip.b, nip.touch);
+  const Friction &mu_a = bodies[m.a].obstacle().friction, &mu_b = bodies[m.b].obstacle().friction;
+  m.nip = number;
+  m.mu = nip.runs   ? 0
+         : m.slides ? std::min(mu_a.kinetic, mu_b.kinetic)
+                    : std::min(mu_a.statics, mu_b.statics);
+  m.rebound = 0;
+}
+
+BodyMeeting::Meeting& BodyMeeting::add_touch(const Bodies& bodies, int a, int b, const Touch& touch) {
   Mover &one = movers_[a], &other = movers_[b];
   const Obstacle &oa = bodies[a].obstacle(), &ob = bodies[b].obstacle();
   Meeting m{};
   m.a = a;
   m.b = b;
+  m.nip = -1;
   m.normal = touch.normal;
   m.gap = touch.gap;
   m.t1 = m.normal.unitOrthogonal();
@@ -105,9 +119,9 @@ void BodyMeeting::add_touch(const Bodies& bodies, int a, int b, const Touch& tou
   if (one.reacts) before += bodies[a].reacting()->velocity() + bodies[a].reacting()->spin().cross(m.arm_a);
   if (other.reacts) before -= bodies[b].reacting()->velocity() + bodies[b].reacting()->spin().cross(m.arm_b);
   const double s = -before.dot(m.normal);
-  const bool sliding = (before + s * m.normal).norm() > slides;
-  m.mu = sliding ? mean(oa.friction.kinetic, ob.friction.kinetic)
-                 : mean(oa.friction.statics, ob.friction.statics);
+  m.slides = (before + s * m.normal).norm() > slides;
+  m.mu = m.slides ? mean(oa.friction.kinetic, ob.friction.kinetic)
+                  : mean(oa.friction.statics, ob.friction.statics);
   // What rests falls a little in every step, which is no impact.
   double fall = 0;
   for (const MovingBody* body : {&bodies[a], &bodies[b]})
@@ -128,16 +142,17 @@ void BodyMeeting::add_touch(const Bodies& bodies, int a, int b, const Touch& tou
   m.k_t = (k11 + k22) / 2 + std::hypot((k11 - k22) / 2, k12);
   m.lambda.setZero();
   meetings_.push_back(m);
+  return meetings_.back();
 }
 
 // Begins with the impulses of the last step. share: the length of this step over that of the last.
-void BodyMeeting::recall(const Bodies& bodies, double share) {
+void BodyMeeting::recall(const Bodies& bodies, const std::vector<Nip>& nips, double share) {
   for (Kept& kept : kept_) kept.taken = false;
   for (Meeting& m : meetings_) {
     double least = same_place * std::min(forms_[m.a].reach(), forms_[m.b].reach());
     Kept* nearest = nullptr;
     for (Kept& kept : kept_) {
-      if (kept.taken || kept.a != m.a || kept.b != m.b) continue;
+      if (kept.taken || kept.a != m.a || kept.b != m.b || kept.particle != particle_of(m, nips)) continue;
       const double away = (kept.mark - m.mark).norm();
       if (away < least) nearest = &kept, least = away;
     }
@@ -163,10 +178,10 @@ bool BodyMeeting::take_free(const Bodies& bodies) {
   return changed;
 }
 
-void BodyMeeting::solve(Bodies& bodies) {
+void BodyMeeting::solve(Bodies& bodies, std::vector<Nip>& nips) {
   if (meetings_.empty() || !take_free(bodies)) return;
   sweep_until_settled();
-  give(bodies);
+  give(bodies, nips);
 }
 
 void BodyMeeting::apply(const Meeting& m, const Vec3& impulse) {
@@ -248,11 +263,12 @@ void BodyMeeting::push_apart(double h, double recovery_speed) {
   }
 }
 
-// Gives the bodies their impulses and the moments of these.
-void BodyMeeting::give(Bodies& bodies) {
+// Gives the bodies their impulses and the moments of these, and the nips what presses there.
+void BodyMeeting::give(Bodies& bodies, std::vector<Nip>& nips) {
   for (Mover& mover : movers_) mover.impulse.setZero(), mover.moment.setZero();
   for (const Meeting& m : meetings_) {
     const Vec3 impulse = m.impulse();
+    if (m.nip >= 0) nips[static_cast<std::size_t>(m.nip)].impulse = m.lambda[0];
     movers_[m.a].impulse += impulse;
     movers_[m.a].moment += m.arm_a.cross(impulse);
     movers_[m.b].impulse -= impulse;
@@ -262,16 +278,17 @@ void BodyMeeting::give(Bodies& bodies) {
     if (movers_[k].meets && movers_[k].reacts) bodies[k].meet(movers_[k].impulse, movers_[k].moment);
 }
 
-BodyMeetingReport BodyMeeting::end_step(const Bodies& bodies) {
+BodyMeetingReport BodyMeeting::end_step(const Bodies& bodies, const std::vector<Nip>& nips) {
   BodyMeetingReport report;
   report.settled = settled_;
   kept_.clear();
   last_h_ = h_;
   for (const Meeting& m : meetings_) {
-    report.deepest = std::max(report.deepest, -m.gap);
+    if (m.nip < 0) report.deepest = std::max(report.deepest, -m.gap);
     if (m.lambda[0] <= 0) continue;
     ++report.touches;
-    kept_.push_back({m.a, m.b, m.mark, bodies[m.a].start().direction_to_body(m.impulse())});
+    kept_.push_back(
+        {m.a, m.b, particle_of(m, nips), m.mark, bodies[m.a].start().direction_to_body(m.impulse())});
   }
   return report;
 }

@@ -10,6 +10,8 @@
 // All impulses are found together by sweeps over the touches (projected Gauss-Seidel), from those of the last step, until
 // no sweep changes a velocity by more than `exactness` of the largest, or `most_sweeps` are done.
 //                                                         [Moreau 1988; Jourdan, Alart & Jean 1998; Catto 2005]
+// Where bodies pinch a particle (constraints/nip.h), they meet at it as if it were a part of their surfaces: there mu is the
+// lesser of the two coefficients, or 0 where the particle runs through, e is 0, and the gap is what is left beside the margins.
 // Bodies that are nearer than rest_gap are moved apart besides, by at most recovery_speed h in a step, which gives them
 // no velocity; cloth that lies on them goes along.
 // The order is that of the bodies, and no thread takes part, so the bits are always the same. Impulses are kept from step
@@ -20,12 +22,12 @@
 
 #include <vector>
 
-#include "constraints/touch.h"
+#include "constraints/nip.h"
 
 namespace drape {
 
 struct BodyMeetingReport {
-  int touches = 0;     // points at which bodies press on each other
+  int touches = 0;     // points at which bodies press on each other, also through cloth
   double deepest = 0;  // how far bodies were inside each other when the step began [m]
   // The last sweep changed a velocity by at most a thousandth of the speed at which surfaces met, or 0.1 um/s.
   bool settled = true;
@@ -44,11 +46,12 @@ class BodyMeeting {
   // without. To be called for every body.
   void add(const Bodies& bodies);
 
-  // Finds the touches, and takes what they do into the expected motion of the bodies.
-  void begin_step(Bodies& bodies, double h, double recovery_speed);
+  // Finds the touches, and takes what they do into the expected motion of the bodies. Tells the nips their impulses.
+  void begin_step(Bodies& bodies, std::vector<Nip>& nips, double h, double recovery_speed);
   // Finds the impulses anew when the cloth acts on the bodies otherwise than it did before.
-  void solve(Bodies& bodies);
-  BodyMeetingReport end_step(const Bodies& bodies);  // keeps the impulses for the next step
+  void solve(Bodies& bodies, std::vector<Nip>& nips);
+  BodyMeetingReport end_step(const Bodies& bodies,
+                             const std::vector<Nip>& nips);  // keeps the impulses for the next step
 
   // Pairs of bodies that were inside each other by more than `margin` [m] when the last step began.
   struct Overlap {
@@ -69,12 +72,14 @@ class BodyMeeting {
   };
   struct Meeting {  // a touch in the equations
     int a, b;
+    int nip;  // its place among the nips; -1: the surfaces themselves
     Vec3 normal, t1, t2;
     Vec3 arm_a, arm_b;  // from the centres of mass [m]
     Vec3 carried;       // what a body that does not react adds to the relative velocity [m/s]
     Vec3 mark;          // the place in the frame of body a, by which it is known again [m]
     double gap;         // m
     double mu;
+    bool slides;     // when the step begins
     double rebound;  // e s of an impact, otherwise 0 [m/s]
     double target;   // a_k [m/s]
     double k_n,
@@ -82,22 +87,27 @@ class BodyMeeting {
     Vec3 lambda;  // along n, t1, t2
     Vec3 impulse() const { return lambda[0] * normal + lambda[1] * t1 + lambda[2] * t2; }
   };
+  static int particle_of(const Meeting& m, const std::vector<Nip>& nips) {
+    return m.nip < 0 ? -1 : nips[static_cast<std::size_t>(m.nip)].particle;
+  }
   struct Kept {  // of the last step
     int a, b;
+    int particle;        // of a nip; -1: the surfaces themselves
     Vec3 mark, impulse;  // in the frame of body a
     bool taken = false;
   };
 
   void find(const Bodies& bodies, double h);
-  void add_touch(const Bodies& bodies, int a, int b, const Touch& touch);
-  void recall(const Bodies& bodies, double share);
+  Meeting& add_touch(const Bodies& bodies, int a, int b, const Touch& touch);
+  void add_nip(const Bodies& bodies, const std::vector<Nip>& nips, int number);
+  void recall(const Bodies& bodies, const std::vector<Nip>& nips, double share);
   bool take_free(const Bodies& bodies);
   void apply(const Meeting& meeting, const Vec3& impulse);
   Vec3 slip(const Meeting& meeting) const;
   void sweep_until_settled();
   double sweep();
   void push_apart(double h, double recovery_speed);
-  void give(Bodies& bodies);
+  void give(Bodies& bodies, std::vector<Nip>& nips);
 
   std::vector<TouchForm> forms_;
   std::vector<Mover> movers_;

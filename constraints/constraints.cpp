@@ -100,7 +100,8 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
   step_.v = v;
   step_.inertia = masses;
   for (MovingBody& body : bodies_) body.begin_step(t, h);
-  meeting_.begin_step(bodies_, h, options_.recovery_speed);
+  if (bodies_.size() > 1) contacts_.find_nips(bodies_, step_);
+  meeting_.begin_step(bodies_, contacts_.nips(), h, options_.recovery_speed);
   pins_.move(bodies_, step_);
   if (!bodies_.empty()) {
     contacts_.open();

@@ -116,7 +116,7 @@ ContactChange ContactStep::react(const VecX& v, const VecX& r, const VecX& x_new
 
 bool ContactStep::move_bodies(double noise) {
   std::vector<MovingBody>& bodies = constraints_->bodies_;
-  constraints_->meeting_.solve(bodies);
+  constraints_->meeting_.solve(bodies, constraints_->contacts_.nips());
   bool moved = false;
   for (MovingBody& body : bodies)
     if (body.correct(noise)) moved = true;
@@ -173,7 +173,8 @@ ContactReport ContactStep::finish(VecX& x_new, VecX& v_new) {
       constraints_->contacts_.look_again();  // these went otherwise than bodies were told
     constraints_->contacts_.commit();
     constraints_->faces_.end_step(constraints_->bodies_, step.x, x_new);
-    const BodyMeetingReport met = constraints_->meeting_.end_step(constraints_->bodies_);
+    const BodyMeetingReport met =
+        constraints_->meeting_.end_step(constraints_->bodies_, constraints_->contacts_.nips());
     report.converged = report.converged && met.settled;
     report.body_contacts = met.touches;
     report.body_overlap = met.deepest;

@@ -76,14 +76,6 @@ void slide_at(Contact& contact, double mu, const Vec3& slip) {
   contact.friction_impulse = -mu * contact.normal_impulse * slip.stableNormalized();
 }
 
-// The sum of what pushes the particle against the planes [N s].
-double normal_impulse(const Contact& contact, const Vec3& r) {
-  const std::array<double, 3> lambda = multipliers(contact, r);
-  double sum = 0;
-  for (int k = 0; k < contact.planes; ++k) sum += std::max(lambda[k], 0.0);
-  return sum;
-}
-
 // What friction did to the particle in a solve, with the slip and the reaction r that came out [N s].
 Vec3 given_friction(const Contact& contact, double mu, double mass, const Vec3& slip, const Vec3& r) {
   if (contact.grip == Grip::stick) return tangential(contact, r);
@@ -179,6 +171,7 @@ const std::vector<ContactFriction>& ParticleContacts::make_friction(const Bodies
     f.damping = rubbing(c, mu, step.mass(c.particle)) / step.h * damped;
     friction_.push_back(f);
   }
+  rub_in_nips(bodies, step);
   return friction_;
 }
 
@@ -209,11 +202,11 @@ double ParticleContacts::imbalance(const Bodies& bodies, const StepMotion& step,
 
 // The square root of the sum of squares of the impulses along the normals that should not be, or are missing.
 double ParticleContacts::wrong_normal(const StepMotion& step, const Contact& c, const Vec3& v,
-                                      const Vec3& r) {
+                                      const Vec3& r) const {
   if (c.clamped) return 0;
   double squares = 0;
   for (int k = c.planes; k < c.known; ++k) squares += std::pow(passing_impulse(step, c, k, v), 2);
-  const std::array<double, 3> lambda = multipliers(c, r);
+  const std::array<double, 3> lambda = presses(c, r);
   for (int k = 0; k < c.planes; ++k) squares += std::pow(std::min(lambda[k], 0.0), 2);
   return std::sqrt(squares);
 }
@@ -224,7 +217,7 @@ double ParticleContacts::wrong_friction(const Bodies& bodies, const StepMotion& 
   const Vec3 slip = tangential(c, v - c.body_velocity());
   const double mass = step.mass(c.particle);
   const Vec3 given = given_friction(c, mu.kinetic, mass, slip, r), asked = given - mass * slip;
-  const double most = (c.grip == Grip::stick ? sticking(c, mu) : mu.kinetic) * normal_impulse(c, r);
+  const double most = (c.grip == Grip::stick ? sticking(c, mu) : mu.kinetic) * pressed(c, r);
   if (c.grip != Grip::stick && step.foresight != Foresight::ahead) return wrong_apart(c, given, most);
   return (given - (asked.norm() > most ? most * asked.normalized() : asked)).norm();
 }
@@ -232,7 +225,7 @@ double ParticleContacts::wrong_friction(const Bodies& bodies, const StepMotion& 
 void ParticleContacts::settle(const Bodies& bodies, const StepMotion& step, const VecX& v, const VecX& r) {
   for (Contact& c : trial_) {
     if (!c.active() || c.clamped) continue;
-    c.normal_impulse = normal_impulse(c, r.segment<3>(3 * c.particle));
+    c.normal_impulse = pressed(c, r.segment<3>(3 * c.particle));
     const double slip = tangential(c, v.segment<3>(3 * c.particle) - c.body_velocity()).norm();
     const double most = friction_of(bodies, c).kinetic * c.normal_impulse;
     if (step.mass(c.particle) * slip < stop_fraction * most) c.grip = Grip::stick;
@@ -285,7 +278,7 @@ void ParticleContacts::begin_anew(const StepMotion& step, Contact& c) const {
 
 bool ParticleContacts::update_grip(const Bodies& bodies, const StepMotion& step, Contact& c, const Vec3& v,
                                    const Vec3& r, double noise) const {
-  const std::array<double, 3> lambda = multipliers(c, r);
+  const std::array<double, 3> lambda = presses(c, r);
   const auto weakest =
       static_cast<std::size_t>(std::min_element(lambda.begin(), lambda.begin() + c.planes) - lambda.begin());
   if (lambda[weakest] < -noise) {  // it would pull the particle towards the body, so it is let go
@@ -313,12 +306,12 @@ bool ParticleContacts::update_friction(const Bodies& bodies, const StepMotion& s
   const Vec3 given = given_friction(c, mu.kinetic, mass, slip, r), asked = given - inertia * slip;
   // Friction may press the particle on, or lift it off, by more than it takes itself: then the impulse goes up and down from
   // solve to solve. Half of the change settles.
-  const double pressed = normal_impulse(c, r);
-  const double change = pressed - c.normal_impulse;
+  const double pressing = pressed(c, r);
+  const double change = pressing - c.normal_impulse;
   c.turns += change * c.last_change < 0;
   const bool in_doubt = c.catches > 0 || c.changes > 1 || c.turns > 1;
   c.last_change = change;
-  c.normal_impulse = in_doubt ? 0.5 * (c.normal_impulse + pressed) : pressed;
+  c.normal_impulse = in_doubt ? 0.5 * (c.normal_impulse + pressing) : pressing;
   const double most = mu.kinetic * c.normal_impulse;
   if (c.grip != Grip::stick && step.foresight != Foresight::ahead) {
     const bool wrong = wrong_apart(c, given, most) > noise;

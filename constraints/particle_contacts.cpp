@@ -74,6 +74,8 @@ void ParticleContacts::prepare(int particles, std::size_t bodies) {
   if (bodies == 0) return;  // pins need no more memory than this
   committed_of_.assign(n, -1);
   contact_of_.assign(n, -1);
+  nip_of_.assign(n, -1);
+  nips_.clear();
   correction_ = VecX::Zero(3 * particles);
   const auto chunks = static_cast<std::size_t>(chunk_count(particles));
   found_.resize(chunks);
@@ -83,7 +85,8 @@ void ParticleContacts::prepare(int particles, std::size_t bodies) {
   for (auto* contacts : {&first_, &all_}) contacts->reserve(n);
   trial_.reserve(n);  // so that no step allocates, however many particles touch
   committed_.reserve(n);
-  friction_.reserve(n);
+  friction_.reserve(2 * n);
+  nips_.reserve(n);
   for (auto& found : found_) found.reserve(chunk_size);
 }
 
@@ -125,37 +128,47 @@ void ParticleContacts::take_found(double h) {
 
 void ParticleContacts::look_for(int particle, const Bodies& bodies, const StepMotion& step,
                                 std::vector<Contact>& found, double& deepest) {
-  const Vec3 x = step.place(particle), v = step.velocity(particle);
   const int old = committed_of_[particle];
   const Contact* before = old < 0 ? nullptr : &committed_[old];
-  const double radius = step.radius_of(particle);
+  const Nip* const nip = nip_of(particle);
   Contact contact{.particle = particle, .plane = {}};
-  for (int o = 0; o < static_cast<int>(bodies.size()); ++o) {
-    const MovingBody& body = bodies[o];
-    const double margin = body.obstacle().margin, offset = margin + radius;
-    const Vec3 x_new = step.foresight == Foresight::ahead ? Vec3(x + step.h * v) : body.carried(x);
-    const double travel = body.travel(x, x_new);
-    if (clearance(o, particle) > offset + std::max(travel, touching_range(margin))) continue;
-    const SurfacePoint start = body.at_start(x);
-    clearance(o, particle) = start.distance;
-    deepest = std::max(deepest, radius - start.distance);
-    if (start.distance > offset + std::max(travel, touching_range(margin))) continue;
-    if (start.covered) {
-      found.push_back(clamped(particle, body, start, x, radius));
-      return;
-    }
-    const ContactPlane plane = body.plane(x, start, x + step.h * v, radius);
-    const bool touched = knows(before, o);
-    if (touched ? plane.gap < touching_range(margin)
-                : plane.gap < 0 && plane.gap + body.approach(x, x_new, plane) < 0) {
-      add_deepest(contact, plane);
-    } else if (plane.gap < travel) {
-      if (const auto met = body.meeting(x, x_new, radius)) add_deepest(contact, *met);
-    }
+  for (const MovingBody& body : bodies) {
+    const int o = body.number();
+    if (nip && o == nip->other()) continue;
+    const bool touched = knows(before, o) || (nip && o == nip->holder);
+    if (!contact.clamped) look_at(body, step, touched, contact, deepest);
   }
+  if (nip && !contact.active()) look_at(bodies[nip->other()], step, true, contact, deepest);
   if (!contact.active()) return;
-  start_grip(bodies, step, contact, before);
+  if (!contact.clamped) start_grip(bodies, step, contact, before);
   found.push_back(contact);
+}
+
+// Adds to the contact the plane in which its particle touches the body.
+void ParticleContacts::look_at(const MovingBody& body, const StepMotion& step, bool touched, Contact& contact,
+                               double& deepest) {
+  const int particle = contact.particle;
+  const Vec3 x = step.place(particle), v = step.velocity(particle);
+  const double radius = step.radius_of(particle), margin = body.obstacle().margin, offset = margin + radius;
+  const Vec3 x_new = step.foresight == Foresight::ahead ? Vec3(x + step.h * v) : body.carried(x);
+  const double travel = body.travel(x, x_new), reach = offset + std::max(travel, touching_range(margin));
+  double& clear = clearance(body.number(), particle);
+  if (clear > reach) return;
+  const SurfacePoint start = body.at_start(x);
+  clear = start.distance;
+  deepest = std::max(deepest, radius - start.distance);
+  if (start.distance > reach) return;
+  if (start.covered) {
+    contact = clamped(particle, body, start, x, radius);
+    return;
+  }
+  const ContactPlane plane = body.plane(x, start, x + step.h * v, radius);
+  if (touched ? plane.gap < touching_range(margin)
+              : plane.gap < 0 && plane.gap + body.approach(x, x_new, plane) < 0) {
+    add_deepest(contact, plane);
+  } else if (plane.gap < travel) {
+    if (const auto met = body.meeting(x, x_new, radius)) add_deepest(contact, *met);
+  }
 }
 
 void ParticleContacts::look_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new) {
@@ -203,10 +216,11 @@ void ParticleContacts::look_along(int particle, const Bodies& bodies, const Step
   if (known && known->clamped) return;
   const Vec3 x = step.place(particle);
   const double radius = step.radius_of(particle);
+  const Nip* const nip = nip_of(particle);
   Contact contact{.particle = particle, .plane = {}};
   for (int o = 0; o < static_cast<int>(bodies.size()); ++o) {
     const MovingBody& body = bodies[o];
-    if (knows(known, o)) continue;
+    if (knows(known, o) || (nip && o == nip->other() && known && known->active())) continue;
     if (clearance(o, particle) > body.obstacle().margin + radius + body.travel(x, x_new)) continue;
     const auto met = body.meeting(x, x_new, radius);
     if (met && (!known || can_hold(*known, *met))) add_deepest(contact, *met);

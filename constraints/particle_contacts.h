@@ -3,6 +3,7 @@
 // equations.
 //   particle_contacts.cpp   where contacts are found: at the start, along the way, and by the guard
 //   grip.cpp                how they hold after each solve: friction is decided there
+//   nips.cpp                where two bodies pinch a particle
 //   respond.cpp             the response of constraints/response.h, for explicit methods
 // The scratch memory is kept from step to step, so that no step allocates.
 #pragma once
@@ -12,6 +13,7 @@
 
 #include "constraints/filter.h"
 #include "constraints/moving_body.h"
+#include "constraints/nip.h"
 #include "constraints/response.h"
 #include "constraints/step_motion.h"
 
@@ -64,6 +66,10 @@ class ParticleContacts {
   void prepare(int particles, std::size_t bodies);  // forgets all, for other particles or bodies
   void look_again();                                // the particles were moved from outside
   void open();                                      // begins a step without contacts
+
+  // Finds the nips among the particles that touched when the last step ended (constraints/nip.h).
+  void find_nips(const Bodies& bodies, const StepMotion& step);
+  std::vector<Nip>& nips() { return nips_; }
 
   // Finds the particles that touch a body in the predicted motion.
   void find(const Bodies& bodies, const StepMotion& step);
@@ -118,6 +124,8 @@ class ParticleContacts {
  private:
   void look_for(int particle, const Bodies& bodies, const StepMotion& step, std::vector<Contact>& found,
                 double& deepest);
+  void look_at(const MovingBody& body, const StepMotion& step, bool touched, Contact& contact,
+               double& deepest);
   void look_along(int particle, const Bodies& bodies, const StepMotion& step, const Contact* known,
                   const Vec3& x_new, std::vector<Contact>& found);
   void take_found(double h);
@@ -127,8 +135,14 @@ class ParticleContacts {
                   const Contact* before) const;
   Vec3 mean_velocity(const StepMotion& step, int particle, const VecX& x_new) const;
   double sticking(const Contact& contact, const Friction& mu) const;
+  const Nip* nip_of(int particle) const;
+  bool add_nip(const Bodies& bodies, const StepMotion& step, const Contact& contact, int other);
+  void rub_in_nips(const Bodies& bodies, const StepMotion& step);
+  // What presses the particle against each plane, with what the bodies press where it is in a nip; and the sum of it [N s].
+  std::array<double, 3> presses(const Contact& contact, const Vec3& r) const;
+  double pressed(const Contact& contact, const Vec3& r) const;
   void catch_grip(const Bodies& bodies, const StepMotion& step, Contact& contact, const Vec3& v) const;
-  static double wrong_normal(const StepMotion& step, const Contact& contact, const Vec3& v, const Vec3& r);
+  double wrong_normal(const StepMotion& step, const Contact& contact, const Vec3& v, const Vec3& r) const;
   double wrong_friction(const Bodies& bodies, const StepMotion& step, const Contact& contact, const Vec3& v,
                         const Vec3& r) const;
   bool catch_again(const StepMotion& step, Contact& contact, const Vec3& v, const Vec3& r,
@@ -152,6 +166,8 @@ class ParticleContacts {
   std::vector<Contact> trial_, committed_;      // contacts of the step under way; of the last completed one
   std::vector<Contact> first_, all_;            // scratch of respond_again
   std::vector<int> contact_of_, committed_of_;  // particle -> its place in those; -1: none
+  std::vector<Nip> nips_;
+  std::vector<int> nip_of_;  // particle -> its place in nips_; -1: none
   // By body and particle: a distance within which there was no surface of the body [m].
   std::vector<double> clearance_;
   VecX correction_;       // m
