@@ -11,14 +11,15 @@ bool before(const CarriedContact& a, const CarriedContact& b) {
   return std::pair(a.particle, a.body) < std::pair(b.particle, b.body);
 }
 
-// Whether a body that reacts meets the particle by a carrier.
-bool is_carried(const std::vector<CarriedContact>& met, const std::vector<CarriedBody>& bodies, int particle,
-                int body) {
-  if (met.empty() || !bodies[body].reacts) return false;
-  CarriedContact wanted{};
-  wanted.particle = particle, wanted.body = body;
-  const auto place = std::lower_bound(met.begin(), met.end(), wanted, before);
-  return place != met.end() && !before(wanted, *place) && !place->impulse.isZero(0);
+// Whether a carrier has what the particle meets of a body that reacts. It then moves as its carriers say, and no body gets an
+// impulse of what it would have met by itself.
+bool is_carried(const std::vector<CarriedContact>& met, const std::vector<CarriedBody>& bodies,
+                int particle) {
+  const auto first = std::lower_bound(met.begin(), met.end(), particle,
+                                      [](const CarriedContact& c, int i) { return c.particle < i; });
+  for (auto c = first; c != met.end() && c->particle == particle; ++c)
+    if (bodies[c->body].reacts && !c->impulse.isZero(0)) return true;
+  return false;
 }
 
 // Adds the contact to those that are sorted by particle and body; of the same two, the impulse stays.
@@ -34,7 +35,8 @@ void note(CarriedContact contact, std::vector<CarriedContact>& met) {
 
 }  // namespace
 
-// The bodies as carriers see them: without what these gave them in the last response, which may be that of the step before.
+// The bodies as carriers see them: without what these gave them in the last response, or are expected to give them before
+// the first one.
 void ContactStep::see_bodies() {
   const std::vector<MovingBody>& bodies = constraints_->bodies_;
   std::vector<CarriedBody>& seen = constraints_->carried_bodies_;
@@ -105,10 +107,6 @@ void ContactStep::carry(ContactMode mode, const VecX& x, const VecX& v,
 // Gives the bodies what carriers took of them; v: without bodies.
 void ContactStep::push_carried(const VecX& v, const VecX& x_new) {
   const StepMotion& step = constraints_->step_;
-  for (auto& [impulse, moment] : constraints_->carried_by_) {
-    impulse.setZero();
-    moment.setZero();
-  }
   for (const CarriedContact& c : constraints_->carried_) {
     if (c.impulse.isZero(0)) continue;
     const Vec3 place = x_new.segment<3>(3 * c.particle);
@@ -135,7 +133,7 @@ void ContactStep::respond(ContactMode mode, const VecX& x, const VecX& v, const 
     clear_impulses();
     push_carried(v, x_new);
     constraints_->contacts_.each_response([&](const ContactResponse& r) {
-      if (is_carried(constraints_->carried_, constraints_->carried_bodies_, r.particle, r.body)) return;
+      if (is_carried(constraints_->carried_, constraints_->carried_bodies_, r.particle)) return;
       constraints_->step_.work += r.body_velocity.dot(r.impulse);
       constraints_->bodies_[r.body].push(-r.impulse, r.place, r.approach);
     });

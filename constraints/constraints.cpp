@@ -90,6 +90,12 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
   step_.t = t;
   step_.h = h;
   step_.foresight = foresight;
+  carried_by_ = last_carried_by_;  // as bodies that react expect the impulses of the last completed step
+  for (auto& [impulse, moment] : carried_by_) {
+    const double share = step_.last_h > 0 ? h / step_.last_h : 0;
+    impulse *= share;
+    moment *= share;
+  }
   step_.work = 0;
   if (x.size() != step_.x_end.size() || x != step_.x_end) {  // the state was changed from outside
     contacts_.look_again();

@@ -24,6 +24,10 @@ const std::vector<FaceContact>& ContactStep::touching_faces() const {
 void ContactStep::clear_impulses() {
   constraints_->step_.work = 0;
   for (MovingBody& body : constraints_->bodies_) body.clear_impulse();
+  for (auto& [impulse, moment] : constraints_->carried_by_) {
+    impulse.setZero();
+    moment.setZero();
+  }
 }
 
 // Gives the body the reaction to its impulse on a particle, which ends the step with v and is pushed at
@@ -181,6 +185,7 @@ ContactReport ContactStep::finish(VecX& x_new, VecX& v_new) {
     for (MovingBody& body : constraints_->bodies_)
       if (!body.end_step()) report.converged = false;
   }
+  constraints_->last_carried_by_ = constraints_->carried_by_;
   step.last_h = step.h;
   step.x_end = x_new;
   report.contacts = static_cast<int>(constraints_->contacts().size());

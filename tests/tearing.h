@@ -30,6 +30,34 @@ inline std::string quads(int nx, int nz, double h) {
   }
   return text + faces;
 }
+// Two such sheets one behind the other, `gap` apart [m]: the groups near and far, and along the two sides that face each other the
+// lines near.side and far.side. Vertex i of row j of sheet p is (p nz + j) nx + i.
+inline std::string two_sheets(int nx, int nz, double h, double gap) {
+  std::string text, faces, lines;
+  for (int row = 0; row < 2 * nz; ++row)
+    for (int i = 0; i < nx; ++i) {
+      const double z = h * (row < nz ? row : row - 1) + (row < nz ? 0 : gap);
+      text += "v " + std::to_string(h * i) + " 0 " + std::to_string(z) + "\nvt " + std::to_string(0.1 * i) +
+              " " + std::to_string(0.1 * row) + "\n";
+    }
+  for (int row = 0; row + 1 < 2 * nz; ++row) {
+    if (row == 0) faces += "g near\n";
+    if (row == nz) faces += "g far\n";
+    for (int i = 0; i + 1 < nx && row + 1 != nz; ++i) {
+      faces += "f";
+      for (const int v : {row * nx + i, (row + 1) * nx + i, (row + 1) * nx + i + 1, row * nx + i + 1})
+        faces += " " + std::to_string(v + 1) + "/" + std::to_string(v + 1);
+      faces += "\n";
+    }
+  }
+  for (const int p : {0, 1}) {
+    lines += p == 0 ? "g near.side\nl" : "g far.side\nl";
+    for (int i = 0; i < nx; ++i) lines += " " + std::to_string((nz - 1 + p) * nx + i + 1);
+    lines += "\n";
+  }
+  return text + faces + lines;
+}
+
 inline TriangleMesh quad_sheet(int nx, int nz, double h) { return parse_obj(quads(nx, nz, h), "quads.obj"); }
 
 inline int pieces(const TriangleMesh& mesh) {

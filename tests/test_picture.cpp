@@ -37,7 +37,7 @@ struct Scene {
     meshes.reserve(8);
     meshes.push_back(std::move(mesh));
     still.parts.push_back(
-        {body, 0, meshes.back().positions, &meshes.back().triangles, nullptr, false, {}, std::move(values)});
+        {body, 0, meshes.back().positions, &meshes.back().triangles, nullptr, {}, {}, std::move(values)});
   }
   // Of everything in it.
   Image draw(const View& view, int width, int height, const Look& look = {}) const {

@@ -227,3 +227,32 @@ TEST_CASE("interrupted pictures are whole or not there", "[picture]") {
     CHECK_FALSE(std::filesystem::exists(shop.path / "p_0008.png"));
   }
 }
+
+TEST_CASE("triangles that a rope passes through are red, and so is the rope there", "[picture][rope]") {
+  const Workshop shop;
+  const auto scene = [&](double end) {
+    return "[simulation]\nduration = 0.01\ngravity = [0, 0, 0]\n" + shop.cloth +
+           "[[rope]]\npoints = [[0.03, 0.9, 0.02], [0.03, " + std::to_string(end) +
+           ", 0.02]]\nsegments = 4\nmass_per_length = 0.1\nradius = \"1 cm\"\n";
+  };
+  const Pixel red = colour_of({Field::crossing, 0, 1}, 1);
+  // Red pixels of the cloth's plane and of what is above it, in a view from the side and one from below.
+  const auto reds = [&](double end, const std::string& view) {
+    shop.write("r.toml", scene(end));
+    CHECK(shop.drape("simulate r.toml --out r --quiet").exit_code == 0);
+    CHECK(shop.drape("picture r --color crossing --size 320x240 --view=" + view + " --force -o c.png")
+              .exit_code == 0);
+    const Image image = read_png(content(shop.path / "c.png"));
+    long found = 0;
+    for (int y = 0; y < 180; ++y)  // the legend below has the same colour
+      for (int x = 0; x < 320; ++x) {
+        const Pixel p = image.at(x, y);
+        found += p[0] > 90 && p[0] > 2.5 * p[1];
+      }
+    CHECK(std::count(image.pixels.begin(), image.pixels.end(), red) > 3);
+    return found;
+  };
+  CHECK(reds(0.4, "0,-60") == 0);
+  CHECK(reds(0.1, "0,-60") > 20);
+  CHECK(reds(0.1, "0,0") > 20);
+}

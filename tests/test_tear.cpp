@@ -195,6 +195,34 @@ TEST_CASE("the order and direction of the cuts do not matter, nor whether they c
   }
 }
 
+TEST_CASE("a mesh whose vertices are sewn to one has a copy of each for every part that its corners fall to",
+          "[tear]") {
+  unsigned seed = 100;
+  for (const TriangleMesh& mesh : all_meshes()) {
+    const std::vector<CutEdge> cuts = edges_with(mesh, 0.4, ++seed);
+    const TornTriangles torn = torn_triangles(mesh, cuts), same = divided_triangles(mesh, torn.triangles);
+    CHECK(same.triangles == torn.triangles);
+    CHECK(same.copy_of == torn.copy_of);
+
+    TriangleMesh sewn = mesh;  // vertex v is sewn to another one
+    for (Triangle& t : sewn.triangles)
+      for (int& v : t) v /= 2;
+    const std::vector<Triangle> parts = torn_triangles(sewn, edges_with(sewn, 0.4, seed)).triangles;
+    const TornTriangles divided = divided_triangles(mesh, parts);
+    std::map<int, std::pair<int, int>> of;  // vertex -> the vertex that it was, and its part
+    std::set<std::pair<int, int>> known;
+    for (std::size_t t = 0; t < parts.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::pair own(mesh.triangles[t][k], parts[t][k]);
+        known.insert(own);
+        CHECK(of.try_emplace(divided.triangles[t][k], own).first->second == own);
+      }
+    CHECK(known.size() == of.size());
+    for (std::size_t k = 0; k < divided.copy_of.size(); ++k)
+      CHECK(of.at(mesh.vertex_count() + static_cast<int>(k)).first == divided.copy_of[k]);
+  }
+}
+
 TEST_CASE("a cut that is no edge is refused", "[tear]") {
   const TriangleMesh mesh = grid(4, 4, 1, 1);
   for (const CutEdge& cut : {CutEdge{15, 0}, {0, 0}, {3, 99}, {-1, 2}})

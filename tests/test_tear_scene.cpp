@@ -7,6 +7,7 @@
 #include "app/run/run.h"
 #include "app/simulation/sheets.h"
 #include "mesh/base/errors.h"
+#include "mesh/triangles/topology.h"
 #include "tests/folder.h"
 #include "tests/same_bits.h"
 #include "tests/tearing.h"
@@ -65,6 +66,12 @@ TEST_CASE("a run that tears writes the torn cloth, and earlier frames have its c
     CHECK(torn == sum(column(recording, "torn")));
     CHECK(torn == cloth["torn"].number(0));
     CHECK(cloth["particles"].number(0) == mesh.vertex_count());
+    const auto count = [](const auto& list) { return static_cast<double>(list.size()); };
+    const TriangleMesh before = read_obj(folder.path / "strip.obj");
+    CHECK(cloth["edges"].number(0) == count(edges(before)));
+    CHECK(cloth["diagonals"].number(0) == count(diagonals(before)));
+    CHECK(cloth["edges_at_end"].number(0) == count(edges(mesh)));
+    CHECK(count(edges(mesh)) == count(edges(before)) + torn);
     const auto& copy_of = cloth["copy_of"].items();
     REQUIRE(static_cast<int>(copy_of.size()) == mesh.vertex_count() - start);
     const std::vector<double> times = column(recording, "time"), cut = column(recording, "torn");
@@ -104,6 +111,8 @@ TEST_CASE("a run in two parts that tears in both has the bits of the whole, and 
   };
   const RunRecord all = go(whole, "whole", {});
   REQUIRE(all.first_torn);
+  CHECK(all.cloths[0].edges_at_end == static_cast<int>(edges(whole.cloths[0].mesh).size()));
+  CHECK(all.cloths[0].diagonals_at_end == static_cast<int>(diagonals(whole.cloths[0].mesh).size()));
   const RunRecord first = go(parts, "first", *all.first_torn + 0.005), second = go(parts, "second", {});
   CHECK(first.torn > 0);
   CHECK(second.torn > 0);
@@ -156,6 +165,29 @@ TEST_CASE("the sides of a cut neither push each other away nor hold each other, 
     CHECK((met > 0) == meets);
   }
   CHECK(energy[1] < 1.2 * energy[0]);
+}
+
+TEST_CASE("the step that tears tells the energy of its contacts as if nothing was torn", "[tear]") {
+  std::vector<double> energies[2];
+  double first = 0;  // s, when something tears
+  for (const char* tear : {"0.35", "9"}) {
+    const bool tears = std::string(tear) != "9";
+    const Scene scene = read_scene(
+        source_dir() + "/data/scenes/sheet-torn.toml",
+        {parse_setting(std::string("cloth.0.tear=") + tear), parse_setting("cloth.0.self_contact=true")});
+    Simulation sheet = make_simulation(scene);
+    Run run(sheet, {.out = "", .quiet = true, .duration = tears ? 1.0 : first});
+    for (bool over = false; !over && sheet.state.time < 1;) {
+      const StepRow& row = run.step();
+      REQUIRE(row.report.done);
+      energies[tears].push_back(row.contact_energy);
+      over = tears ? row.report.torn > 0 : sheet.state.time > first - 1e-9;
+    }
+    if (tears) first = sheet.state.time;
+  }
+  REQUIRE(first < 0.9);
+  CHECK(energies[true].back() > 0);
+  CHECK(energies[true] == energies[false]);
 }
 
 TEST_CASE("a limit in a scene has a unit, and one that makes no sense is refused with its line", "[tear]") {

@@ -1,5 +1,6 @@
 #include "app/picture/still.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -28,17 +29,25 @@ RecordedShape file_shape(const std::string& path, bool body) {
   return {std::filesystem::path(path).stem().string(), body, false, read_obj(path)};
 }
 
-// Finds which triangles of all cloths cross others.
+// Finds which triangles of all cloths cross others or a rope, and which segments of ropes do.
 void mark_crossings(Still& still) {
   Sheets sheets;
-  for (const StillPart& part : still.parts)
-    if (!part.body && !part.tube) sheets.add("", *part.triangles, part.positions);
-  std::size_t sheet = 0;
+  std::vector<StillPart*> parts;
+  for (const bool ropes : {false, true})
+    for (StillPart& part : still.parts) {
+      if (part.body || part.is_rope() != ropes) continue;
+      parts.push_back(&part);
+      if (ropes)
+        sheets.add_rope("", part.axis);
+      else
+        sheets.add("", *part.triangles, part.positions);
+    }
   const std::vector<std::vector<int>> crossing = sheets.crossing_triangles();
-  for (StillPart& part : still.parts) {
-    if (part.body || part.tube) continue;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    StillPart& part = *parts[k];
     part.crossing.assign(part.triangles->size(), 0);
-    for (const int t : crossing[sheet++]) part.crossing[t] = 1;
+    const int drawn = part.is_rope() ? triangles_of_segment : 1;
+    for (const int t : crossing[k]) std::fill_n(part.crossing.begin() + t * drawn, drawn, char{1});
   }
 }
 
@@ -101,9 +110,9 @@ Still Subject::still(int frame, std::optional<Field> field) const {
   };
   for (std::size_t k = 0; recording_ && k < recording_->shapes().size(); ++k) {
     const RecordedShape& shape = recording_->shapes()[k];
-    StillPart& part =
-        add(shape.body, drawn_[k].positions(recording_->positions(k, frame)), drawn_[k].triangles());
-    part.tube = drawn_[k].is_tube();
+    std::vector<Vec3> own = recording_->positions(k, frame);
+    StillPart& part = add(shape.body, drawn_[k].positions(own), drawn_[k].triangles());
+    if (drawn_[k].is_tube()) part.axis = std::move(own);
     if (!sectors_[k].empty()) part.sectors = &sectors_[k];
     if (field && field != Field::crossing && !shape.body)
       part.values = drawn_[k].values(values(k, frame, *field));

@@ -20,9 +20,10 @@ struct StillPart {
   const std::vector<Triangle>* triangles = nullptr;  // owned by the Subject
   // For a ball, the positions [m] of its vertices relative to its middle in the first frame; else null.
   const std::vector<Vec3>* sectors = nullptr;
-  bool tube = false;           // a rope, which may go into what it is joined to
+  std::vector<Vec3> axis;      // m, points of a rope, which is drawn as a tube round them; empty: it is none
   std::vector<char> crossing;  // by triangle, whether it crosses another; empty: it was not looked for
   std::vector<double> values;  // colours come from these values at the vertices; empty: the part's own colour
+  bool is_rope() const { return !axis.empty(); }
 };
 
 struct Still {

@@ -9,6 +9,8 @@
 namespace drape::app {
 
 inline constexpr int tube_sides = 8;
+inline constexpr int triangles_of_segment =
+    2 * tube_sides;  // of a rope, from its first on; those of its ends come last
 
 class DrawnShape {
  public:

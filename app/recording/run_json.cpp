@@ -22,7 +22,9 @@ Json cloths_json(const std::vector<ClothCounts>& cloths) {
                                  {"seams", c.seams},
                                  {"tear", c.tear ? Json(*c.tear) : Json()},
                                  {"torn", c.torn},
-                                 {"copy_of", c.copy_of}});
+                                 {"copy_of", c.copy_of},
+                                 {"edges_at_end", c.edges_at_end},
+                                 {"diagonals_at_end", c.diagonals_at_end}});
   return list;
 }
 

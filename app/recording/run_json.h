@@ -21,6 +21,7 @@ struct ClothCounts {
   std::optional<double> tear = {};
   int torn = 0;
   std::vector<int> copy_of = {};
+  int edges_at_end = 0, diagonals_at_end = 0;  // the counts above are of the start
 };
 
 struct SoftCounts {

@@ -13,6 +13,7 @@
 #include "app/simulation/sheets.h"
 #include "mesh/base/errors.h"
 #include "mesh/base/threads.h"
+#include "mesh/triangles/topology.h"
 
 namespace drape::app {
 namespace {
@@ -146,7 +147,7 @@ const StepRow& Run::step() {
   row_.time = state.time;
   row_.kinetic_energy = simulation_.system->kinetic_energy(state.v);
   row_.elastic_energy = simulation_.system->elastic_energy(state.x);
-  row_.contact_energy = simulation_.system->contact_energy(state.x);
+  row_.contact_energy = row_.report.contact_energy;
   row_.gravity_energy = simulation_.system->gravity_energy(state.x);
   row_.max_speed = max_speed(state.v);
   row_.max_edge_strain = largest_strain(simulation_.cloths, state.x);
@@ -301,14 +302,19 @@ void Run::tell_of_open_seams() {
     }
 }
 
-// Where a cloth tears it gets more particles.
+// Where a cloth tears it gets more particles and edges, and fewer diagonals.
 void Run::describe_tears() {
   for (std::size_t k = 0; k < record_.cloths.size(); ++k) {
     const Cloth& cloth = simulation_.cloths[k];
+    ClothCounts& counts = record_.cloths[k];
+    counts.edges_at_end = counts.edges;
+    counts.diagonals_at_end = counts.diagonals;
     if (!cloth.tearing) continue;
-    record_.cloths[k].particles = cloth.mesh.vertex_count();
-    record_.cloths[k].torn = cloth.tearing->cuts;
-    record_.cloths[k].copy_of = cloth.tearing->copy_of;
+    counts.particles = cloth.mesh.vertex_count();
+    counts.edges_at_end = static_cast<int>(edges(cloth.mesh).size());
+    counts.diagonals_at_end = static_cast<int>(diagonals(cloth.mesh).size());
+    counts.torn = cloth.tearing->cuts;
+    counts.copy_of = cloth.tearing->copy_of;
   }
 }
 

@@ -116,7 +116,6 @@ void read_tear(Table& table, ClothEntry& cloth) {
        "written has the new borders, and the copies of vertices after the others",
        "it does not tear"});
   if (!cloth.tear) return;
-  if (!cloth.seams.empty()) table.fail("tear", "cloth with seams does not tear; leave one of them out");
   if (cloth.fabric.neighbour_weighting)
     table.fail("tear",
                "with neighbour_weighting a tear would change the mass of the cloth; leave one of them out");

@@ -205,7 +205,10 @@ std::vector<VertexGroup> torn_groups(const TriangleMesh& mesh, const TriangleMes
 }  // namespace
 
 TornMesh tear(const TriangleMesh& mesh, const std::vector<CutEdge>& cuts) {
-  TornTriangles torn = torn_triangles(mesh, cuts);
+  return torn_mesh(mesh, torn_triangles(mesh, cuts));
+}
+
+TornMesh torn_mesh(const TriangleMesh& mesh, TornTriangles torn) {
   if (torn.copy_of.empty()) return {mesh, {}};
   TornMesh result{mesh, torn.copy_of};
   for (const int v : torn.copy_of) result.mesh.positions.push_back(mesh.positions[v]);

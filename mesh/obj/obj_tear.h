@@ -18,6 +18,7 @@ struct TornMesh {
   std::vector<int> copy_of;  // the last copy_of.size() vertices are copies of these
 };
 
+TornMesh torn_mesh(const TriangleMesh& mesh, TornTriangles torn);
 // Throws InputError when a cut is no edge of the mesh.
 TornMesh tear(const TriangleMesh& mesh, const std::vector<CutEdge>& cuts);
 

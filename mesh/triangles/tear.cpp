@@ -1,6 +1,7 @@
 #include "mesh/triangles/tear.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -104,6 +105,34 @@ CornerSets fans(const TriangleMesh& mesh, const std::vector<Side>& sides, const 
 
 }  // namespace
 
+namespace {
+
+// The mesh with a copy of its vertex for all sets of corners there but the lowest one. `set` tells the lowest corner of the
+// set that a corner is in, or -1 where the corner keeps its vertex.
+template <class Set>
+TornTriangles with_copies(const TriangleMesh& mesh, const Set& set) {
+  std::vector<std::pair<int, int>> first_corners;  // (vertex, lowest corner) of every set
+  const int corners = 3 * mesh.triangle_count();
+  for (int c = 0; c < corners; ++c)
+    if (set(c) == c) first_corners.emplace_back(mesh.triangles[c / 3][c % 3], c);
+  std::sort(first_corners.begin(), first_corners.end());
+  TornTriangles torn{mesh.triangles, {}};
+  std::vector<int> vertex_of(static_cast<std::size_t>(corners),
+                             -1);  // of the set that begins with this corner; -1: its own
+  for (std::size_t k = 1; k < first_corners.size(); ++k) {
+    const auto [vertex, corner] = first_corners[k];
+    if (first_corners[k - 1].first != vertex) continue;
+    vertex_of[corner] = mesh.vertex_count() + static_cast<int>(torn.copy_of.size());
+    torn.copy_of.push_back(vertex);
+  }
+  for (int c = 0; c < corners; ++c)
+    if (const int first = set(c); first >= 0 && vertex_of[first] >= 0)
+      torn.triangles[c / 3][c % 3] = vertex_of[first];
+  return torn;
+}
+
+}  // namespace
+
 TornTriangles torn_triangles(const TriangleMesh& mesh, const std::vector<CutEdge>& cuts) {
   const std::vector<CutEdge> sorted = sorted_cuts(cuts);
   const std::vector<Side> sides = sides_by_edge(mesh);
@@ -112,24 +141,19 @@ TornTriangles torn_triangles(const TriangleMesh& mesh, const std::vector<CutEdge
   std::vector<char> at_cut(mesh.positions.size(), 0);
   for (const auto& [a, b] : sorted) at_cut[a] = at_cut[b] = 1;
 
-  std::vector<std::pair<int, int>> first_corners;  // (vertex, lowest corner) of every fan at a cut
-  for (int c = 0; c < 3 * mesh.triangle_count(); ++c) {
+  return with_copies(mesh, [&](int c) {
     const Triangle& t = mesh.triangles[c / 3];
-    if (!names_twice(t) && at_cut[t[c % 3]] && sets.first(c) == c) first_corners.emplace_back(t[c % 3], c);
-  }
-  std::sort(first_corners.begin(), first_corners.end());
-  TornTriangles torn{mesh.triangles, {}};
-  std::vector<int> vertex_of(3 * mesh.triangles.size(),
-                             -1);  // of the fan that begins with this corner; -1: its own
-  for (std::size_t k = 1; k < first_corners.size(); ++k) {
-    const auto [vertex, corner] = first_corners[k];
-    if (first_corners[k - 1].first != vertex) continue;
-    vertex_of[corner] = mesh.vertex_count() + static_cast<int>(torn.copy_of.size());
-    torn.copy_of.push_back(vertex);
-  }
+    return names_twice(t) || !at_cut[t[c % 3]] ? -1 : sets.first(c);
+  });
+}
+
+TornTriangles divided_triangles(const TriangleMesh& mesh, const std::vector<Triangle>& parts) {
+  std::map<std::pair<int, int>, int> lowest;  // (vertex, part) -> corner
   for (int c = 0; c < 3 * mesh.triangle_count(); ++c)
-    if (const int vertex = vertex_of[sets.first(c)]; vertex >= 0) torn.triangles[c / 3][c % 3] = vertex;
-  return torn;
+    lowest.try_emplace({mesh.triangles[c / 3][c % 3], parts[c / 3][c % 3]}, c);
+  return with_copies(mesh, [&](int c) {
+    return lowest.at({mesh.triangles[c / 3][c % 3], parts[c / 3][c % 3]});
+  });
 }
 
 }  // namespace drape

@@ -27,4 +27,9 @@ struct TornTriangles {
 // Throws InputError when a cut is no edge of the mesh.  O(n log n) for n triangles.
 TornTriangles torn_triangles(const TriangleMesh& mesh, const std::vector<CutEdge>& cuts);
 
+// A mesh of which several vertices may be one thing, such as a particle that was sewn of them, after those things were cut:
+// parts[t][k] is what corner k of triangle t belongs to. Each vertex belongs to one part: where its corners fall to several,
+// the part of the lowest triangle keeps the vertex, and the others get copies of it.  O(n log n).
+TornTriangles divided_triangles(const TriangleMesh& mesh, const std::vector<Triangle>& parts);
+
 }  // namespace drape

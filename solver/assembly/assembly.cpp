@@ -22,16 +22,16 @@
 #include "solver/forces/woven.h"
 
 namespace drape {
-namespace {
 
-// The cloth's triangles between its particles, numbered from its first particle.
-TriangleMesh between_particles(const Cloth& cloth) {
+TriangleMesh internal::between_particles(const Cloth& cloth) {
   TriangleMesh mesh = cloth.mesh;
   for (Triangle& t : mesh.triangles)
     for (int& v : t) v = cloth.embedding.particle(v) - cloth.first_particle;
   mesh.positions.resize(static_cast<std::size_t>(cloth.end_particle - cloth.first_particle));
   return mesh;
 }
+
+namespace {
 
 Connections connections_of(const Cloth& cloth, const TriangleMesh& mesh) {
   return cloth.model == ClothModel::choi_ko ? choi_ko_connections(mesh, cloth.rest, cloth.fabric)
@@ -260,7 +260,7 @@ void Assembly::connect(Cloth& cloth, Forces& forces) const {
     for (int v = 0; v < cloth.mesh.vertex_count(); ++v) particles.push_back(cloth.embedding.particle(v));
     return append(rope_forces(cloth.rest.positions, particles, *cloth.rope), forces);
   }
-  const TriangleMesh mesh = between_particles(cloth);
+  const TriangleMesh mesh = internal::between_particles(cloth);
   if (cloth.model == ClothModel::woven) {
     if (!cloth.memory) cloth.memory = std::make_shared<BendMemory>();
     append(
@@ -342,6 +342,7 @@ StepReport Assembly::advance(double h) {
     }
   StepReport report = integrator->advance(state, h);
   if (!report.done) return report;
+  report.contact_energy = system->contact_energy(state.x);
   report.torn = tear_cloths();
   if (!open) return report;
   const double before = system->total_energy(state);

@@ -3,8 +3,23 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace drape {
+namespace {
+
+// What particle first + k has, number[first + k] - low has from now on: the most where several become one.
+template <class Value>
+void follow(const std::vector<int>& number, int first, int low, std::vector<Value>& by_particle) {
+  const std::vector<Value> before = std::exchange(by_particle, {});
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const auto to = static_cast<std::size_t>(number[static_cast<std::size_t>(first) + k] - low);
+    if (to >= by_particle.size()) by_particle.resize(to + 1);
+    by_particle[to] = std::max(by_particle[to], before[k]);
+  }
+}
+
+}  // namespace
 
 void Cloth::renumber(const std::vector<int>& number) {
   embedding.renumber(number);
@@ -16,6 +31,10 @@ void Cloth::renumber(const std::vector<int>& number) {
   for (int i = first_particle; i < end_particle; ++i) {
     low = std::min(low, number[i]);
     high = std::max(high, number[i]);
+  }
+  if (tearing) {
+    follow(number, first_particle, low, tearing->at_cut);
+    follow(number, first_particle, low, tearing->rests_until);
   }
   first_particle = low;
   end_particle = high + 1;

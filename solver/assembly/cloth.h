@@ -145,7 +145,7 @@ struct Cloth {
   };
   std::vector<Stitched> seams;  // those that are open
 
-  // Particle i gets the number number[i].
+  // Particle i gets the number number[i]; several may get the same.
   void renumber(const std::vector<int>& number);
 };
 

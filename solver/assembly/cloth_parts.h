@@ -8,6 +8,9 @@
 
 namespace drape::internal {
 
+// The cloth's triangles between its particles, numbered from its first particle. Places mean nothing there.
+TriangleMesh between_particles(const Cloth& cloth);
+
 std::vector<double> cloth_masses(const Cloth& cloth);  // kg, of its vertices, by its triangles
 
 // What makes a cloth one that may tear as the part says. The cloth has its mesh and its edges. Throws InputError where

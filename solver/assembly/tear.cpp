@@ -29,21 +29,26 @@ bool is_strained_too_far(const Cloth& cloth, const VecX& x) {
 }
 
 // A grid of quads stays one when only their sides are cut.
-std::vector<CutEdge> diagonals_of_quads(const TriangleMesh& mesh) {
+std::vector<CutEdge> diagonals_of_quads(const Cloth& cloth) {
   std::vector<CutEdge> all;
-  const ObjDocument& document = *mesh.document;
+  const ObjDocument& document = *cloth.mesh.document;
+  const auto particle = [&](std::size_t corner) {
+    return cloth.embedding.particle(document.corners[corner].v) - cloth.first_particle;
+  };
   for (std::size_t f = 0; f < document.face_count(); ++f)
     for (const std::size_t k : {document.face_start[f], document.face_start[f] + 1})
-      all.push_back(std::minmax({document.corners[k].v, document.corners[k + 2].v}));
+      all.push_back(std::minmax({particle(k), particle(k + 2)}));
   std::sort(all.begin(), all.end());
   return all;
 }
 
-// Vertex v of a cloth that may tear is the particle first_particle + v.
+// Of the triangles between particles, numbered from the first one: a cloth tears across its seams as anywhere else.
 std::vector<CutEdge> edges_to_cut(const Cloth& cloth, const State& state, const std::vector<int>& pinned) {
   const int first = cloth.first_particle;
-  const std::vector<Vec3> x = cloth.embedding.positions(state.x);
-  TearingCloth torn{cloth.mesh, x, {}, std::vector<char>(x.size(), 0), {}};
+  const TriangleMesh between = internal::between_particles(cloth);
+  const std::vector<Vec3> x =
+      unstacked(state.x.segment(3 * first, 3 * static_cast<Eigen::Index>(between.positions.size())));
+  TearingCloth torn{between, x, {}, std::vector<char>(x.size(), 0), {}};
   for (const RestEdge& e : cloth.edges) {
     const auto [a, b] = std::minmax({e.i - first, e.j - first});
     torn.edges.push_back({a, b, strain(e, state.x)});
@@ -51,7 +56,7 @@ std::vector<CutEdge> edges_to_cut(const Cloth& cloth, const State& state, const 
   for (const int particle : pinned)
     if (particle >= first && particle < cloth.end_particle)
       torn.held[static_cast<std::size_t>(particle - first)] = 1;
-  if (cloth.model == ClothModel::choi_ko) torn.never_cut = diagonals_of_quads(cloth.mesh);
+  if (cloth.model == ClothModel::choi_ko) torn.never_cut = diagonals_of_quads(cloth);
   return internal::edges_to_cut(std::move(torn), *cloth.tearing, state.time);
 }
 
@@ -81,16 +86,59 @@ Parting numbers_after(const std::vector<Cloth>& cloths, const std::vector<std::v
   return parting;
 }
 
+// What a cloth becomes that is cut.
+struct TornCloth {
+  std::vector<Triangle> before;  // its triangles between particles, numbered from the first one
+  TornTriangles particles;       // the same, torn
+  TornMesh mesh;
+};
+
+TornCloth torn_cloth(const Cloth& cloth, const std::vector<CutEdge>& cuts) {
+  const TriangleMesh between = internal::between_particles(cloth);
+  TornTriangles particles = torn_triangles(between, cuts);
+  TornMesh mesh = torn_mesh(cloth.mesh, divided_triangles(cloth.mesh, particles.triangles));
+  return {between.triangles, std::move(particles), std::move(mesh)};
+}
+
 // Adds the triangles of a torn cloth that changed.
-void add_faces(const Cloth& cloth, const std::vector<Triangle>& torn, Parting& parting) {
+void add_faces(const Cloth& cloth, const TornCloth& torn, Parting& parting) {
   const int before = cloth.first_particle, now = parting.number[static_cast<std::size_t>(before)];
-  for (std::size_t t = 0; t < torn.size(); ++t) {
-    if (torn[t] == cloth.mesh.triangles[t]) continue;
+  for (std::size_t t = 0; t < torn.before.size(); ++t) {
+    if (torn.before[t] == torn.particles.triangles[t]) continue;
     Parting::Face face{};
     for (std::size_t k = 0; k < 3; ++k)
-      face.before[k] = before + cloth.mesh.triangles[t][k], face.now[k] = now + torn[t][k];
+      face.before[k] = before + torn.before[t][k], face.now[k] = now + torn.particles.triangles[t][k];
     parting.faces.push_back(face);
   }
+}
+
+// Gives a cloth whose particles have their new numbers its torn mesh and the copies after its particles. A vertex is the
+// particle that its triangles are of.
+void become(TornCloth torn, Cloth& cloth) {
+  Embedding embedding;
+  std::vector<int> particle(torn.mesh.mesh.positions.size(), -1);
+  for (int v = 0; v < cloth.mesh.vertex_count(); ++v)
+    particle[static_cast<std::size_t>(v)] = cloth.embedding.particle(v);
+  for (std::size_t t = 0; t < torn.before.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      particle[static_cast<std::size_t>(torn.mesh.mesh.triangles[t][k])] =
+          cloth.first_particle + torn.particles.triangles[t][k];
+  for (const int p : particle) embedding.add_vertex(p);
+  cloth.mesh = std::move(torn.mesh.mesh);
+  cloth.embedding = std::move(embedding);
+  cloth.end_particle += static_cast<int>(torn.particles.copy_of.size());
+  std::vector<int>& copy_of = cloth.tearing->copy_of;
+  copy_of.insert(copy_of.end(), torn.mesh.copy_of.begin(), torn.mesh.copy_of.end());
+}
+
+// kg, of the particles of a cloth, from the first one, by its triangles.
+std::vector<double> particle_masses(const Cloth& cloth) {
+  std::vector<double> masses(static_cast<std::size_t>(cloth.end_particle - cloth.first_particle), 0.0);
+  const std::vector<double> of_vertices = internal::cloth_masses(cloth);
+  for (std::size_t v = 0; v < of_vertices.size(); ++v)
+    masses[static_cast<std::size_t>(cloth.embedding.particle(static_cast<int>(v)) - cloth.first_particle)] +=
+        of_vertices[v];
+  return masses;
 }
 
 [[noreturn]] void refuse(const Cloth& cloth, double limit, const std::string& why) {
@@ -106,7 +154,6 @@ Tearing internal::tearing_of(const ClothPart& part, const Cloth& cloth) {
   const double limit = *part.tear;
   if (!(limit > 0) || !std::isfinite(limit))
     refuse(cloth, limit, "a strain above which cloth tears is finite and greater than zero");
-  if (!part.seams.empty()) refuse(cloth, limit, "cloth with seams does not tear; leave one of them out");
   if (cloth.fabric.neighbour_weighting)
     refuse(cloth, limit,
            "with neighbour_weighting a tear would change the mass of the cloth; leave one of them out");
@@ -143,16 +190,15 @@ int Assembly::tear_cloths() {
 }
 
 void Assembly::part_particles(const std::vector<std::vector<CutEdge>>& cuts) {
-  std::vector<TornMesh> torn(cloths.size());
-  std::vector<std::vector<int>> copies(cloths.size());
+  std::vector<TornCloth> torn(cloths.size());
+  std::vector<std::vector<int>> copies(cloths.size());  // of particles
   for (std::size_t k = 0; k < cloths.size(); ++k) {
     if (cuts[k].empty()) continue;
-    torn[k] = tear(cloths[k].mesh, cuts[k]);
-    copies[k] = torn[k].copy_of;
+    torn[k] = torn_cloth(cloths[k], cuts[k]);
+    copies[k] = torn[k].particles.copy_of;
   }
   Parting parting = numbers_after(cloths, copies, state.particles());
-  for (std::size_t k = 0; k < cloths.size(); ++k)
-    if (!cuts[k].empty()) add_faces(cloths[k], torn[k].mesh.triangles, parting);
+  for (std::size_t k = 0; k < cloths.size(); ++k) add_faces(cloths[k], torn[k], parting);
   std::sort(parting.faces.begin(), parting.faces.end(),
             [](const auto& f, const auto& g) { return f.before < g.before; });
 
@@ -173,15 +219,14 @@ void Assembly::part_particles(const std::vector<std::vector<CutEdge>>& cuts) {
   for (std::size_t k = 0; k < cloths.size(); ++k) {
     if (cuts[k].empty()) continue;
     Cloth& cloth = cloths[k];
-    cloth.mesh = std::move(torn[k].mesh);
-    for (std::size_t c = 0; c < copies[k].size(); ++c) cloth.embedding.add_vertex(cloth.end_particle++);
-    internal::note_cuts(cuts[k], copies[k], state.time, cloth.mesh.vertex_count(), *cloth.tearing);
+    become(std::move(torn[k]), cloth);
     // A copy has the mass of its triangles, and what is left stays with its original: what else hangs there, too.
-    const std::vector<double> of_triangles = internal::cloth_masses(cloth);
+    const std::vector<double> of_triangles = particle_masses(cloth);
+    internal::note_cuts(cuts[k], copies[k], state.time, of_triangles.size(), *cloth.tearing);
     for (std::size_t c = 0; c < copies[k].size(); ++c) {
-      const std::size_t vertex = of_triangles.size() - copies[k].size() + c;
-      const auto copy = static_cast<std::size_t>(cloth.first_particle) + vertex;
-      masses[copy] = of_triangles[vertex];
+      const std::size_t local = of_triangles.size() - copies[k].size() + c;
+      const auto copy = static_cast<std::size_t>(cloth.first_particle) + local;
+      masses[copy] = of_triangles[local];
       masses[static_cast<std::size_t>(cloth.first_particle + copies[k][c])] -= masses[copy];
     }
   }

@@ -49,7 +49,8 @@ class TearSearch {
 
  private:
   bool rests(int v) const { return t_ < value(tearing_.rests_until, v); }
-  bool at_cut(int v) const { return value(tearing_.at_cut, v) != 0; }
+  // Whether a tear ends there, which so far has parted the vertices before it.
+  bool is_tip(int v) const { return value(tearing_.at_cut, v) != 0 && value(tearing_.rests_until, v) == 0; }
   template <class T>
   static T value(const std::vector<T>& by_vertex, int v) {
     const auto k = static_cast<std::size_t>(v);
@@ -171,12 +172,12 @@ class TearSearch {
     return most;
   }
 
-  // grow: only an end at which the cloth is torn.
+  // grow: only an end that is the tip of a tear.
   void part_an_end(const StrainedEdge& edge, bool grow) {
     std::optional<Parted> chosen;
     int vertex = -1;
     for (const int end : {edge.a, edge.b}) {
-      if (grow && !at_cut(end)) continue;
+      if (grow && !is_tip(end)) continue;
       std::optional<Parted> parted = best(end);
       if (!parted || (chosen && std::tuple(parted->at_border, parted->pull) <=
                                     std::tuple(chosen->at_border, chosen->pull)))
@@ -207,19 +208,17 @@ std::vector<CutEdge> edges_to_cut(TearingCloth cloth, const Tearing& tearing, do
   return TearSearch(std::move(cloth), tearing, t).cuts();
 }
 
-void note_cuts(const std::vector<CutEdge>& cuts, const std::vector<int>& copies, double t, int vertices,
-               Tearing& tearing) {
-  const auto all = static_cast<std::size_t>(vertices);
-  tearing.at_cut.resize(all, 0);
-  tearing.rests_until.resize(all, 0);
+void note_cuts(const std::vector<CutEdge>& cuts, const std::vector<int>& copies, double t,
+               std::size_t vertices, Tearing& tearing) {
+  tearing.at_cut.resize(vertices, 0);
+  tearing.rests_until.resize(vertices, 0);
   for (const auto& [a, b] : cuts)
     for (const int v : {a, b}) tearing.at_cut[static_cast<std::size_t>(v)] = 1;
   for (std::size_t k = 0; k < copies.size(); ++k)
-    for (const std::size_t v : {all - copies.size() + k, static_cast<std::size_t>(copies[k])}) {
+    for (const std::size_t v : {vertices - copies.size() + k, static_cast<std::size_t>(copies[k])}) {
       tearing.at_cut[v] = 1;
       tearing.rests_until[v] = t + draw_back;
     }
-  tearing.copy_of.insert(tearing.copy_of.end(), copies.begin(), copies.end());
   tearing.cuts += static_cast<int>(cuts.size());
   tearing.last = t;
 }

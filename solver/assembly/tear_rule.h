@@ -7,10 +7,11 @@
 // such pairs of edges those are cut for which sigma is largest: so the cloth tears across its stretch, as straight as the
 // mesh allows. One end of an edge is parted: that at a border rather than that inside, else that of the larger sigma. Where sigma is
 // below half the limit, nothing holds on the other side, as at the end of a loose strip, and nothing is cut.
-//   - Tears that are there grow before others begin: at each vertex of theirs that does not rest, mostly at their ends, by one vertex in a step, where an edge is strained
-//     too far, the most strained first. No two cuts of a step have a vertex in common, but those that part one vertex.
+//   - Tears that are there grow before others begin: at their tips, which are the ends of cut edges that have not parted themselves, by
+//     one vertex in a step, where an edge is strained too far, the most strained first. No two cuts of a step have a vertex in
+//     common, but those that part one vertex.
 //   - A tear begins at the most strained edge where this is possible, one in a step, and only where nothing was cut for
-//     `draw_back`: a tear relieves the cloth round it, which would shatter otherwise.
+//     `draw_back`: a tear relieves the cloth round it, which would shatter otherwise. So does a branch from the side of a tear.
 //   - A vertex that has parted draws back for as long, and its edges are not looked at meanwhile.
 //   - A vertex that is held does not begin to part: its copies would be held, too, and nothing would be relieved. Where
 //     a tear from elsewhere ends at one that is held at a border, this one parts, and both are held.
@@ -33,8 +34,9 @@ struct StrainedEdge {
 };
 
 struct TearingCloth {
-  const TriangleMesh& mesh;         // as it is torn so far
-  const std::vector<Vec3>& x;       // m, of its vertices
+  const TriangleMesh&
+      mesh;  // its triangles between particles, which are the vertices here, as it is torn so far
+  const std::vector<Vec3>& x;       // m, of the particles
   std::vector<StrainedEdge> edges;  // in any order; of several at one place the most strained counts
   std::vector<char> held;           // by vertex
   std::vector<CutEdge> never_cut;   // edges that stay whole, the lower vertex first; sorted
@@ -43,8 +45,8 @@ struct TearingCloth {
 // The edges that are cut at the time t [s].  O(n log n) for n triangles.
 std::vector<CutEdge> edges_to_cut(TearingCloth cloth, const Tearing& tearing, double t);
 
-// Notes what was cut at the time t. copies: the copies of vertices that the cut made, as TornTriangles::copy_of.
-void note_cuts(const std::vector<CutEdge>& cuts, const std::vector<int>& copies, double t, int vertices,
-               Tearing& tearing);
+// Notes what was cut at the time t. copies: those that the cut made, as TornTriangles::copy_of; they are the last of `vertices`.
+void note_cuts(const std::vector<CutEdge>& cuts, const std::vector<int>& copies, double t,
+               std::size_t vertices, Tearing& tearing);
 
 }  // namespace drape::internal

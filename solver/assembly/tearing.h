@@ -9,11 +9,13 @@ namespace drape {
 
 struct Tearing {
   double limit = 0;  // strain l / L - 1 of an edge above which the cloth tears there [-]
-  std::vector<int>
-      copy_of;   // vertex n + k of the mesh is a copy of vertex copy_of[k]; n: vertices at the start
+  // Vertex n + k of the mesh is a copy of vertex copy_of[k]; n: vertices at the start. Where a seam was merged, particles may
+  // part at which each vertex stays whole.
+  std::vector<int> copy_of;
   int cuts = 0;  // edges that were cut so far
-  std::vector<char> at_cut;         // by vertex: whether it is an end of an edge that was cut
-  std::vector<double> rests_until;  // s, by vertex: until then it draws back, because it has parted
+  // By particle of the cloth, from its first one; those beyond the end were never cut.
+  std::vector<char> at_cut;         // whether it is an end of an edge that was cut
+  std::vector<double> rests_until;  // s: until then it draws back, because it has parted; 0: it never did
   double last = -std::numeric_limits<double>::infinity();  // s, when something was cut last
 };
 

@@ -76,7 +76,10 @@ struct StepReport {
   double body_overlap = 0;      // m: how far bodies were inside each other at the start
   double contact_residual = 0;  // how far they were from settled in the worst of the pieces, see StepOptions
   int torn = 0;                 // edges of cloth that were cut at the end (solver/assembly/tear_rule.h)
-  double penetration = 0;       // m: how far the deepest particle was inside a body at the start
+  // J: of the contacts in which the cloth gives way, at the end, before anything is cut or merged there and they begin
+  // anew. An Assembly notes it.
+  double contact_energy = 0;
+  double penetration = 0;  // m: how far the deepest particle was inside a body at the start
   double assemble_ms = 0, solve_ms = 0, collide_ms = 0, step_ms = 0;
 };
 
