@@ -1,12 +1,14 @@
-// What carries particles where they meet a body: sets of them that are pushed as one, such as clusters that keep their shape
-// (solver/forces/cluster_contacts.h). They are asked after ContactStep::respond has found what each particle meets by itself,
-// and change the free motion of all that they carry; then the particles are looked at again, for what is left to each.
+// What carries particles where they meet a body or each other: sets of them that are pushed as one, such as clusters that keep
+// their shape (solver/forces/cluster_contacts.h). They are asked after ContactStep::respond has found what each particle meets
+// by itself, and change the free motion of all that they carry; then the particles are looked at again, for what is left to
+// each.
 #pragma once
 
 #include <vector>
 
 #include "constraints/obstacle.h"
 #include "constraints/response.h"
+#include "constraints/self_contact.h"
 
 namespace drape {
 
@@ -18,8 +20,7 @@ struct CarriedContact {
   Vec3 body_velocity;  // m/s, in the step
   Friction friction;
   double restitution;
-  // N s, which the carriers give to the particle, and the body gets the opposite. Carriers find those of their own particles, and
-  // take the others as they are.
+  // N s, which the carriers give to the particle, and the body gets the opposite. It is zero where they do not answer.
   Vec3 impulse = Vec3::Zero();
 };
 
@@ -37,10 +38,11 @@ struct CarriedBody {
 // The motion of the particles in the step as it would be without bodies; carriers change it.
 struct CarriedMotion {
   ContactMode mode;
-  double h;                       // s
-  double recovery_speed;          // m/s, at which a particle comes out of a body at most
-  const std::vector<char>& held;  // by particle
-  const VecX& start;              // m
+  double h;                           // s
+  double recovery_speed;              // m/s, at which a particle comes out of a body at most
+  const std::vector<char>& held;      // by particle
+  const std::vector<double>& masses;  // kg
+  const VecX& start;                  // m
   const std::vector<CarriedBody>& bodies;
   VecX& before;  // m/s, when the step begins: an impact changes it
   VecX& x;       // m, at the end
@@ -50,8 +52,11 @@ struct CarriedMotion {
 class Carriers {
  public:
   virtual ~Carriers() = default;
-  // Adds the impulses to `met`; true when there are any.
-  virtual bool carry(std::vector<CarriedContact>& met, const CarriedMotion& motion) = 0;
+  // Marks the pairs of cloth that the carriers answer in the step in place of springs. held: by particle.
+  virtual void take(std::vector<SelfContact>& pairs, const std::vector<char>& held) = 0;
+  // Adds the impulses to what the particles meet, and to the pairs that were taken; true when there are any.
+  virtual bool carry(std::vector<CarriedContact>& met, std::vector<SelfContact>& pairs,
+                     const CarriedMotion& motion) = 0;
 };
 
 }  // namespace drape

@@ -60,9 +60,8 @@ void ContactStep::see_bodies() {
 }
 
 // Lets carriers take what their particles meet, and then the particles what is left.
-void ContactStep::carry(ContactMode mode, const VecX& x, const VecX& v,
-                        const std::vector<Carriers*>& carriers, VecX& x_new, VecX& v_new) {
-  if (carriers.empty()) return;
+void ContactStep::carry(ContactMode mode, const VecX& x, const VecX& v, Carriers& carriers, VecX& x_new,
+                        VecX& v_new) {
   StepMotion& step = constraints_->step_;
   ParticleContacts& contacts = constraints_->contacts_;
   std::vector<CarriedContact>& met = constraints_->carried_;
@@ -76,7 +75,6 @@ void ContactStep::carry(ContactMode mode, const VecX& x, const VecX& v,
     note({r.particle, r.body, r.normal, r.gap, r.body_velocity, obstacle.friction, obstacle.restitution},
          met);
   });
-  if (met.empty()) return;
   constraints_->carried_x_ = x;
   constraints_->carried_v_ = v;
   constraints_->carried_before_ = step.v;
@@ -84,14 +82,18 @@ void ContactStep::carry(ContactMode mode, const VecX& x, const VecX& v,
                              step.h,
                              contacts.recovery_speed(),
                              step.held,
+                             step.masses,
                              step.x,
                              constraints_->carried_bodies_,
                              constraints_->carried_before_,
                              constraints_->carried_x_,
                              constraints_->carried_v_};
-  bool any = false;
-  for (Carriers* const one : carriers) any = one->carry(met, motion) || any;
-  if (!any) return;
+  if (!carriers.carry(met, constraints_->self_.touching(), motion)) return;
+  if (!bodies()) {
+    x_new = constraints_->carried_x_;
+    v_new = constraints_->carried_v_;
+    return;
+  }
   step.v.swap(constraints_->carried_before_);
   contacts.respond_again(mode, constraints_->bodies_, step, constraints_->carried_x_,
                          constraints_->carried_v_, x_new, v_new);
@@ -121,15 +123,17 @@ void ContactStep::push_carried(const VecX& v, const VecX& x_new) {
 }
 
 void ContactStep::respond(ContactMode mode, const VecX& x, const VecX& v, const VecX& pulled,
-                          const std::vector<Carriers*>& carriers, VecX& x_new, VecX& v_new, double noise) {
+                          Carriers* carriers, VecX& x_new, VecX& v_new, double noise) {
   const StepMotion& step = constraints_->step_;
   const PinSet& pins = constraints_->pins_;
   for (MovingBody& body : constraints_->bodies_) body.begin_corrections();
   constraints_->carried_.clear();
   bool moved = false;
+  x_new = x;
+  v_new = v;
   for (bool again = true; again; moved = moved || again) {
-    constraints_->contacts_.respond(mode, constraints_->bodies_, step, x, v, x_new, v_new);
-    carry(mode, x, v, carriers, x_new, v_new);
+    if (bodies()) constraints_->contacts_.respond(mode, constraints_->bodies_, step, x, v, x_new, v_new);
+    if (carriers) carry(mode, x, v, *carriers, x_new, v_new);
     clear_impulses();
     push_carried(v, x_new);
     constraints_->contacts_.each_response([&](const ContactResponse& r) {

@@ -95,9 +95,13 @@ class ContactStep {
 
   // For a motion that was found without a filter for contacts: the free motion to x, v ends at x_new, v_new.
   // pulled [N s]: the impulse on each pin of what carries it, besides the one that brings it to its velocity.
-  // carriers: of particles that are pushed as one.
+  // carriers: of particles that are pushed as one; null: there are none.
   void respond(ContactMode mode, const VecX& x, const VecX& v, const VecX& pulled,
-               const std::vector<Carriers*>& carriers, VecX& x_new, VecX& v_new, double noise);
+               Carriers* carriers, VecX& x_new, VecX& v_new, double noise);
+  // Lets carriers take pairs of cloth, before the forces of the step are told of it.
+  void let_take(Carriers& carriers) {
+    carriers.take(constraints_->self_.touching(), constraints_->step_.held);
+  }
   // How easily an impulse moves a pin [m/s per N s]: not at all, or, where a body that reacts carries it, at most as the
   // body gives way there.
   double mobility_of(const MovingPin& pin) const;
@@ -116,8 +120,7 @@ class ContactStep {
   void clear_impulses();
   void push(int body, int particle, const Vec3& v, const Vec3& body_velocity, const Vec3& impulse);
   void receive_faces(const VecX& v);
-  void carry(ContactMode mode, const VecX& x, const VecX& v, const std::vector<Carriers*>& carriers,
-             VecX& x_new, VecX& v_new);
+  void carry(ContactMode mode, const VecX& x, const VecX& v, Carriers& carriers, VecX& x_new, VecX& v_new);
   void see_bodies();
   void push_carried(const VecX& v, const VecX& x_new);
   void receive_pin(const MovingPin& pin, const Vec3& impulse);

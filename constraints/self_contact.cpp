@@ -298,8 +298,8 @@ void SelfContacts::end_step(const VecX& x_new) {
   last_ = touching_;
   for (SelfContact& c : last_) {
     const Vec3 p = c.at(x_new);
-    const double push = c.push_at(p);
-    c.hold = c.rub_at(p, push);
+    const double push = c.by_carriers ? c.normal.dot(c.carried_force) : c.push_at(p);
+    c.hold = c.by_carriers ? Vec3(c.carried_force - push * c.normal) : c.rub_at(p, push);
     c.before = push;
     c.load = std::any_of(c.particles.begin(), c.particles.end(), [&](int v) { return is_stopped(v); })
                  ? std::max(push, c.push)

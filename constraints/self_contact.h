@@ -105,6 +105,8 @@ struct SelfContact {
   double slide = 0;            // that force [N]
   double spring = 1;           // what is left there of the spring along d, as a share of the weakened one
   bool slid = false;           // whether it pushed and slid at the point that the contacts were made for last
+  bool by_carriers = false;    // carriers (constraints/carriers.h) answer it, and it has no spring
+  Vec3 carried_force = Vec3::Zero();  // which these put on the first side in the step [N]
 
   // The slope of the energy along a way of p [N]: of the law, and of the linear contact of the solve.
   Vec3 slope(const Vec3& p) const { return -push_at(p) * normal - rub_at(p, push); }
@@ -201,6 +203,7 @@ class SelfContacts {
 
   void look_again() { look_again_ = true; }  // the particles were moved from outside
   const std::vector<SelfContact>& touching() const { return touching_; }  // sorted
+  std::vector<SelfContact>& touching() { return touching_; }              // for carriers
   const std::vector<SelfContact>& pushed() const {
     return last_;
   }                                         // of the last step; `before` says how hard

@@ -1,80 +1,11 @@
-// Laws of clusters that meet bodies and each other: a stiff one moves as a rigid body of its mass and inertia does.
-#include <Eigen/Geometry>
+// Laws of clusters that meet bodies: a stiff one moves as a rigid body of its mass and inertia does.
 #include <catch2/catch.hpp>
-#include <numeric>
 
 #include "mesh/triangles/generate.h"
-#include "solver/forces/cluster_body.h"
-#include "solver/forces/cluster_force.h"
-#include "solver/forces/self_contact_force.h"
-#include "solver/integrators/integrator.h"
-#include "tests/clusters.h"
-#include "tests/tables.h"
+#include "tests/cluster_bodies.h"
 
 using namespace drape;
 using namespace drape::test;
-
-namespace {
-
-constexpr double stiff = 1e10;  // 1/s^2
-constexpr double g = 9.81;
-
-// Bodies of one cluster each, which are sets of particles after one another.
-struct Bodies {
-  std::vector<Vec3> places;
-  std::vector<double> own;
-  ParticleSets sets;
-  std::unique_ptr<System> system;
-  Constraints constraints;
-  State state;
-  double k = stiff;
-
-  void add(const std::vector<Vec3>& points, const std::vector<double>& mass) {
-    sets.emplace_back();
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      sets.back().push_back(static_cast<int>(places.size()));
-      places.push_back(points[i]);
-      own.push_back(mass[i]);
-    }
-  }
-  // A box of particles that is turned and moved.
-  void add_box(const std::array<int, 3>& counts, const Quaternion& turn, const Vec3& at, double edge = 0.1) {
-    const Lattice box = box_lattice(counts, Vec3::Constant(edge));
-    std::vector<Vec3> points;
-    for (const Vec3& x : box.positions) points.push_back(turn * x + at);
-    add(points, masses(box, SoftMaterial{}));
-  }
-  void make(const Vec3& gravity) {
-    system = std::make_unique<System>(own);
-    state = {0, stacked(places), VecX::Zero(3 * static_cast<Eigen::Index>(places.size()))};
-    system->add(std::make_unique<ClusterForce>(clusters(), k));
-    system->add(Gravity{gravity});
-  }
-  Clusters clusters() const { return Clusters(sets, own, stacked(places), "bodies"); }
-  ClusterBody body(int b) const { return body_of(clusters()[b], state.x); }
-  ClusterMotion motion(int b) const { return motion_of(clusters()[b], body(b), state.x, state.v); }
-  Mat3 inertia(int b) const { return inertia_of(clusters()[b], body(b).centre, state.x); }
-  void move(int b, const Vec3& velocity, const Vec3& spin) {
-    const Vec3 c = body(b).centre;
-    for (const int i : sets[static_cast<std::size_t>(b)])
-      state.v.segment<3>(3 * i) = velocity + spin.cross(Vec3(state.x.segment<3>(3 * i)) - c);
-  }
-  double kinetic() const { return system->kinetic_energy(state.v); }
-  void run(double h, int steps, const std::string& contact, int substeps = 20) {
-    StepOptions options;
-    options.projection.substeps = substeps;
-    options.contact = contact == "restitution" ? ContactMode::restitution : ContactMode::velocity;
-    auto stepper = make_integrator("pbd", *system, constraints, make_linear_solver("mpcg"), options);
-    for (int n = 0; n < steps; ++n) {
-      INFO("step " << n);
-      REQUIRE(stepper->advance(state, h).done);
-    }
-  }
-};
-
-const Quaternion level = Quaternion::Identity();
-
-}  // namespace
 
 TEST_CASE("a cluster that falls flat leaves with the restitution of the floor", "[clusters][pbd]") {
   for (const double e : {0.0, 0.4, 1.0})
@@ -200,60 +131,6 @@ TEST_CASE("a cluster and a body that it hits keep momentum, and part as rigid bo
         if (off == 0)
           CHECK(body.velocity()[1] - fallen[1] == Approx(-(1 + e) * m_A / (m_A + m_B)).epsilon(0.01));
       }
-}
-
-TEST_CASE("clusters that collide keep momentum and angular momentum, and leave as rigid bodies would",
-          "[clusters][pbd]") {
-  Random random(6);
-  for (int k = 0; k < 8; ++k) {
-    Bodies two;
-    const Quaternion turn = random.rotation();
-    two.add_box({3, 3, 3}, turn, {0, 0, 0});
-    two.add_box({3, 3, 3}, random.rotation(), {0.02, 0.5, 0.01});
-    double gap = 1;  // brought together along y by what is between the lowest and the highest of both
-    double high = -1, low = 1;
-    for (const int i : two.sets[0]) high = std::max(high, two.places[static_cast<std::size_t>(i)][1]);
-    for (const int i : two.sets[1]) low = std::min(low, two.places[static_cast<std::size_t>(i)][1]);
-    gap = low - high - 2e-3;
-    for (const int i : two.sets[1]) two.places[static_cast<std::size_t>(i)][1] -= gap;
-    std::vector<SelfFace> faces;
-    const Lattice box = box_lattice({3, 3, 3}, Vec3::Constant(0.1));
-    std::vector<int> on_surface;
-    const TriangleMesh surface = surface_of(box, on_surface);
-    for (const int b : {0, 1})
-      for (Triangle t : surface.triangles) {
-        for (int& v : t) v = 27 * b + on_surface[static_cast<std::size_t>(v)];
-        faces.push_back({t, 1e-3, 0.0, b});
-      }
-    two.constraints.add_self_faces(faces);
-    two.make(Vec3::Zero());
-    two.system->add(self_contact_force(two.constraints));
-    two.move(1, {0, -1, 0}, Vec3::Zero());
-    const auto angular = [&] {
-      Vec3 L = Vec3::Zero();
-      for (int i = 0; i < two.system->particles(); ++i)
-        L += two.own[static_cast<std::size_t>(i)] *
-             Vec3(two.state.x.segment<3>(3 * i)).cross(Vec3(two.state.v.segment<3>(3 * i)));
-      return L;
-    };
-    const Vec3 L = angular();
-    const double energy = two.kinetic(), m = two.body(0).mass;
-    const Vec3 P = m * two.motion(1).velocity;
-    two.run(1e-3, 60, "velocity");
-    const ClusterMotion a = two.motion(0), b = two.motion(1);
-    INFO(k << ": " << a.velocity.transpose() << "; " << b.velocity.transpose() << "; " << a.spin.transpose());
-    CHECK(a.velocity.norm() > 0.1);
-    CHECK((m * (a.velocity + b.velocity) - P).norm() < 1e-7 * P.norm());
-    CHECK((angular() - L).norm() < 0.02 * (m * 0.1));
-    CHECK(two.kinetic() < energy);
-    const double rigid = 0.5 * m * (a.velocity.squaredNorm() + b.velocity.squaredNorm()) +
-                         0.5 * a.spin.dot(two.inertia(0) * a.spin) +
-                         0.5 * b.spin.dot(two.inertia(1) * b.spin);
-    CHECK(rigid > 0.98 * two.kinetic());  // they do not shake
-    // The push went through one point: its moment about the centre is across it.
-    const Vec3 L_A = two.inertia(0) * a.spin, J = m * a.velocity;
-    CHECK(std::abs(L_A.dot(J)) < 0.1 * L_A.norm() * J.norm());
-  }
 }
 
 TEST_CASE("a cluster with a pinned particle is no free body", "[clusters][pbd]") {

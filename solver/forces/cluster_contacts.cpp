@@ -1,244 +1,356 @@
 #include "solver/forces/cluster_contacts.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace drape {
 namespace {
 
-constexpr int most_sweeps = 200;
-constexpr double exactness = 1e-12;  // of the largest velocity: what a sweep changes at the end
-constexpr double stands = 1e-4;      // m/s: what slides less when the step begins is held by static friction
+constexpr double stands = 1e-4;   // m/s: what slides less when the step begins is held by static friction
+constexpr double shallow = 1e-9;  // m: what is no deeper need not be brought out
+constexpr double tolerated =
+    0.01;  // of the thickness: by how much particles may come nearer within their clusters
+constexpr double least_weight = 1e-3;  // of a particle that makes a pair one of its cluster
 
 Vec3 at(const VecX& x, int particle) { return x.segment<3>(3 * particle); }
 
-ClusterMotion sum(const ClusterMotion& a, const ClusterMotion& b) {
-  return {a.velocity + b.velocity, a.spin + b.spin};
+template <class Key>
+Vec3 last_of(const std::vector<std::pair<Key, Vec3>>& sorted, const Key& key) {
+  const auto at = std::lower_bound(sorted.begin(), sorted.end(), key,
+                                   [](const auto& one, const Key& other) { return one.first < other; });
+  return at != sorted.end() && at->first == key ? at->second : Vec3(Vec3::Zero());
+}
+
+bool is_pushed(const Impulses::Body& body) {
+  return std::any_of(body.changes.begin(), body.changes.end(), [](const ClusterMotion& change) {
+    return !change.velocity.isZero(0) || !change.spin.isZero(0);
+  });
 }
 
 }  // namespace
 
-ClusterContacts::ClusterContacts(const Clusters& clusters)
-    : clusters_(clusters), number_(static_cast<std::size_t>(clusters.count()), unknown) {}
-
-int ClusterContacts::body_of_cluster(int cluster, const CarriedMotion& motion) {
-  int& number = number_[static_cast<std::size_t>(cluster)];
-  if (number != unknown) return number;
-  asked_.push_back(cluster);
-  const auto members = clusters_[cluster];
-  const bool held = std::any_of(members.begin(), members.end(),
-                                [&](const ClusterMember& m) { return motion.held[m.particle] != 0; });
-  if (held) return number = not_free;
-  number = static_cast<int>(bodies_.size());
-  const ClusterBody body = drape::body_of(members, motion.start);
-  const ClusterMotion none{Vec3::Zero(), Vec3::Zero()};
-  bodies_.push_back({cluster, body, motion_of(members, body, motion.start, motion.before),
-                     motion_of(members, body, motion.start, motion.v), none, none});
-  return number;
-}
-
-// The particles that touch and are in free clusters only.
-void ClusterContacts::find(std::vector<CarriedContact>& met, const CarriedMotion& motion) {
-  for (const int cluster : asked_) number_[static_cast<std::size_t>(cluster)] = unknown;
-  asked_.clear();
-  bodies_.clear();
-  holds_.clear();
-  meetings_.clear();
-  const ClusterMotion none{Vec3::Zero(), Vec3::Zero()};
-  by_impact_.assign(motion.bodies.size(), none);
-  by_support_.assign(motion.bodies.size(), none);
-  for (CarriedContact& contact : met) {
-    const auto places = clusters_.places_of(contact.particle);
-    const std::size_t first = holds_.size();
-    Mat3 give = Mat3::Zero();
-    bool free = !places.empty();
-    for (const Clusters::Place& place : places) {
-      const int number = body_of_cluster(place.cluster, motion);
-      if (number == not_free) free = false;
-      if (!free) break;
-      const ClusterMember& member = clusters_.member(place);
-      const ClusterBody& body = bodies_[static_cast<std::size_t>(number)].body;
-      const Vec3 arm = at(motion.start, contact.particle) - body.centre;
-      const double share = member.share / member.mass;
-      holds_.push_back({number, share, arm});
-      give += share * share * give_at(body, arm);
+ClusterContacts::ClusterContacts(const std::vector<const Clusters*>& clusters) {
+  int particles = 0;
+  for (const Clusters* const some : clusters)
+    for (int c = 0; c < some->count(); ++c) {
+      clusters_.push_back((*some)[c]);
+      for (const ClusterMember& m : (*some)[c]) particles = std::max(particles, m.particle + 1);
     }
-    if (!free) {
-      holds_.resize(first);
-      push_obstacle(Phase::support, contact, -contact.impulse, motion);  // of other carriers
-      continue;
+  places_start_.assign(static_cast<std::size_t>(particles) + 1, 0);
+  for (const auto& cluster : clusters_)
+    for (const ClusterMember& m : cluster) ++places_start_[static_cast<std::size_t>(m.particle) + 1];
+  for (std::size_t i = 1; i < places_start_.size(); ++i) places_start_[i] += places_start_[i - 1];
+  places_.resize(places_start_.back());
+  std::vector<std::size_t> next(places_start_.begin(), places_start_.end() - 1);
+  for (std::size_t c = 0; c < clusters_.size(); ++c)
+    for (const ClusterMember& m : clusters_[c])
+      places_[next[static_cast<std::size_t>(m.particle)]++] = {static_cast<int>(c), m.share / m.mass};
+  free_.resize(clusters_.size());
+  const std::size_t bodies = clusters_.size() + next.size(), points = places_.size() + next.size();
+  impulses_.reserve(bodies, points);
+  carried_.reserve(bodies);
+  numbered_.reserve(bodies);
+  touches_.reserve(points);
+  last_of_pairs_.reserve(points);
+  last_of_contacts_.reserve(points);
+}
+
+std::span<const ClusterContacts::Place> ClusterContacts::places_of(int particle) const {
+  const auto i = static_cast<std::size_t>(particle);
+  if (i + 1 >= places_start_.size()) return {};
+  return {places_.data() + places_start_[i], places_start_[i + 1] - places_start_[i]};
+}
+
+// Whether the particle is in free clusters only.
+bool ClusterContacts::is_carried(int particle) const {
+  const auto places = places_of(particle);
+  return !places.empty() && std::all_of(places.begin(), places.end(), [this](const Place& place) {
+    return free_[static_cast<std::size_t>(place.cluster)] != 0;
+  });
+}
+
+bool ClusterContacts::is_taken(const SelfContact& pair) const {
+  if (pair.body >= 0) return false;
+  bool carried = false;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (std::abs(pair.weights[k]) < least_weight || !is_carried(pair.particles[k])) continue;
+    carried = true;
+    for (std::size_t l = 0; l < k; ++l) {
+      if (pair.weights[k] * pair.weights[l] >= 0) continue;
+      for (const Place& a : places_of(pair.particles[k]))
+        for (const Place& b : places_of(pair.particles[l]))
+          if (a.cluster == b.cluster) return false;
     }
-    contact.impulse.setZero();
-    if (const CarriedBody& other = motion.bodies[static_cast<std::size_t>(contact.body)]; other.reacts)
-      give += give_at({1 / other.inverse_mass, other.centre, other.inverse_inertia},
-                      at(motion.start, contact.particle) - other.centre);
-    const double along = contact.normal.dot(give * contact.normal);
-    meetings_.push_back({.contact = &contact,
-                         .first = static_cast<int>(first),
-                         .last = static_cast<int>(holds_.size()),
-                         .give_along = along,
-                         .give_across = give.trace() - along,
-                         .target = 0,
-                         .mu = 0,
-                         .lambda = Vec3::Zero()});
+  }
+  return carried;
+}
+
+void ClusterContacts::take(std::vector<SelfContact>& pairs, const std::vector<char>& held) {
+  for (std::size_t c = 0; c < clusters_.size(); ++c)
+    free_[c] = std::none_of(clusters_[c].begin(), clusters_[c].end(), [&](const ClusterMember& m) {
+      return held[static_cast<std::size_t>(m.particle)] != 0;
+    });
+  taken_ = 0;
+  unsettled_ = 0;
+  for (SelfContact& pair : pairs) {
+    pair.by_carriers = is_taken(pair);
+    taken_ += pair.by_carriers;
   }
 }
 
-ClusterMotion ClusterContacts::motion_in(Phase phase, const Body& body) {
-  switch (phase) {
-    case Phase::before:
-      return body.before;
-    case Phase::impact:
-      return sum(body.before, body.impact);
-    case Phase::support:
-      break;
+// key: a cluster, or a particle after these.
+int ClusterContacts::number_of(int key, const CarriedMotion& motion) {
+  int& number = numbers_[static_cast<std::size_t>(key)];
+  if (number != none) return number;
+  numbered_.push_back(key);
+  const int particle = key - static_cast<int>(clusters_.size());
+  if (particle >= 0) {
+    const auto i = static_cast<std::size_t>(particle);
+    carried_.push_back({none, particle, at(motion.start, particle), 0, 0});
+    return number = impulses_.add({.inverse_mass = motion.held[i] != 0 ? 0 : 1 / motion.masses[i],
+                                   .inverse_inertia = Mat3::Zero(),
+                                   .before = {at(motion.before, particle), Vec3::Zero()},
+                                   .free = {at(motion.v, particle), Vec3::Zero()}});
   }
-  return sum(sum(body.free, body.impact), body.support);
+  const auto members = clusters_[static_cast<std::size_t>(key)];
+  const ClusterBody body = body_of(members, motion.start);
+  carried_.push_back({key, none, body.centre, 0, 0});
+  return number = impulses_.add({.inverse_mass = 1 / body.mass,
+                                 .inverse_inertia = body.inverse_inertia,
+                                 .before = motion_of(members, body, motion.start, motion.before),
+                                 .free = motion_of(members, body, motion.start, motion.v)});
 }
 
-ClusterMotion ClusterContacts::motion_in(Phase phase, std::size_t obstacle,
-                                         const CarriedMotion& motion) const {
-  const CarriedBody& body = motion.bodies[obstacle];
-  const ClusterMotion before{body.velocity_before, body.spin_before};
-  switch (phase) {
-    case Phase::before:
-      return before;
-    case Phase::impact:
-      return sum(before, by_impact_[obstacle]);
-    case Phase::support:
-      break;
+// Adds the part of a particle to the point that is made next: of its clusters, which are pushed at this place, or its own.
+void ClusterContacts::hold(int particle, double weight, const Vec3& place, const CarriedMotion& motion) {
+  if (!is_carried(particle)) {
+    impulses_.hold(number_of(static_cast<int>(clusters_.size()) + particle, motion), weight, Vec3::Zero());
+    return;
   }
-  return sum(sum({body.velocity, body.spin}, by_impact_[obstacle]), by_support_[obstacle]);
-}
-
-// The velocity of the particle with its clusters, as its obstacle sees it.
-Vec3 ClusterContacts::slip(Phase phase, const Meeting& meeting, const CarriedMotion& motion) const {
-  Vec3 u = Vec3::Zero();
-  for (int k = meeting.first; k < meeting.last; ++k) {
-    const Hold& hold = holds_[static_cast<std::size_t>(k)];
-    u += hold.share * motion_in(phase, bodies_[static_cast<std::size_t>(hold.body)]).at(hold.arm);
+  for (const Place& in : places_of(particle)) {
+    const int body = number_of(in.cluster, motion);
+    const double share = weight * in.share;
+    impulses_.hold(body, share, share * (place - carried_[static_cast<std::size_t>(body)].centre));
   }
-  const CarriedContact& contact = *meeting.contact;
-  const auto obstacle = static_cast<std::size_t>(contact.body);
-  if (!motion.bodies[obstacle].reacts) return u - contact.body_velocity;
-  const Vec3 arm = at(motion.start, contact.particle) - motion.bodies[obstacle].centre;
-  return u - motion_in(phase, obstacle, motion).at(arm);
 }
 
-void ClusterContacts::push_obstacle(Phase phase, const CarriedContact& contact, const Vec3& impulse,
-                                    const CarriedMotion& motion) {
-  const auto obstacle = static_cast<std::size_t>(contact.body);
-  const CarriedBody& body = motion.bodies[obstacle];
-  if (!body.reacts) return;
-  ClusterMotion& change = (phase == Phase::impact ? by_impact_ : by_support_)[obstacle];
-  change.velocity += body.inverse_mass * impulse;
-  change.spin += body.inverse_inertia * (at(motion.start, contact.particle) - body.centre).cross(impulse);
+void ClusterContacts::hold_pair(const SelfContact& pair, const CarriedMotion& motion) {
+  bool carried = true;
+  for (std::size_t k = 0; k < 4; ++k)
+    carried = carried && (pair.weights[k] == 0 || is_carried(pair.particles[k]));
+  const Vec3 half =
+      carried ? Vec3(0.5 * pair.place) : Vec3(Vec3::Zero());  // of the way from one side to the other
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vec3 place = at(motion.start, pair.particles[k]);
+    if (pair.weights[k] != 0)
+      hold(pair.particles[k], pair.weights[k], place - std::copysign(1.0, pair.weights[k]) * half, motion);
+  }
 }
 
-void ClusterContacts::push(Phase phase, const Meeting& meeting, const Vec3& impulse,
+void ClusterContacts::hold_obstacle(const CarriedContact& contact, const CarriedMotion& motion) {
+  const CarriedBody& obstacle = motion.bodies[static_cast<std::size_t>(contact.body)];
+  int& number = obstacles_[static_cast<std::size_t>(contact.body)];
+  if (number == none) {
+    carried_.push_back({none, none, obstacle.centre, 0, 0});
+    number = impulses_.add({.inverse_mass = obstacle.inverse_mass,
+                            .inverse_inertia = obstacle.inverse_inertia,
+                            .before = {obstacle.velocity_before, obstacle.spin_before},
+                            .free = {obstacle.velocity, obstacle.spin}});
+  }
+  impulses_.hold(number, -1, obstacle.centre - at(motion.start, contact.particle));
+}
+
+// The pairs that were taken, and what their particles, and those of free clusters, meet of bodies.
+void ClusterContacts::find(std::vector<CarriedContact>& met, std::vector<SelfContact>& pairs,
                            const CarriedMotion& motion) {
-  for (int k = meeting.first; k < meeting.last; ++k) {
-    const Hold& hold = holds_[static_cast<std::size_t>(k)];
-    Body& body = bodies_[static_cast<std::size_t>(hold.body)];
-    ClusterMotion& change = phase == Phase::impact ? body.impact : body.support;
-    const Vec3 part = hold.share * impulse;
-    change.velocity += part / body.body.mass;
-    change.spin += body.body.inverse_inertia * hold.arm.cross(part);
+  numbers_.resize(clusters_.size() + motion.masses.size(), none);
+  for (const int key : numbered_) numbers_[static_cast<std::size_t>(key)] = none;
+  numbered_.clear();
+  obstacles_.assign(motion.bodies.size(), none);
+  impulses_.clear();
+  carried_.clear();
+  touches_.clear();
+  for (SelfContact& pair : pairs) {
+    if (!pair.by_carriers) continue;
+    hold_pair(pair, motion);
+    impulses_.add_point(pair.normal, Vec3::Zero()).guess = last_of(last_of_pairs_, pair.who);
+    touches_.push_back({nullptr, &pair, pair.normal.dot(pair.place) - pair.thickness, pair.friction});
+    pair.carried_force.setZero();
   }
-  push_obstacle(phase, *meeting.contact, -impulse, motion);
+  for (CarriedContact& contact : met) {
+    contact.impulse.setZero();
+    const std::size_t own = clusters_.size() + static_cast<std::size_t>(contact.particle);
+    if (!is_carried(contact.particle) && numbers_[own] == none) continue;
+    hold(contact.particle, 1, at(motion.start, contact.particle), motion);
+    const bool reacts = motion.bodies[static_cast<std::size_t>(contact.body)].reacts;
+    if (reacts) hold_obstacle(contact, motion);
+    impulses_.add_point(contact.normal, reacts ? Vec3(Vec3::Zero()) : contact.body_velocity).guess =
+        last_of(last_of_contacts_, {contact.particle, contact.body});
+    touches_.push_back({&contact, nullptr, contact.gap, 0});
+  }
 }
 
-// Corrects every impulse once; returns the largest change of a velocity [m/s]. An impact has no friction.
-double ClusterContacts::sweep(Phase phase, const CarriedMotion& motion) {
-  double largest = 0;
-  for (Meeting& meeting : meetings_) {
-    const Vec3& n = meeting.contact->normal;
-    const Vec3 u = slip(phase, meeting, motion);
-    const double before = meeting.lambda.dot(n),
-                 along = std::max(0.0, before + (meeting.target - u.dot(n)) / meeting.give_along);
-    Vec3 across = Vec3::Zero();
-    if (phase == Phase::support && meeting.mu > 0) {
-      across = meeting.lambda - before * n - (u - u.dot(n) * n) / meeting.give_across;
-      const double most = meeting.mu * along, size = across.norm();
-      if (size > most) across *= most / size;
-    }
-    const Vec3 more = along * n + across - meeting.lambda;
-    meeting.lambda += more;
-    push(phase, meeting, more, motion);
-    largest = std::max(largest, more.norm() * (meeting.give_along + meeting.give_across));
+// How a contact with a body rubs: what stands when the step begins is held by static friction.
+void ClusterContacts::find_friction() {
+  impulses_.begin(Phase::impact);
+  for (std::size_t k = 0; k < touches_.size(); ++k) {
+    const CarriedContact* const contact = touches_[k].contact;
+    if (!contact) continue;
+    const Impulses::Point& point = impulses_.points()[k];
+    const Vec3 u = impulses_.slip(point);
+    const bool slides = (u - u.dot(point.normal) * point.normal).norm() > stands;
+    touches_[k].mu = slides ? contact->friction.kinetic : contact->friction.statics;
   }
-  return largest;
+}
+
+// What the relative velocities along the normals are to be at least at the end of the phase, which has begun.
+void ClusterContacts::set_targets(Phase phase, const CarriedMotion& motion) {
+  const double deepest = -motion.recovery_speed * motion.h, slowest = phase == Phase::recovery ? deepest : 0;
+  for (std::size_t k = 0; k < touches_.size(); ++k) {
+    Impulses::Point& point = impulses_.points()[k];
+    const CarriedContact* const contact = touches_[k].contact;
+    const bool by_speed = contact && motion.mode == ContactMode::velocity;
+    point.target = -std::max(touches_[k].gap, by_speed ? deepest : slowest) / motion.h;
+    point.mu = touches_[k].pair || phase == Phase::support ? touches_[k].mu : 0;
+    if (!contact || motion.mode == ContactMode::velocity || phase == Phase::recovery) continue;
+    point.target = phase == Phase::impact
+                       ? std::max(0.0, -contact->restitution * impulses_.slip(point).dot(point.normal))
+                       : 0;
+  }
+}
+
+void ClusterContacts::remember() {
+  last_of_pairs_.clear();
+  last_of_contacts_.clear();
+  for (std::size_t k = 0; k < touches_.size(); ++k) {
+    const Vec3& impulse = impulses_.points()[k].impulse;
+    if (const SelfContact* const pair = touches_[k].pair)
+      last_of_pairs_.emplace_back(pair->who, impulse);
+    else
+      last_of_contacts_.emplace_back(std::pair(touches_[k].contact->particle, touches_[k].contact->body),
+                                     impulse);
+  }
 }
 
 void ClusterContacts::settle(Phase phase, const CarriedMotion& motion) {
-  double fastest = 0;
-  for (const Meeting& meeting : meetings_)
-    fastest = std::max(fastest, slip(phase, meeting, motion).norm() + std::abs(meeting.target));
-  for (int k = 0; k < most_sweeps && sweep(phase, motion) > exactness * fastest; ++k) {
+  impulses_.begin(phase);
+  set_targets(phase, motion);
+  unsettled_ = std::max(unsettled_, impulses_.settle(phase));
+}
+
+// Moves what lies too deep. An obstacle gets nothing of this.
+void ClusterContacts::bring_out(const CarriedMotion& motion) {
+  if (std::none_of(touches_.begin(), touches_.end(), [](const Touch& touch) { return touch.gap < -shallow; }))
+    return;
+  for (std::size_t b = 0; b < carried_.size(); ++b) {
+    if (carried_[b].cluster != none || carried_[b].particle != none) continue;
+    impulses_.bodies()[b].inverse_mass = 0;
+    impulses_.bodies()[b].inverse_inertia.setZero();
+  }
+  settle(Phase::recovery, motion);
+}
+
+// Gives the impulses of the phase that has ended to what they are of.
+void ClusterContacts::take_impulses(double h) {
+  for (std::size_t k = 0; k < touches_.size(); ++k) {
+    const Vec3& impulse = impulses_.points()[k].impulse;
+    if (touches_[k].contact)
+      touches_[k].contact->impulse += impulse;
+    else
+      touches_[k].pair->carried_force += impulse / h;
   }
 }
 
-// The share of the step that is left after the impact: the mean over those that meet the surface within it.
-double ClusterContacts::part_after_impact(const CarriedMotion& motion) const {
-  double sum = 0, weight = 0;
-  for (const Meeting& meeting : meetings_) {
-    const CarriedContact& c = *meeting.contact;
-    const double push = meeting.lambda.dot(c.normal);
-    const Vec3 way = at(motion.x, c.particle) - at(motion.start, c.particle) - motion.h * c.body_velocity;
-    const double nearer = -way.dot(c.normal);
-    sum += push * (c.gap > 0 && nearer > c.gap ? 1 - c.gap / nearer : 1);
-    weight += push;
-  }
-  return weight > 0 ? sum / weight : 1;
-}
-
-// Moves all particles of the clusters that were pushed.
-void ClusterContacts::move(double part, const CarriedMotion& motion) const {
-  for (const Body& body : bodies_) {
-    if (body.impact.velocity.isZero(0) && body.support.velocity.isZero(0) && body.impact.spin.isZero(0) &&
-        body.support.spin.isZero(0))
-      continue;
-    for (const ClusterMember& m : clusters_[body.cluster]) {
-      const Vec3 arm = at(motion.start, m.particle) - body.body.centre;
-      const double share = m.share / m.mass;
-      const Vec3 by_impact = share * body.impact.at(arm), by_support = share * body.support.at(arm);
-      motion.before.segment<3>(3 * m.particle) += by_impact;
-      motion.v.segment<3>(3 * m.particle) += by_impact + by_support;
-      motion.x.segment<3>(3 * m.particle) += motion.h * (part * by_impact + by_support);
+// The part of the step that is left to each body after its impacts: the mean over the points where it is hit. It meets the
+// surface of a body within the step, and a pair when the step begins.
+void ClusterContacts::find_parts(const CarriedMotion& motion) {
+  for (std::size_t k = 0; k < touches_.size(); ++k) {
+    const Impulses::Point& point = impulses_.points()[k];
+    double part = 1;
+    if (const CarriedContact* const c = touches_[k].contact; c && c->gap > 0) {
+      const Vec3 way =
+          at(motion.x, c->particle) - at(motion.start, c->particle) - motion.h * c->body_velocity;
+      if (const double nearer = -way.dot(c->normal); nearer > c->gap) part -= c->gap / nearer;
+    }
+    const double push = point.impulse.dot(point.normal);
+    for (const Impulses::Hold& hold : impulses_.holds(point)) {
+      Carried& body = carried_[static_cast<std::size_t>(hold.body)];
+      body.part += part * push;
+      body.pushed += push;
     }
   }
 }
 
-bool ClusterContacts::carry(std::vector<CarriedContact>& met, const CarriedMotion& motion) {
-  find(met, motion);
-  if (meetings_.empty()) return false;
-  for (Meeting& meeting : meetings_) {
-    const CarriedContact& c = *meeting.contact;
-    const Vec3 u = slip(Phase::before, meeting, motion);
-    const double approach = u.dot(c.normal);
-    meeting.mu = (u - approach * c.normal).norm() > stands ? c.friction.kinetic : c.friction.statics;
-    meeting.target = std::max(0.0, -c.restitution * approach);
+// Moves all particles of the clusters that were pushed, and those on their own.
+void ClusterContacts::move(const CarriedMotion& motion) const {
+  for (std::size_t b = 0; b < carried_.size(); ++b) {
+    const Impulses::Body& body = impulses_.bodies()[b];
+    const Carried& carried = carried_[b];
+    if (!is_pushed(body)) continue;
+    const double part = carried.pushed > 0 ? carried.part / carried.pushed : 1;
+    const auto move_one = [&](int particle, double share) {
+      const Vec3 arm = at(motion.start, particle) - carried.centre;
+      const auto by = [&](Phase phase) { return Vec3(share * body.change(phase).at(arm)); };
+      const Vec3 by_impact = by(Phase::impact), by_support = by(Phase::support);
+      motion.before.segment<3>(3 * particle) += by_impact;
+      motion.v.segment<3>(3 * particle) += by_impact + by_support;
+      motion.x.segment<3>(3 * particle) += motion.h * (part * by_impact + by_support + by(Phase::recovery));
+    };
+    if (carried.cluster != none)
+      for (const ClusterMember& m : clusters_[static_cast<std::size_t>(carried.cluster)])
+        move_one(m.particle, m.share / m.mass);
+    else if (carried.particle != none)
+      move_one(carried.particle, 1);
   }
-  double part = 1;
+}
+
+// Parts the pairs whose particles come nearer within their clusters, each by itself; true when there are any. What sweeps leave
+// of bodies that are stiff is far less: it would be borne without friction here.
+bool ClusterContacts::part_particles(const CarriedMotion& motion) const {
+  bool any = false;
+  for (const Touch& touch : touches_) {
+    if (!touch.pair) continue;
+    const SelfContact& pair = *touch.pair;
+    std::array<double, 4> ways;
+    double gives_way = 0;
+    Vec3 p = Vec3::Zero(), u = Vec3::Zero();
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto i = static_cast<std::size_t>(pair.particles[k]);
+      ways[k] = motion.held[i] != 0 ? 0 : pair.weights[k] / motion.masses[i];
+      gives_way += pair.weights[k] * ways[k];
+      p += pair.weights[k] * (at(motion.x, pair.particles[k]) - at(motion.start, pair.particles[k]));
+      u += pair.weights[k] * at(motion.v, pair.particles[k]);
+    }
+    const double in_way = -std::max(touch.gap, -motion.recovery_speed * motion.h) - pair.normal.dot(p),
+                 in_speed = -std::max(touch.gap, 0.0) / motion.h - pair.normal.dot(u);
+    if (in_way <= tolerated * pair.thickness) continue;
+    any = true;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Vec3 push = ways[k] / gives_way * pair.normal;
+      motion.x.segment<3>(3 * pair.particles[k]) += std::max(in_way, 0.0) * push;
+      motion.v.segment<3>(3 * pair.particles[k]) += std::max(in_speed, 0.0) * push;
+    }
+  }
+  return any;
+}
+
+bool ClusterContacts::carry(std::vector<CarriedContact>& met, std::vector<SelfContact>& pairs,
+                            const CarriedMotion& motion) {
+  find(met, pairs, motion);
+  if (touches_.empty()) return false;
+  find_friction();
   if (motion.mode == ContactMode::restitution) {
     settle(Phase::impact, motion);
-    part = part_after_impact(motion);
-    for (Meeting& meeting : meetings_) {
-      meeting.contact->impulse += meeting.lambda;
-      meeting.lambda.setZero();
-      meeting.target = 0;
-    }
-  } else {
-    for (Meeting& meeting : meetings_)
-      meeting.target = -std::max(meeting.contact->gap, -motion.recovery_speed * motion.h) / motion.h;
+    find_parts(motion);
+    take_impulses(motion.h);
   }
   settle(Phase::support, motion);
-  bool any = false;
-  for (Meeting& meeting : meetings_) {
-    meeting.contact->impulse += meeting.lambda;
-    any = any || !meeting.contact->impulse.isZero(0);
-  }
-  if (any) move(part, motion);
-  return any;
+  remember();
+  take_impulses(motion.h);
+  bring_out(motion);
+  move(motion);
+  return part_particles(motion) ||
+         std::any_of(impulses_.bodies().begin(), impulses_.bodies().end(), is_pushed);
 }
 
 }  // namespace drape

@@ -1,81 +1,99 @@
-// Clusters (solver/forces/cluster.h) that meet bodies: where a particle of a cluster touches, the impulse acts on the whole
-// cluster as on a rigid body (solver/forces/cluster_body.h). A particle in several clusters shares it among them by its shares.
-//   u = sum_c s_c (v_c + w_c x r_c)     the velocity of the particle with its clusters,  s_c = w_i / m_i
-//   K = sum_c s_c^2 (1/M_c 1 - [r_c] I_c^-1 [r_c]);   cluster c gets the impulse s_c J at the particle
-// All impulses of a substep are found together, by sweeps over the touching particles (projected Gauss-Seidel):
-//   velocity      n.(u - v_b) >= -gap/h, with friction
-//   restitution   first the impact without friction, n.(u' - v_b) >= -e n.(u - v_b) for what approaches; then
-//                 n.(u - v_b) >= 0 with friction, against what the forces do
+// Clusters (solver/forces/cluster.h) that meet bodies, each other, cloth and ropes: where a particle of a cluster touches, the
+// impulse acts on the whole cluster as on a rigid body (solver/forces/cluster_body.h). A particle in several clusters shares it
+// among them by its shares. All impulses of a substep, of all clusters, are found together (solver/forces/impulses.h).
+//   particle on a body    u = sum_c s_c (v_c + w_c x r_c) - v_b,   s_c = w_i / m_i
+//   pair of cloth         u = sum_k w_k sum_c s_kc (v_c + w_c x r_kc)    with the w_k of constraints/self_contact.h
+// Cluster c gets s_c J, or sum_k w_k s_kc J, there; where both sides of a pair are of clusters, in the middle between them, so that
+// friction turns nothing that it should not. A particle of a pair that is in no free cluster is a body of its own, which
+// does not turn: K then has w_k^2 / m_k. What it meets of other bodies is answered here as well.
+//   velocity      n.u >= -gap/h, with friction
+//   restitution   first the impact without friction, n.u' >= -e n.u for what approaches a body; then n.u >= 0 with friction,
+//                 against what the forces do. Pairs have e = 0: n.u >= -gap/h, with friction, in both.
 //   friction      |J_T| <= mu J.n, and against the slip where that is reached                       [Coulomb]
+//   recovery      what begins too deep is brought out with the recovery speed at most, and gets no velocity from it, but by bodies
+//                 in the mode `velocity`, as its particles do
 // as constraints/response.h has it for a particle. What is left, such as particles that move within their cluster, is answered
-// by particle. A body that reacts (constraints/reacting_body.h) takes part with its own K and the opposite impulses, so that
-// J = (K_A + K_B)^-1 times what the relative velocity is to change by. A cluster with a particle that is held, or that a body carries, is no free body: its particles are on their own.
-// J [N s], u, v_b, v [m/s], w [rad/s], K [1/kg], gap [m], h [s].
+// by particle: of bodies by that, of pairs by the push w_k / m_k along the normal.
+//
+// A body that reacts (constraints/reacting_body.h) takes part with its own K and the opposite impulses. A cluster with a particle
+// that is held, or that a body carries, is no free body: its particles are on their own. So are pairs with no free cluster, and
+// those with one on both sides: springs answer them.
+// J [N s], u, v, v_b [m/s], w [rad/s], K [1/kg], r, gap [m], h [s].
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "constraints/carriers.h"
-#include "solver/forces/cluster_body.h"
+#include "solver/forces/impulses.h"
 
 namespace drape {
 
 class ClusterContacts final : public Carriers {
  public:
-  explicit ClusterContacts(const Clusters& clusters);  // keeps a reference
-  ClusterContacts(const ClusterContacts&) = delete;
-  ClusterContacts& operator=(const ClusterContacts&) = delete;
+  // All clusters of a system. Keeps references to their members.
+  explicit ClusterContacts(const std::vector<const Clusters*>& clusters);
 
-  bool carry(std::vector<CarriedContact>& met, const CarriedMotion& motion) override;
+  void take(std::vector<SelfContact>& pairs, const std::vector<char>& held) override;
+  bool carry(std::vector<CarriedContact>& met, std::vector<SelfContact>& pairs,
+             const CarriedMotion& motion) override;
+
+  bool takes_pairs() const { return taken_ > 0; }  // in this step
+  // How far the impulses of the last carry() are from settled, relative to the largest velocity there.
+  double unsettled() const { return unsettled_; }
 
  private:
-  struct Body {  // a cluster that is touched
+  struct Place {  // of a particle in a cluster
     int cluster;
-    ClusterBody body;
-    ClusterMotion before, free;  // when the step begins, and at its end without bodies
-    ClusterMotion impact, support;
-  };
-  struct Hold {  // of a touching particle in a cluster
-    int body;
     double share;  // s
-    Vec3 arm;      // m, r
   };
-  struct Meeting {
+  struct Carried {          // what a body of the impulses is
+    int cluster, particle;  // one of them, else none; both none: an obstacle that reacts
+    Vec3 centre;            // m
+    double part,
+        pushed;  // of the step that is left after its impacts, as a sum over these [N s], and what they sum to
+  };
+  struct Touch {  // what a point of the impulses is: one of the two
     CarriedContact* contact;
-    int first, last;                 // of its holds
-    double give_along, give_across;  // 1/kg, n.(K_A + K_B) n, and at most across n
-    double target;                   // m/s
-    double mu;
-    Vec3 lambda;  // N s
+    SelfContact* pair;
+    double gap;  // m
+    double mu;   // -
   };
+  static constexpr int none = -1;
 
-  void find(std::vector<CarriedContact>& met, const CarriedMotion& motion);
-  int body_of_cluster(int cluster, const CarriedMotion& motion);
-  enum class Phase {
-    before,
-    impact,
-    support
-  };  // as it is when the step begins, in the impact, and at the end
-  static ClusterMotion motion_in(Phase phase, const Body& body);
-  ClusterMotion motion_in(Phase phase, std::size_t obstacle, const CarriedMotion& motion) const;
-  Vec3 slip(Phase phase, const Meeting& meeting, const CarriedMotion& motion) const;
+  std::span<const Place> places_of(int particle) const;
+  bool is_carried(int particle) const;
+  bool is_taken(const SelfContact& pair) const;
+  void find(std::vector<CarriedContact>& met, std::vector<SelfContact>& pairs, const CarriedMotion& motion);
+  int number_of(int key, const CarriedMotion& motion);
+  void hold(int particle, double weight, const Vec3& place, const CarriedMotion& motion);
+  void hold_pair(const SelfContact& pair, const CarriedMotion& motion);
+  void hold_obstacle(const CarriedContact& contact, const CarriedMotion& motion);
+  void remember();
+  void find_friction();
+  void set_targets(Phase phase, const CarriedMotion& motion);
   void settle(Phase phase, const CarriedMotion& motion);
-  double sweep(Phase phase, const CarriedMotion& motion);
-  void push(Phase phase, const Meeting& meeting, const Vec3& impulse, const CarriedMotion& motion);
-  void push_obstacle(Phase phase, const CarriedContact& contact, const Vec3& impulse,
-                     const CarriedMotion& motion);
-  double part_after_impact(const CarriedMotion& motion) const;
-  void move(double part, const CarriedMotion& motion) const;
+  void bring_out(const CarriedMotion& motion);
+  void take_impulses(double h);
+  void find_parts(const CarriedMotion& motion);
+  void move(const CarriedMotion& motion) const;
+  bool part_particles(const CarriedMotion& motion) const;
 
-  const Clusters& clusters_;
-  std::vector<int> number_;  // of each cluster in bodies_; unknown, or not_free
-  std::vector<Body> bodies_;
-  std::vector<Hold> holds_;
-  std::vector<Meeting> meetings_;
-  // What the impulses change of each body that reacts.
-  std::vector<ClusterMotion> by_impact_, by_support_;
-  static constexpr int unknown = -1, not_free = -2;
-  std::vector<int> asked_;  // the clusters whose number is known
+  std::vector<std::span<const ClusterMember>> clusters_;
+  std::vector<std::size_t> places_start_;  // particles + 1 entries into places_
+  std::vector<Place> places_;              // of each particle
+  std::vector<char> free_;                 // by cluster
+  int taken_ = 0;
+  double unsettled_ = 0;
+  // The number of each cluster, and of each particle after those, among the bodies; and of each obstacle.
+  std::vector<int> numbers_, obstacles_;
+  std::vector<int> numbered_;  // what has one
+  Impulses impulses_;
+  std::vector<Carried> carried_;  // by body of the impulses
+  std::vector<Touch> touches_;    // by point of the impulses
+  // The impulses of the support found last [N s], sorted, from which the next ones are looked for.
+  std::vector<std::pair<Encounter, Vec3>> last_of_pairs_;
+  std::vector<std::pair<std::pair<int, int>, Vec3>> last_of_contacts_;  // of the particle and the body
 };
 
 }  // namespace drape

@@ -21,8 +21,7 @@ ClusterForce::ClusterForce(Clusters clusters, double k, double viscosity)
     : clusters_(std::move(clusters)),
       k_(k),
       poses_(static_cast<std::size_t>(clusters_.count())),
-      viscosity_(viscosity),
-      contacts_(clusters_) {
+      viscosity_(viscosity) {
   if (viscosity_ > 0) {
     viscous_ = clusters_;
     start_ = poses_;

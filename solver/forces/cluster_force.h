@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "solver/forces/cluster.h"
-#include "solver/forces/cluster_contacts.h"
 #include "solver/forces/projected_force.h"
 
 namespace drape {
@@ -29,7 +28,7 @@ class ClusterForce final : public ProjectedForce {
   double energy(const VecX& x) const override;
   void add_force(const VecX& x, const VecX& v, VecX& f) const override;
   void project(Substep& substep) override;
-  Carriers* carriers() override { return &contacts_; }
+  const Clusters* clusters() const override { return &clusters_; }
 
  private:
   ClusterPose pose(int cluster, const VecX& x) const;
@@ -43,8 +42,7 @@ class ClusterForce final : public ProjectedForce {
   double viscosity_;                // s
   Clusters viscous_;                // with the shapes that viscosity makes of those at rest in this substep
   std::vector<ClusterPose> start_;  // where the substep begins
-  ClusterContacts contacts_;
-  VecX x_free_, x_new_;  // scratch: without that, and with what it is to be
+  VecX x_free_, x_new_;             // scratch: without that, and with what it is to be
 };
 
 }  // namespace drape

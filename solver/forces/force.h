@@ -13,7 +13,7 @@
 
 namespace drape {
 
-class Carriers;
+class Clusters;
 
 // What damping slows: all relative motion, or only that along the connection (solver/forces/damping.h).
 enum class DampingKind { relative, axial };
@@ -85,8 +85,9 @@ class Force {
   virtual void begin_substep(int /*particles*/) {}
   // Takes every element in turn, once.
   virtual void project(Substep&) {}
-  // What carries its particles where they meet bodies (constraints/carriers.h); null: each is on its own.
-  virtual Carriers* carriers() { return nullptr; }
+  // The sets of its particles that are pushed as one where they touch (solver/forces/cluster_contacts.h); null: each particle
+  // is on its own.
+  virtual const Clusters* clusters() const { return nullptr; }
 };
 
 }  // namespace drape

@@ -58,7 +58,7 @@ class SelfContactForce final : public StencilForce<SelfLaw> {
           const bool were = !found.empty();
           found.clear();
           for (const SelfContact& contact : constraints.self().touching())
-            found.push_back({.particles = contact.particles, .rest = &contact});
+            if (!contact.by_carriers) found.push_back({.particles = contact.particles, .rest = &contact});
           return were || !found.empty();
         }) {}
 

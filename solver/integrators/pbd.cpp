@@ -20,17 +20,26 @@ void check(const ProjectionOptions& options) {
                      ": expected the share of the way that a link is drawn to its length, from 0 to 1");
 }
 
+std::vector<const Clusters*> clusters_of(const System& system) {
+  std::vector<const Clusters*> all;
+  for (const auto& force : system.forces())
+    if (const Clusters* const clusters = force->clusters()) all.push_back(clusters);
+  return all;
+}
+
 }  // namespace
 
 Pbd::Pbd(System& system, Constraints& constraints, const StepOptions& options, ContactMode contact)
-    : system_(system), constraints_(constraints), options_(options), contact_(contact) {
+    : system_(system),
+      constraints_(constraints),
+      options_(options),
+      contact_(contact),
+      clusters_(clusters_of(system)) {
   check(options.projection);
-  for (const auto& force : system.forces()) {
-    if (Carriers* const carriers = force->carriers()) carriers_.push_back(carriers);
+  for (const auto& force : system.forces())
     if (!force->projects())
       throw InputError("integrator \"pbd\": the force '" + std::string(force->name()) +
                        "' has no position-based form; leave it out, or take \"implicit-euler\"");
-  }
 }
 
 StepReport Pbd::advance(State& state, double h) {
@@ -58,6 +67,7 @@ void Pbd::take(State& state, double h, bool last, StepReport& report) {
   {
     const Stopwatch watch(report.collide_ms);
     contacts_ = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h, Foresight::none);
+    contacts_->let_take(clusters_);
   }
   {
     const Stopwatch watch(report.assemble_ms);
@@ -69,7 +79,7 @@ void Pbd::take(State& state, double h, bool last, StepReport& report) {
   for (int k = 0; k < options_.projection.iterations; ++k) project(state, h, k, report);
   if (contacts_->bodies())
     contacts_->settle_faces(x_, v_);
-  else
+  else if (!responds())
     v_ = (x_ - state.x) / h;
   if (!x_.allFinite() || !v_.allFinite()) {
     report.done = false;
@@ -83,6 +93,7 @@ void Pbd::take(State& state, double h, bool last, StepReport& report) {
     return;
   }
   if (last) report.residual = residual(state, h);
+  note_contacts(clusters_.unsettled(), options_, report);
   end_step(*contacts_, x_, v_, report);
   system_.end_step(x_);
   state.x = x_;
@@ -131,8 +142,11 @@ void Pbd::project(const State& state, double h, int iteration, StepReport& repor
     pull_bodies(h);
   }
   const Stopwatch watch(report.collide_ms);
-  if (contacts_->bodies()) meet_bodies(state, h);
+  if (responds()) meet_bodies(state, h);
 }
+
+// Whether anything answers the motion of the particles besides the elements.
+bool Pbd::responds() const { return contacts_->bodies() || clusters_.takes_pairs(); }
 
 // The elements have moved the pins by what the bodies there give way to: the impulse goes to the body, and the pin back to it.
 void Pbd::pull_bodies(double h) {
@@ -152,7 +166,7 @@ void Pbd::meet_bodies(const State& state, double h) {
   const double heaviest = *std::max_element(masses.begin(), masses.end());
   free_ = x_ - moved_;
   free_v_ = (free_ - state.x) / h;
-  contacts_->respond(contact_, free_, free_v_, pulled_, carriers_, x_, v_,
+  contacts_->respond(contact_, free_, free_v_, pulled_, &clusters_, x_, v_,
                      round_off * heaviest * h * system_.gravity_acceleration().norm());
   moved_ = x_ - free_;
   for (const MovingPin& pin : contacts_->moving_pins()) moved_.segment<3>(3 * pin.particle).setZero();

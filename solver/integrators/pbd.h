@@ -20,6 +20,7 @@
 
 #include <optional>
 
+#include "solver/forces/cluster_contacts.h"
 #include "solver/integrators/integrator.h"
 
 namespace drape::internal {
@@ -39,6 +40,7 @@ class Pbd final : public Integrator {
   void project(const State& state, double h, int iteration, StepReport& report);
   void pull_bodies(double h);
   void meet_bodies(const State& state, double h);
+  bool responds() const;
   bool is_carried(int particle) const;
   double residual(const State& state, double h);
 
@@ -48,15 +50,15 @@ class Pbd final : public Integrator {
   ContactMode contact_;
   std::optional<ContactStep> contacts_;  // of the substep under way
   Filter held_;
-  std::vector<double> mobility_;     // 1/kg
-  State before_;                     // the step
-  VecX predicted_;                   // x + h v* [m]
-  VecX x_, v_;                       // at the end of the substep
-  VecX moved_;                       // by contact with bodies in this substep [m]
-  VecX pulled_;                      // on each pin, see ContactStep::respond [N s]
-  std::vector<Carriers*> carriers_;  // of particles that meet bodies as one
-  std::vector<Vec3> carried_;        // where bodies and motions take the pins that move, in their order [m]
-  VecX free_, free_v_, push_;        // scratch
+  std::vector<double> mobility_;  // 1/kg
+  State before_;                  // the step
+  VecX predicted_;                // x + h v* [m]
+  VecX x_, v_;                    // at the end of the substep
+  VecX moved_;                    // by contact with bodies in this substep [m]
+  VecX pulled_;                   // on each pin, see ContactStep::respond [N s]
+  ClusterContacts clusters_;      // of particles that are pushed as one
+  std::vector<Vec3> carried_;     // where bodies and motions take the pins that move, in their order [m]
+  VecX free_, free_v_, push_;     // scratch
 };
 
 }  // namespace drape::internal
