@@ -53,6 +53,10 @@ class StepHistory {
   void first_point(const State& state, Point& point) const;
   // Whether the velocity of this particle in first_point() is ahead of the last state.
   bool extrapolates(int particle) const { return k_.order_2() && !restarts(particle); }
+  // Sets dv to what the velocities of first_point() are expected to change by [m/s]: by as much as in the last step,
+  // where there is one that this step goes on from, or as in free fall with this acceleration [m/s^2]. Extrapolated
+  // velocities are expected to stay.
+  void first_change(const State& state, const Vec3& gravity, bool as_in_free_fall, VecX& dv) const;
   // Makes x_bar, v_bar and the masses with the contacts as they are at the time of the call.
   void update(const System& system, const State& state, const ContactStep& contacts);
   // Lets particles that have been caught meanwhile start anew, too.
@@ -62,6 +66,7 @@ class StepHistory {
 
  private:
   void mark_touching(const ContactStep& contacts);
+  bool goes_on_from(const State& state) const;  // true where the last step ended there
   bool restarts(int particle) const { return touched_[particle] != 0; }
 
   int order_;
