@@ -282,7 +282,7 @@ void Bdf::finish(State& state, ContactStep& contacts, StepReport& report) {
   report.residual = std::max(report.residual, linear_.residual);
   report.converged = report.converged && linear_.reason == StopReason::converged;
   note_contacts(imbalance_, options_, report);
-  history_.remember(state, end_, contacts);
+  history_.remember(state, p_.v, end_, contacts);
   system_.end_step(end_.x);
   state.x = end_.x;
   state.v = end_.v;

@@ -83,12 +83,16 @@ void StepHistory::update(const System& system, const State& state, const Contact
   if (contacts.correction().size() > 0) k_.x_bar += contacts.correction();
 }
 
-void StepHistory::remember(const State& state, const Point& end, const ContactStep& contacts) {
+void StepHistory::remember(const State& state, const VecX& solved, const Point& end,
+                           const ContactStep& contacts) {
   begin_.x = state.x;
   begin_.v = state.v;
   end_ = end;
   last_h_ = k_.h;
-  if (order_ == 1) return;
+  if (order_ == 1) {
+    begin_.v += end.v - solved;
+    return;
+  }
   std::fill(touched_.begin(), touched_.end(), 0);
   mark_touching(contacts);
 }

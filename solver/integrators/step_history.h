@@ -61,8 +61,8 @@ class StepHistory {
   void update(const System& system, const State& state, const ContactStep& contacts);
   // Lets particles that have been caught meanwhile start anew, too.
   void restart_touching(const ContactStep& contacts);
-  // Remembers a step that is done: it went from `state` to `end`.
-  void remember(const State& state, const Point& end, const ContactStep& contacts);
+  // Remembers a step that is done: it went from `state` to `end`, where its solves had led to the velocities `solved`.
+  void remember(const State& state, const VecX& solved, const Point& end, const ContactStep& contacts);
 
  private:
   void mark_touching(const ContactStep& contacts);
@@ -71,7 +71,8 @@ class StepHistory {
 
   int order_;
   StepCoefficients k_;
-  // The two ends of the last step that was done.
+  // The two ends of the last step that was done. With order 1, the velocities of the first are those from which its
+  // solves alone would have led to its end: what the guard changed is not expected to happen again.
   Point begin_, end_;
   double last_h_ = 0;          // length of that step [s]; 0: there is none
   std::vector<char> touched_;  // per particle: it met a body in the last step or in this one

@@ -4,7 +4,8 @@
 // 0.2 kg/m^2, 1000 N/m, 10 uN.m, h = 10 ms, tolerance 1e-4. Iterations, solves and Newton iterations are those of a
 // step on average; the contact residual is the largest of the run. Arguments: SIDE ... (vertices along an edge; 32 and
 // 100 unless given), --steps N (100), --solver NAME (auto), --threads N, --model noh-jung|woven, --scene hung|dropped,
-// --self-contact 1 (the sheet meets itself, thickness 1 mm). It ends with the times as a table in Markdown, for
+// --self-contact 1 (the sheet meets itself, thickness 1 mm), --alone 1 (tells what the last system of each step takes
+// alone, as if the contacts were known before). It ends with the times as a table in Markdown, for
 // docs/measured.md; each cell has a number for every number of threads.
 // Without a model, a scene or a number of threads each of them is measured in turn.
 #include <cmath>
@@ -27,7 +28,40 @@ using namespace drape::bench;
 struct Run {
   int side, threads;
   std::string scene, model, solver;
-  bool self_contact = false;
+  bool self_contact = false, alone = false;
+};
+
+// Remembers the last system of a step, to solve it alone.
+class LastSystem final : public LinearSolver {
+ public:
+  explicit LastSystem(const std::string& name) : solver_(make_linear_solver(name)) {}
+  std::string_view name() const override { return solver_->name(); }
+
+  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
+                     VecX& dv) override {
+    if (first_) guess_ = dv;
+    first_ = false;
+    b_ = b;
+    filter_ = filter;
+    options_ = options;
+    return solver_->solve(A, b, filter, options, dv);
+  }
+  void begin_step() { first_ = true; }
+
+  // The iterations that it takes from the first guess of the step, or from zero.
+  int iterations(const BlockMatrix& A, std::string_view method, bool from_guess, double tolerance) const {
+    VecX dv = from_guess ? guess_ : VecX(VecX::Zero(b_.size()));
+    LinearOptions options = options_;
+    options.tolerance = tolerance;
+    return make_linear_solver(method)->solve(A, b_, filter_, options, dv).iterations;
+  }
+
+ private:
+  std::unique_ptr<LinearSolver> solver_;
+  bool first_ = true;
+  VecX guess_, b_;
+  Filter filter_;
+  LinearOptions options_;
 };
 
 struct Cost {
@@ -36,7 +70,10 @@ struct Cost {
   double assemble = 0, solve = 0, collide = 0;  // shares of the time of a step
   double contact_residual = 0;                  // the largest of the run
   int not_converged = 0, by_multigrid = 0;
+  // Iterations of the last system of a step alone: by method, from the step's first guess and from zero.
+  double alone[2][2] = {};
 };
+constexpr const char* methods_alone[2] = {"mpcg+block-ic0", "ppcg+multigrid"};
 
 Cost measure(const Run& run, int steps) {
   set_threads(run.threads);
@@ -59,13 +96,20 @@ Cost measure(const Run& run, int steps) {
     constraints.add_self_faces(faces);
     system.add(self_contact_force(constraints));
   }
-  ImplicitEuler stepper(system, constraints, make_linear_solver(run.solver), {.tolerance = 1e-4});
+  auto solver = std::make_unique<LastSystem>(run.solver);
+  LastSystem& last = *solver;
+  ImplicitEuler stepper(system, constraints, std::move(solver), {.tolerance = 1e-4});
   State state = at_rest(sheet);
   StepReport sum;
   Cost cost;
   sum.step_ms = 0;
   for (int k = 0; k < steps; ++k) {
+    last.begin_step();
     const StepReport r = stepper.advance(state, 0.01);
+    for (int m = 0; m < 2 && run.alone; ++m)
+      for (int guess = 0; guess < 2; ++guess)
+        cost.alone[m][guess] +=
+            1.0 / steps * last.iterations(stepper.matrix(), methods_alone[m], guess == 0, 1e-4);
     sum.step_ms += r.step_ms;
     sum.assemble_ms += r.assemble_ms;
     sum.solve_ms += r.solve_ms;
@@ -124,7 +168,7 @@ int main(int count, char** arguments) {
   std::vector<std::string> scenes = {"hung", "dropped"}, models = {"noh-jung", "woven"};
   std::string solver = "auto";
   int steps = 100;
-  bool self_contact = false;
+  bool self_contact = false, alone = false;
   for (int k = 1; k < count; ++k) {
     const std::string name = arguments[k];
     if (name.rfind("--", 0) != 0) {
@@ -137,6 +181,7 @@ int main(int count, char** arguments) {
     if (name == "--threads") thread_counts = {std::atoi(arguments[k])};
     if (name == "--model") models = {arguments[k]};
     if (name == "--scene") scenes = {arguments[k]};
+    if (name == "--alone") alone = std::atoi(arguments[k]) != 0;
     if (name == "--self-contact") self_contact = std::atoi(arguments[k]) != 0;
   }
   if (sides.empty()) sides = {32, 100};
@@ -150,7 +195,7 @@ int main(int count, char** arguments) {
       std::map<int, double> before;  // threads -> s a simulated second, of the smaller sheet
       for (std::size_t s = 0; s < sides.size(); ++s)
         for (int threads : thread_counts) {
-          const Run run{sides[s], threads, scene, model, solver, self_contact};
+          const Run run{sides[s], threads, scene, model, solver, self_contact, alone};
           const Cost c = measure(run, steps);
           table.add(run, c.seconds);
           const double growth =
@@ -163,6 +208,10 @@ int main(int count, char** arguments) {
               scene.c_str(), model.c_str(), sides[s] * sides[s], threads, c.seconds, growth, c.iterations,
               c.most_iterations, c.solves, c.newton, 100 * c.by_multigrid / (c.solves * steps),
               100 * c.assemble, 100 * c.solve, 100 * c.collide, c.contact_residual, c.not_converged);
+          for (int m = 0; m < 2 && alone; ++m)
+            std::printf(
+                "  the last system alone, %s: %.1f iterations from the guess of the step, %.1f from zero\n",
+                methods_alone[m], c.alone[m][0], c.alone[m][1]);
           std::fflush(stdout);
         }
     }
