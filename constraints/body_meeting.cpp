@@ -84,15 +84,13 @@ void BodyMeeting::find(const Bodies& bodies, double h) {
     }
 }
 
-// Cloth between two surfaces gives way, so it does not throw them back, and of its two sides the smoother slides.
+// Cloth between two surfaces gives way, so it does not throw them back, and it goes along with the one that holds it.
 void BodyMeeting::add_nip(const Bodies& bodies, const std::vector<Nip>& nips, int number) {
   const Nip& nip = nips[static_cast<std::size_t>(number)];
   Meeting& m = add_touch(bodies, nip.a, nip.b, nip.touch);
-  const Friction &mu_a = bodies[m.a].obstacle().friction, &mu_b = bodies[m.b].obstacle().friction;
+  const Friction& mu = bodies[nip.other()].obstacle().friction;
   m.nip = number;
-  m.mu = nip.runs   ? 0
-         : m.slides ? std::min(mu_a.kinetic, mu_b.kinetic)
-                    : std::min(mu_a.statics, mu_b.statics);
+  m.mu = nip.runs ? 0 : m.slides ? mu.kinetic : mu.statics;
   m.rebound = 0;
 }
 

@@ -10,8 +10,8 @@
 // All impulses are found together by sweeps over the touches (projected Gauss-Seidel), from those of the last step, until
 // no sweep changes a velocity by more than `exactness` of the largest, or `most_sweeps` are done.
 //                                                         [Moreau 1988; Jourdan, Alart & Jean 1998; Catto 2005]
-// Where bodies pinch a particle (constraints/nip.h), they meet at it as if it were a part of their surfaces: there mu is the
-// lesser of the two coefficients, or 0 where the particle runs through, e is 0, and the gap is what is left beside the margins.
+// Where bodies pinch a particle (constraints/nip.h), they meet at it as if it were a part of their surfaces: there mu is that of
+// the body that does not hold it, or 0 where it runs through, e is 0, and the gap is what is left beside the margins.
 // Bodies that are nearer than rest_gap are moved apart besides, by at most recovery_speed h in a step, which gives them
 // no velocity; cloth that lies on them goes along.
 // The order is that of the bodies, and no thread takes part, so the bits are always the same. Impulses are kept from step

@@ -96,8 +96,8 @@ class ContactStep {
   // For a motion that was found without a filter for contacts: the free motion to x, v ends at x_new, v_new.
   // pulled [N s]: the impulse on each pin of what carries it, besides the one that brings it to its velocity.
   // carriers: of particles that are pushed as one; null: there are none.
-  void respond(ContactMode mode, const VecX& x, const VecX& v, const VecX& pulled,
-               Carriers* carriers, VecX& x_new, VecX& v_new, double noise);
+  void respond(ContactMode mode, const VecX& x, const VecX& v, const VecX& pulled, Carriers* carriers,
+               VecX& x_new, VecX& v_new, double noise);
   // Lets carriers take pairs of cloth, before the forces of the step are told of it.
   void let_take(Carriers& carriers) {
     carriers.take(constraints_->self_.touching(), constraints_->step_.held);

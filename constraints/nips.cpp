@@ -9,14 +9,15 @@ namespace {
 
 // Two surfaces pinch what is between them when one normal is at most as far from the opposite of the other as this cosine says.
 constexpr double facing = 0.9;
+constexpr double still = 1e-9;  // m/s: a smaller slip is not told from none
 
 // Whether friction could stop the slip v - v_body of a particle at x within a step, if the body alone gave way. A body that does
-// not react gives no way.
-bool could_stop(const MovingBody& body, const Vec3& normal, const Vec3& x, const Vec3& v) {
+// not react gives no way. share: the length of this step over that of the last.
+bool could_stop(const MovingBody& body, const Vec3& normal, const Vec3& x, const Vec3& v, double share) {
   const ReactingBody* const reacting = body.reacting();
   if (!reacting) return false;
   const Vec3 slip = v - reacting->velocity() - reacting->spin().cross(x - reacting->centre());
-  const double pressed = reacting->impulse_of_bodies().norm() / reacting->mass();  // m/s
+  const double pressed = share * reacting->impulse_of_bodies().norm() / reacting->mass();  // m/s
   return (slip - slip.dot(normal) * normal).norm() <= 2 * body.obstacle().friction.kinetic * pressed;
 }
 
@@ -31,37 +32,39 @@ void ParticleContacts::find_nips(const Bodies& bodies, const StepMotion& step) {
   for (const Nip& nip : nips_) nip_of_[nip.particle] = -1;
   nips_.clear();
   const auto reacts = [&bodies](int o) { return bodies[o].reacting() != nullptr; };
-  for (const Contact& c : committed_) {
-    const int holder = c.plane[0].obstacle;
-    for (int o = 0; o < static_cast<int>(bodies.size()); ++o)
-      if (o != holder && (reacts(o) || reacts(holder)) && add_nip(bodies, step, c, o)) break;
-  }
+  for (const Contact& c : committed_)
+    for (int k = 0; k < c.planes && !nip_of(c.particle); ++k) {
+      const int first = c.plane[k].obstacle;
+      for (int o = 0; o < static_cast<int>(bodies.size()) && !nip_of(c.particle); ++o)
+        if (o != first && (reacts(o) || reacts(first))) add_nip(bodies, step, c, first, o);
+    }
 }
 
-// True when the body pinches the particle of the contact against the one that holds it.
-bool ParticleContacts::add_nip(const Bodies& bodies, const StepMotion& step, const Contact& contact,
-                               int other) {
-  const auto [a, b] = std::minmax(contact.plane[0].obstacle, other);
+// Adds a nip where the two bodies pinch the particle of the contact.
+void ParticleContacts::add_nip(const Bodies& bodies, const StepMotion& step, const Contact& contact,
+                               int first, int second) {
+  const auto [a, b] = std::minmax(first, second);
   const int particle = contact.particle;
   const Vec3 x = step.place(particle), x_new = x + step.h * step.velocity(particle);
   double reach = 0, offsets = 0;
   for (const int o : {a, b}) {
     const double margin = bodies[o].obstacle().margin, offset = margin + step.radius_of(particle);
     const double near = touching_range(margin) + 2 * bodies[o].travel(x, x_new);
-    if (clearance(o, particle) > offset + 2 * near) return false;
+    if (clearance(o, particle) > offset + 2 * near) return;
     reach += 2 * near;
     offsets += offset;
   }
   const SurfacePoint at_a = bodies[a].near_start(x), at_b = bodies[b].near_start(x);
   const double gap = at_a.distance + at_b.distance - offsets;
-  if (at_a.covered || at_b.covered || gap > reach || at_a.normal.dot(at_b.normal) > -facing) return false;
+  if (at_a.covered || at_b.covered || gap > reach || at_a.normal.dot(at_b.normal) > -facing) return;
   clearance(a, particle) = at_a.distance;
   clearance(b, particle) = at_b.distance;
-  const auto roughness = [&bodies](int o) { return bodies[o].obstacle().friction.statics; };
+  const auto roughness = [&bodies](int o) { return bodies[o].obstacle().friction.kinetic; };
   const bool a_holds = roughness(a) != roughness(b) ? roughness(a) > roughness(b) : !bodies[a].reacting();
   const int holder = a_holds ? a : b;
   const bool slides = contact.grip == Grip::slide && contact.plane[0].obstacle == holder &&
-                      !could_stop(bodies[holder], contact.plane[0].normal, x, step.velocity(particle));
+                      !could_stop(bodies[holder], contact.plane[0].normal, x, step.velocity(particle),
+                                  step.last_h > 0 ? step.h / step.last_h : 1);
   nip_of_[particle] = static_cast<int>(nips_.size());
   nips_.push_back({.particle = particle,
                    .a = a,
@@ -69,7 +72,6 @@ bool ParticleContacts::add_nip(const Bodies& bodies, const StepMotion& step, con
                    .holder = holder,
                    .runs = slides && step.foresight == Foresight::ahead,
                    .touch = {x, (at_b.normal - at_a.normal).normalized(), gap}});
-  return true;
 }
 
 std::array<double, 3> ParticleContacts::presses(const Contact& contact, const Vec3& r) const {
@@ -104,7 +106,7 @@ void ParticleContacts::rub_in_nips(const Bodies& bodies, const StepMotion& step)
       f.impulse = -most * t;
       f.damping -= t * t.transpose();
     }
-    f.damping *= most / std::max(slip.norm(), stops) / step.h;
+    f.damping *= most / std::max({slip.norm(), stops, still}) / step.h;
     friction_.push_back(f);
   }
 }

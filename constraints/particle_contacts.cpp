@@ -15,6 +15,14 @@ bool knows(const Contact* contact, int obstacle) {
   return false;
 }
 
+// Whether a plane of this body holds the particle.
+bool holds(const Contact* contact, int obstacle) {
+  if (!contact) return false;
+  const auto begin = contact->plane.begin();
+  return std::any_of(begin, begin + contact->planes,
+                     [obstacle](const ContactPlane& p) { return p.obstacle == obstacle; });
+}
+
 // Whether the plane can hold the particle, too. It cannot where bodies pinch it from both sides.
 bool can_hold(Contact contact, const ContactPlane& plane) {
   return add_or_exchange(contact, Vec3::Zero(), plane);
@@ -134,12 +142,17 @@ void ParticleContacts::look_for(int particle, const Bodies& bodies, const StepMo
   Contact contact{.particle = particle, .plane = {}};
   for (const MovingBody& body : bodies) {
     const int o = body.number();
-    if (nip && o == nip->other()) continue;
+    if (nip && o == nip->other()) {
+      deepest = std::max(deepest, step.radius_of(particle) - clearance(o, particle));
+      continue;
+    }
     const bool touched = knows(before, o) || (nip && o == nip->holder);
     if (!contact.clamped) look_at(body, step, touched, contact, deepest);
   }
   if (nip && !contact.active()) look_at(bodies[nip->other()], step, true, contact, deepest);
   if (!contact.active()) return;
+  // What is known of friction is of the body that it was on.
+  if (nip && before && before->plane[0].obstacle != contact.plane[0].obstacle) before = nullptr;
   if (!contact.clamped) start_grip(bodies, step, contact, before);
   found.push_back(contact);
 }
@@ -220,7 +233,7 @@ void ParticleContacts::look_along(int particle, const Bodies& bodies, const Step
   Contact contact{.particle = particle, .plane = {}};
   for (int o = 0; o < static_cast<int>(bodies.size()); ++o) {
     const MovingBody& body = bodies[o];
-    if (knows(known, o) || (nip && o == nip->other() && known && known->active())) continue;
+    if (knows(known, o) || (nip && o == nip->other() && holds(known, nip->holder))) continue;
     if (clearance(o, particle) > body.obstacle().margin + radius + body.travel(x, x_new)) continue;
     const auto met = body.meeting(x, x_new, radius);
     if (met && (!known || can_hold(*known, *met))) add_deepest(contact, *met);

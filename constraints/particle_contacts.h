@@ -136,7 +136,7 @@ class ParticleContacts {
   Vec3 mean_velocity(const StepMotion& step, int particle, const VecX& x_new) const;
   double sticking(const Contact& contact, const Friction& mu) const;
   const Nip* nip_of(int particle) const;
-  bool add_nip(const Bodies& bodies, const StepMotion& step, const Contact& contact, int other);
+  void add_nip(const Bodies& bodies, const StepMotion& step, const Contact& contact, int first, int second);
   void rub_in_nips(const Bodies& bodies, const StepMotion& step);
   // What presses the particle against each plane, with what the bodies press where it is in a nip; and the sum of it [N s].
   std::array<double, 3> presses(const Contact& contact, const Vec3& r) const;

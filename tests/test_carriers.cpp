@@ -23,7 +23,9 @@ struct Pusher : Carriers {
   Vec3 wanted;
   std::vector<Vec3> seen;  // m/s, velocity of body 0
   explicit Pusher(const Vec3& velocity) : wanted(velocity) {}
-  bool carry(std::vector<CarriedContact>& met, const CarriedMotion& motion) override {
+  void take(std::vector<SelfContact>&, const std::vector<char>&) override {}
+  bool carry(std::vector<CarriedContact>& met, std::vector<SelfContact>&,
+             const CarriedMotion& motion) override {
     for (CarriedContact& c : met) {
       if (c.body != 0) continue;
       seen.push_back(motion.bodies[0].velocity);

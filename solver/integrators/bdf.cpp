@@ -175,7 +175,7 @@ ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& repor
     const Eigen::Index n = 3 * system_.particles();
     for (VecX* vector : {&y_, &b_, &b_rubbed_, &dv_, &v_base_, &r_, &end_.x, &end_.v}) vector->setZero(n);
     filter_.reserve(static_cast<std::size_t>(system_.particles()));
-    friction_.reserve(static_cast<std::size_t>(system_.particles()));
+    friction_.reserve(2 * static_cast<std::size_t>(system_.particles()));  // two bodies may rub a particle
     history_.forget(system_);
   }
   linear_ = {};

@@ -1,5 +1,7 @@
 #include "solver/integrators/newton_matrix.h"
 
+#include <algorithm>
+
 #include <cmath>
 
 #include "mesh/base/parallel.h"
@@ -13,7 +15,7 @@ bool NewtonMatrix::follow_system() {
   const Eigen::Index n = 3 * system_.particles();
   for (VecX* vector : {&b_rows_, &dv_rows_, &r_rows_, &d_rows_, &Ad_rows_}) vector->setZero(n);
   filter_.reserve(static_cast<std::size_t>(system_.particles()));
-  rubs_.reserve(static_cast<std::size_t>(system_.particles()));
+  rubs_.reserve(2 * static_cast<std::size_t>(system_.particles()));
   A_->keep();  // so that no step allocates
   kept_b_.setZero(n);
   return true;
@@ -85,6 +87,19 @@ std::string NewtonMatrix::stiffest_force(int particle, const Linearisation& at) 
     most = size;
   }
   return stiffest;
+}
+
+// One block for every row.
+void NewtonMatrix::add_up_rows(std::vector<DiagonalBlock>& blocks) {
+  const auto before = [](const DiagonalBlock& a, const DiagonalBlock& b) { return a.row < b.row; };
+  std::sort(blocks.begin(), blocks.end(), before);
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < blocks.size(); ++k)
+    if (kept > 0 && blocks[kept - 1].row == blocks[k].row)
+      blocks[kept - 1].block += blocks[k].block;
+    else
+      blocks[kept++] = blocks[k];
+  blocks.resize(kept);
 }
 
 }  // namespace drape

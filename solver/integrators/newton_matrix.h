@@ -52,6 +52,7 @@ class NewtonMatrix {
 
  private:
   void add(const Linearisation& at, bool changing, VecX& b);
+  static void add_up_rows(std::vector<DiagonalBlock>& blocks);
   int row(int particle) const { return A_->pattern().row_of()[particle]; }
 
   System& system_;
@@ -67,6 +68,7 @@ template <class Particle, class Block>
 void NewtonMatrix::rub(std::size_t count, const Particle& particle, const Block& block) {
   rubs_.clear();
   for (std::size_t k = 0; k < count; ++k) rubs_.push_back({row(particle(k)), block(k)});
+  add_up_rows(rubs_);  // of particles that two bodies rub
   A_->set_diagonal_additions(rubs_);
 }
 

@@ -51,7 +51,7 @@ void StepHistory::first_point(const State& state, Point& point) const {
 
 void StepHistory::first_change(const State& state, const Vec3& gravity, bool as_in_free_fall,
                                VecX& dv) const {
-  const bool as_before = !as_in_free_fall && goes_on_from(state);
+  const bool as_before = !as_in_free_fall && k_.h <= 2 * last_h_ && goes_on_from(state);
   for (int i = 0; i < state.particles(); ++i) {
     auto change = dv.segment<3>(3 * i);
     if (extrapolates(i))
