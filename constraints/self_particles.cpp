@@ -45,6 +45,7 @@ void SelfContacts::renumber(const std::vector<int>& particle_of) {
     for (std::size_t i = particle_of.size(); i-- > 0;)
       rest_.segment<3>(3 * particle_of[i]) = before.segment<3>(3 * static_cast<Eigen::Index>(i));
     const std::vector<char> were = tangled_;
+    std::fill(tangled_.begin(), tangled_.end(), 0);
     for (std::size_t i = 0; i < were.size(); ++i)
       if (were[i] != 0) tangled_[particle_of[i]] = 1;
     rest_.conservativeResize(3 * (1 + *std::max_element(particle_of.begin(), particle_of.end())));

@@ -41,7 +41,10 @@ std::string hints(const RunRecord& record, const Output& output) {
         "more than its "
         "stiffness says: residual in steps.csv says by which share of the weight, and more substeps make it "
         "less\n";
-  else if (record.steps_not_converged > 0)
+  if (record.contact_residual > 1e-3 && record.integrator == "pbd")
+    text += "hint: the impulses between clusters had not settled in every step (by up to " +
+            rounded(100 * record.contact_residual, 2) + " % of the largest velocity)\n";
+  if (record.steps_not_converged > 0 && record.integrator != "pbd")
     text += "hint: " + counted(record.steps_not_converged, "step") +
             " ended before the solve reached its tolerance or the contacts had settled (by up to " +
             rounded(100 * record.contact_residual, 2) + " % of the weight)\n";

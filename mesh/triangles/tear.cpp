@@ -103,10 +103,6 @@ CornerSets fans(const TriangleMesh& mesh, const std::vector<Side>& sides, const 
   return sets;
 }
 
-}  // namespace
-
-namespace {
-
 // The mesh with a copy of its vertex for all sets of corners there but the lowest one. `set` tells the lowest corner of the
 // set that a corner is in, or -1 where the corner keeps its vertex.
 template <class Set>

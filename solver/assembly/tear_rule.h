@@ -11,7 +11,7 @@
 //     one vertex in a step, where an edge is strained too far, the most strained first. No two cuts of a step have a vertex in
 //     common, but those that part one vertex.
 //   - A tear begins at the most strained edge where this is possible, one in a step, and only where nothing was cut for
-//     `draw_back`: a tear relieves the cloth round it, which would shatter otherwise. So does a branch from the side of a tear.
+//     `draw_back`: a tear relieves the cloth round it, which would shatter otherwise. A branch from the side of a tear waits as long.
 //   - A vertex that has parted draws back for as long, and its edges are not looked at meanwhile.
 //   - A vertex that is held does not begin to part: its copies would be held, too, and nothing would be relieved. Where
 //     a tear from elsewhere ends at one that is held at a border, this one parts, and both are held.

@@ -69,8 +69,11 @@ bool ClusterContacts::is_carried(int particle) const {
   });
 }
 
-bool ClusterContacts::is_taken(const SelfContact& pair) const {
+// What is held may be held by a body, which only springs give their impulse: they answer such a pair.
+bool ClusterContacts::is_taken(const SelfContact& pair, const std::vector<char>& held) const {
   if (pair.body >= 0) return false;
+  for (const int particle : pair.particles)
+    if (held[static_cast<std::size_t>(particle)] != 0) return false;
   bool carried = false;
   for (std::size_t k = 0; k < 4; ++k) {
     if (std::abs(pair.weights[k]) < least_weight || !is_carried(pair.particles[k])) continue;
@@ -93,7 +96,7 @@ void ClusterContacts::take(std::vector<SelfContact>& pairs, const std::vector<ch
   taken_ = 0;
   unsettled_ = 0;
   for (SelfContact& pair : pairs) {
-    pair.by_carriers = is_taken(pair);
+    pair.by_carriers = is_taken(pair, held);
     taken_ += pair.by_carriers;
   }
 }
@@ -298,14 +301,14 @@ void ClusterContacts::move(const CarriedMotion& motion) const {
     };
     if (carried.cluster != none)
       for (const ClusterMember& m : clusters_[static_cast<std::size_t>(carried.cluster)])
-        move_one(m.particle, m.share / m.mass);
+        move_one(m.particle, m.share / motion.masses[static_cast<std::size_t>(m.particle)]);
     else if (carried.particle != none)
       move_one(carried.particle, 1);
   }
 }
 
-// Parts the pairs whose particles come nearer within their clusters, each by itself; true when there are any. What sweeps leave
-// of bodies that are stiff is far less: it would be borne without friction here.
+// Parts the pairs whose particles come nearer within their clusters, each by itself and without friction; true when there are
+// any. What is tolerated is more than sweeps leave of stiff bodies, which have to rub.
 bool ClusterContacts::part_particles(const CarriedMotion& motion) const {
   bool any = false;
   for (const Touch& touch : touches_) {
@@ -332,6 +335,11 @@ bool ClusterContacts::part_particles(const CarriedMotion& motion) const {
     }
   }
   return any;
+}
+
+void ClusterContacts::forget() {
+  last_of_pairs_.clear();
+  last_of_contacts_.clear();
 }
 
 bool ClusterContacts::carry(std::vector<CarriedContact>& met, std::vector<SelfContact>& pairs,

@@ -38,6 +38,8 @@ class ClusterContacts final : public Carriers {
   bool carry(std::vector<CarriedContact>& met, std::vector<SelfContact>& pairs,
              const CarriedMotion& motion) override;
 
+  void forget();  // the impulses from which the next ones would begin
+  bool any() const { return !clusters_.empty(); }
   bool takes_pairs() const { return taken_ > 0; }  // in this step
   // How far the impulses of the last carry() are from settled, relative to the largest velocity there.
   double unsettled() const { return unsettled_; }
@@ -63,7 +65,7 @@ class ClusterContacts final : public Carriers {
 
   std::span<const Place> places_of(int particle) const;
   bool is_carried(int particle) const;
-  bool is_taken(const SelfContact& pair) const;
+  bool is_taken(const SelfContact& pair, const std::vector<char>& held) const;
   void find(std::vector<CarriedContact>& met, std::vector<SelfContact>& pairs, const CarriedMotion& motion);
   int number_of(int key, const CarriedMotion& motion);
   void hold(int particle, double weight, const Vec3& place, const CarriedMotion& motion);

@@ -59,6 +59,7 @@ StepReport Pbd::advance(State& state, double h) {
     report.converged = report.converged && report.residual <= options_.tolerance;
   } else {
     state = before_;
+    clusters_.forget();
   }
   return report;
 }
@@ -166,7 +167,7 @@ void Pbd::meet_bodies(const State& state, double h) {
   const double heaviest = *std::max_element(masses.begin(), masses.end());
   free_ = x_ - moved_;
   free_v_ = (free_ - state.x) / h;
-  contacts_->respond(contact_, free_, free_v_, pulled_, &clusters_, x_, v_,
+  contacts_->respond(contact_, free_, free_v_, pulled_, clusters_.any() ? &clusters_ : nullptr, x_, v_,
                      round_off * heaviest * h * system_.gravity_acceleration().norm());
   moved_ = x_ - free_;
   for (const MovingPin& pin : contacts_->moving_pins()) moved_.segment<3>(3 * pin.particle).setZero();
