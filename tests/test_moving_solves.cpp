@@ -104,7 +104,7 @@ TEST_CASE("auto costs little more than the better of its methods, and tells whic
     int side, steps;
     bool on_ball;
   };
-  for (const Scene scene : {Scene{16, 30, false}, Scene{80, 25, false}, Scene{40, 25, true}})
+  for (const Scene scene : {Scene{16, 30, false}, Scene{60, 25, false}, Scene{40, 25, true}})
     for (const bool as_woven : {false, true}) {
       INFO(scene.side << " vertices a side, on a ball " << scene.on_ball << ", woven " << as_woven);
       const auto cost = [&](std::string_view solver) {
@@ -117,8 +117,8 @@ TEST_CASE("auto costs little more than the better of its methods, and tells whic
       // In so few steps the first ones, by block-ic0, and a trial that is lost weigh much.
       CHECK(by_auto.cost.total < 1.3 * std::min(ic0, multigrid));
       CHECK(by_auto.by_multigrid == by_auto.cost.by_multigrid);
-      if (scene.side == 80) CHECK(by_auto.by_multigrid > 5);
-      if (scene.side != 80) CHECK(by_auto.by_multigrid == 0);
+      if (scene.side == 60) CHECK(by_auto.by_multigrid > 10);
+      if (scene.side != 60) CHECK(by_auto.by_multigrid == 0);
     }
 }
 
@@ -161,58 +161,4 @@ TEST_CASE("auto takes the same methods on any number of threads", "[solvers]") {
     CHECK(other.end.v == one.end.v);
     CHECK(other.by_multigrid == one.by_multigrid);
   }
-}
-
-namespace {
-
-// Solves by block-ic0 and counts the iterations. A solve before which `first` was set starts from free fall when asked to.
-class FirstFromFreeFall final : public LinearSolver {
- public:
-  FirstFromFreeFall(bool from_free_fall, int& iterations, bool& first)
-      : from_free_fall_(from_free_fall), iterations_(iterations), first_(first) {}
-  std::string_view name() const override { return solver_->name(); }
-
-  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
-                     VecX& dv) override {
-    if (first_ && from_free_fall_)
-      for (int i = 0; i < A.rows(); ++i) dv.segment<3>(3 * i) = 0.01 * Gravity{}.g;
-    first_ = false;
-    const LinearReport report = solver_->solve(A, b, filter, options, dv);
-    iterations_ += report.iterations;
-    return report;
-  }
-
- private:
-  std::unique_ptr<LinearSolver> solver_ = make_linear_solver("mpcg+block-ic0");
-  bool from_free_fall_;
-  int& iterations_;
-  bool& first_;
-};
-
-}  // namespace
-
-TEST_CASE(
-    "a step that starts from what the last one changed takes a seventh fewer iterations than from free fall",
-    "[solvers]") {
-  for (const bool on_ball : {false, true})
-    for (const bool as_woven : {false, true}) {
-      const auto iterations_of = [&](bool from_free_fall) {
-        MovingSheet sheet(32, on_ball, as_woven);
-        int iterations = 0;
-        bool first = true;
-        ImplicitEuler stepper(sheet.system, sheet.constraints,
-                              std::make_unique<FirstFromFreeFall>(from_free_fall, iterations, first),
-                              {.tolerance = 1e-4});
-        for (int k = 0; k < 100; ++k) {
-          first = true;
-          const StepReport report = stepper.advance(sheet.state, 0.01);
-          REQUIRE(report.done);
-          REQUIRE(report.converged);
-        }
-        return iterations;
-      };
-      const int own = iterations_of(false), fall = iterations_of(true);
-      INFO("on a ball " << on_ball << ", woven " << as_woven << ": " << own << ", from free fall " << fall);
-      CHECK(7 * own < 6 * fall);
-    }
 }

@@ -163,6 +163,8 @@ TEST_CASE("momentum is kept where two bodies that collide pinch cloth between th
   for (const Method& method : methods())
     for (double speed : {0.0, 3.0}) {  // m/s, at which the cloth runs through between them
       if (traits_of(method.name).grows_undamped) continue;
+      // Those that do not foresee contact stop cloth that comes so fast outside of the equations.
+      if (speed > 0 && !traits_of(method.name).foresees) continue;
       INFO(method.label << ", cloth at " << speed << " m/s");
       Desk desk;
       for (int i = 0; i < desk.state.particles(); ++i) desk.state.v[3 * i] = speed;

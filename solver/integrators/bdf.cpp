@@ -185,10 +185,12 @@ ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& repor
   system_.begin_step({state.time, piece.h, state.x, state.v, piece.h});
   history_.begin(state, piece, contacts);
   history_.first_point(state, p_);
-  // As in the last step: what is slow changes little, and is what the conjugate gradient finds last. A solve that may be
-  // cut short starts from free fall: rigid motion is then right from the first iterate, so that no gravity is lost, and
-  // what such solves left out does not add up from step to step.
-  history_.first_change(state, system_.gravity_acceleration(), options_.max_linear_iterations > 0, dv_);
+  // The first dv is free fall. So rigid motion is right from the first iterate, and a solve that is cut short
+  // cannot lose gravity. The point of order 2 already includes the fall, except for particles that start
+  // anew.
+  for (int i = 0; i < system_.particles(); ++i)
+    dv_.segment<3>(3 * i) =
+        history_.extrapolates(i) ? Vec3(Vec3::Zero()) : Vec3(piece.h * system_.gravity_acceleration());
   return contacts;
 }
 
@@ -282,7 +284,7 @@ void Bdf::finish(State& state, ContactStep& contacts, StepReport& report) {
   report.residual = std::max(report.residual, linear_.residual);
   report.converged = report.converged && linear_.reason == StopReason::converged;
   note_contacts(imbalance_, options_, report);
-  history_.remember(state, p_.v, end_, contacts);
+  history_.remember(state, end_, contacts);
   system_.end_step(end_.x);
   state.x = end_.x;
   state.v = end_.v;

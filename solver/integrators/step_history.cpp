@@ -11,15 +11,12 @@ void StepHistory::forget(const System& system) {
   last_h_ = 0;
 }
 
-bool StepHistory::goes_on_from(const State& state) const {
-  return last_h_ > 0 && state.x.size() == end_.x.size() && state.x == end_.x && state.v == end_.v;
-}
-
 void StepHistory::begin(const State& state, const Piece& piece, const ContactStep& contacts) {
   const double h = piece.h;
   // BDF2 is stable as long as each step is less than 1 + sqrt(2) times the last.
   //                                                                   [Hairer, Norsett & Wanner, III.5]
-  const bool smooth = piece.halvings == 0 && !piece.order_1 && h <= 2 * last_h_ && goes_on_from(state);
+  const bool smooth = piece.halvings == 0 && !piece.order_1 && last_h_ > 0 && h <= 2 * last_h_ &&
+                      state.x.size() == end_.x.size() && state.x == end_.x && state.v == end_.v;
   k_.h = h;
   k_.ahead = order_ == 2 && smooth ? h / last_h_ : 0;
   k_.back = k_.ahead * k_.ahead / (1 + 2 * k_.ahead);
@@ -49,20 +46,6 @@ void StepHistory::first_point(const State& state, Point& point) const {
   point.x = state.x + k_.back * (state.x - begin_.x) + k_.c * point.v;
 }
 
-void StepHistory::first_change(const State& state, const Vec3& gravity, bool as_in_free_fall,
-                               VecX& dv) const {
-  const bool as_before = !as_in_free_fall && k_.h <= 2 * last_h_ && goes_on_from(state);
-  for (int i = 0; i < state.particles(); ++i) {
-    auto change = dv.segment<3>(3 * i);
-    if (extrapolates(i))
-      change.setZero();
-    else if (as_before)
-      change = k_.h / last_h_ * (state.v.segment<3>(3 * i) - begin_.v.segment<3>(3 * i));
-    else
-      change = k_.h * gravity;
-  }
-}
-
 void StepHistory::update(const System& system, const State& state, const ContactStep& contacts) {
   k_.x_bar = state.x;
   k_.v_bar = state.v;
@@ -83,16 +66,12 @@ void StepHistory::update(const System& system, const State& state, const Contact
   if (contacts.correction().size() > 0) k_.x_bar += contacts.correction();
 }
 
-void StepHistory::remember(const State& state, const VecX& solved, const Point& end,
-                           const ContactStep& contacts) {
+void StepHistory::remember(const State& state, const Point& end, const ContactStep& contacts) {
+  if (order_ == 1) return;
   begin_.x = state.x;
   begin_.v = state.v;
   end_ = end;
   last_h_ = k_.h;
-  if (order_ == 1) {
-    begin_.v += end.v - solved;
-    return;
-  }
   std::fill(touched_.begin(), touched_.end(), 0);
   mark_touching(contacts);
 }

@@ -53,26 +53,20 @@ class StepHistory {
   void first_point(const State& state, Point& point) const;
   // Whether the velocity of this particle in first_point() is ahead of the last state.
   bool extrapolates(int particle) const { return k_.order_2() && !restarts(particle); }
-  // Sets dv to what the velocities of first_point() are expected to change by [m/s]: by as much as in the last step,
-  // where there is one that this step goes on from, or as in free fall with this acceleration [m/s^2]. Extrapolated
-  // velocities are expected to stay.
-  void first_change(const State& state, const Vec3& gravity, bool as_in_free_fall, VecX& dv) const;
   // Makes x_bar, v_bar and the masses with the contacts as they are at the time of the call.
   void update(const System& system, const State& state, const ContactStep& contacts);
   // Lets particles that have been caught meanwhile start anew, too.
   void restart_touching(const ContactStep& contacts);
-  // Remembers a step that is done: it went from `state` to `end`, where its solves had led to the velocities `solved`.
-  void remember(const State& state, const VecX& solved, const Point& end, const ContactStep& contacts);
+  // Remembers a step that is done: it went from `state` to `end`.
+  void remember(const State& state, const Point& end, const ContactStep& contacts);
 
  private:
   void mark_touching(const ContactStep& contacts);
-  bool goes_on_from(const State& state) const;  // true where the last step ended there
   bool restarts(int particle) const { return touched_[particle] != 0; }
 
   int order_;
   StepCoefficients k_;
-  // The two ends of the last step that was done. With order 1, the velocities of the first are those from which its
-  // solves alone would have led to its end: what the guard changed is not expected to happen again.
+  // The two ends of the last step that was done.
   Point begin_, end_;
   double last_h_ = 0;          // length of that step [s]; 0: there is none
   std::vector<char> touched_;  // per particle: it met a body in the last step or in this one
