@@ -49,7 +49,7 @@ struct Steps {
     v_new = v;
     pusher.seen.clear();
     const VecX free_x = x_new, free_v = v_new;
-    step.respond(ContactMode::velocity, free_x, free_v, VecX::Zero(3), {&pusher}, x_new, v_new, 0);
+    step.respond(ContactMode::velocity, free_x, free_v, VecX::Zero(3), &pusher, x_new, v_new, 0);
     return step;
   }
   const ReactingBody& body(std::size_t k) const { return *constraints.bodies()[k].reacting(); }
