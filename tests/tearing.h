@@ -2,12 +2,14 @@
 #pragma once
 
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <numeric>
 #include <string>
 #include <vector>
 
 #include "mesh/obj/obj.h"
 #include "mesh/triangles/topology.h"
+#include "solver/system/state.h"
 
 namespace drape::test {
 
@@ -68,4 +70,22 @@ inline int pieces(const TriangleMesh& mesh) {
 inline double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
+
+inline Vec3 weighted(const std::vector<double>& masses, const VecX& x) {
+  Vec3 all = Vec3::Zero();
+  for (std::size_t i = 0; i < masses.size(); ++i) all += masses[i] * x.segment<3>(3 * static_cast<int>(i));
+  return all;
+}
+
+// A tear leaves the mass, the momentum and the centre of mass as they were.
+inline void check_kept(const std::vector<double>& before, const State& was, const std::vector<double>& after,
+                       const State& is) {
+  REQUIRE(after.size() > before.size());
+  const double mass = sum(before);
+  CHECK(sum(after) == Approx(mass).epsilon(1e-14));
+  CHECK((weighted(after, is.v) - weighted(before, was.v)).norm() < 1e-14 * weighted(before, was.v).norm());
+  CHECK((weighted(after, is.x) - weighted(before, was.x)).norm() < 1e-14 * mass);
+  CHECK(*std::min_element(after.begin(), after.end()) > 0);
+}
+
 }  // namespace drape::test
