@@ -220,7 +220,8 @@ INTERRUPTED = """
 import sys, drape
 simulation = drape.read_scene("scene.toml", {"simulation.duration": 1000})
 try:
-    simulation.run(out="o", callback=lambda step: print(step.step, flush=True))
+    # One text with its end of line: an interrupt may come between any two writes.
+    simulation.run(out="o", callback=lambda step: print(f"{step.step}\\n", end="", flush=True))
 except KeyboardInterrupt:
     print("interrupted", simulation.state_hash, flush=True)
 """
