@@ -8,9 +8,11 @@
 // trial the other method waits for 8 matrices, and for twice as many after each that it loses, up to 64. It waits
 // for 2 only where a matrix now costs 1.25 times what it cost with the other method when that was last used, as
 // when cloth arrives at a body; and multigrid that was never tried does not wait where block-ic0 costs twice what
-// is usual. While block-ic0 is cheap, multigrid has no trial.
+// is usual. While block-ic0 is cheap, multigrid has no trial. Matrices whose solves take no iteration, as in free
+// fall, tell nothing of a method, and are not in its average.
 // Where a matrix costs 1.5 times what one did with multigrid, and four times what one usually does, block-ic0 is given
-// up in the middle of a solve. Multigrid solves that system anew, and those that follow.
+// up in the middle of a solve: on trial, where a matrix costs 1.25 times what one did with multigrid. Multigrid solves
+// that system anew, and those that follow.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -64,6 +66,7 @@ class Auto final : public LinearSolver {
 
   LinearReport counted(const LinearReport& report) {
     ++solves_;
+    idle_ = idle_ && report.iterations == 0;
     failed_ = failed_ || report.reason != StopReason::converged;
     return report;
   }
@@ -80,7 +83,8 @@ class Auto final : public LinearSolver {
   // The options with the most iterations that block-ic0 may take in the next solve.
   LinearOptions within_budget(LinearOptions options) const {
     if (std::isinf(usual_[multigrid])) return options;  // it failed
-    const double most = std::max(1.5 * usual_[multigrid], 4 * usual_multigrid);
+    const double enough = 1.25 * usual_[multigrid];     // for a trial to be lost
+    const double most = on_trial_ ? enough : std::max(1.5 * usual_[multigrid], 4 * usual_multigrid);
     const int budget = std::max(fewest_iterations, static_cast<int>(std::min(most - cost_, 1e6)));
     if (options.max_iterations == 0 || budget < options.max_iterations) options.max_iterations = budget;
     return options;
@@ -102,6 +106,7 @@ class Auto final : public LinearSolver {
     cost_ = 0;
     solves_ = 0;
     failed_ = false;
+    idle_ = true;
   }
 
   void decide() {
@@ -118,7 +123,7 @@ class Auto final : public LinearSolver {
       }
       return;
     }
-    if (failed_) return;  // what it cost says nothing
+    if (failed_ || idle_) return;  // what it cost says nothing
     own = own > 0 ? 0.7 * own + 0.3 * cost_ : cost_;
     ++waited_;
     const double usual = usual_multigrid * solves_;
@@ -145,6 +150,7 @@ class Auto final : public LinearSolver {
   VecX guess_;
   int solves_ = 0;       // with this matrix
   bool failed_ = false;  // a solve with this matrix did not converge
+  bool idle_ = true;     // no solve with this matrix took an iteration
   std::uint64_t fill_ = 0;
 };
 
