@@ -6,6 +6,7 @@
 #include "mesh/base/errors.h"
 #include "solver/assembly/assembly.h"
 #include "solver/assembly/tear_rule.h"
+#include "tests/allocations.h"
 #include "tests/same_bits.h"
 #include "tests/tearing.h"
 
@@ -231,6 +232,45 @@ TEST_CASE("what is held does not begin to part", "[tear]") {
   all.use("implicit-euler", "cholmod");
   for (int step = 0; step < 20; ++step) CHECK(all.advance(0.001).torn == 0);
   CHECK(largest_strain(all.cloths, all.state.x) == Approx(0.5));
+}
+
+TEST_CASE("a step allocates nothing where cloth is strained too far and cannot be cut yet", "[tear]") {
+  if (!counts_allocations()) return;
+  struct Kind {
+    ClothModel model;
+    int nx, nz;
+  };
+  for (const Kind& kind :
+       {Kind{ClothModel::noh_jung, 5, 33}, {ClothModel::choi_ko, 7, 31}, {ClothModel::woven, 6, 41}})
+    for (const bool held :
+         {true, false}) {  // it flies apart, all of it held on its way, or draws back from tears
+      const auto& [model, nx, nz] = kind;
+      INFO(nx << " x " << nz << ", " << held);
+      constexpr double rate = 20;  // 1/s, of the strain
+      Assembly all(Vec3::Zero());
+      const Cloth& strip = all.add(part(model, quad_sheet(nx, nz, 0.02)));
+      for (int j = 0; j < nz; ++j) {
+        const Vec3 v(0, 0, rate * 0.02 * j);
+        for (const int i : row(strip, nx, j)) all.state.v.segment<3>(3 * i) = v;
+        if (held || j == 0 || j + 1 == nz)
+          all.constraints->pin_along(row(strip, nx, j), Motion::constant(v, Vec3::Zero(), Vec3::Zero()),
+                                     all.state.x);
+      }
+      all.use("implicit-euler", "mpcg");
+      int waited = 0;
+      bool settled = false;  // whether the system is that of the step before
+      for (int step = 0; step < 100; ++step) {
+        const long before = allocations();
+        const int torn = all.advance(5e-4).torn;
+        const long used = allocations() - before;
+        if (settled && torn == 0 && largest_strain(all.cloths, all.state.x) > limit) {
+          ++waited;
+          CHECK(used == 0);
+        }
+        settled = torn == 0 && step > 0;
+      }
+      CHECK(waited >= 10);
+    }
 }
 
 TEST_CASE("parts beside a cloth that tears keep their places, pins, masses and joints", "[tear]") {

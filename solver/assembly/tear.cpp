@@ -23,9 +23,21 @@ double strain(const RestEdge& e, const VecX& x) {
   return (x.segment<3>(3 * e.j) - x.segment<3>(3 * e.i)).norm() / e.L - 1;
 }
 
-bool is_strained_too_far(const Cloth& cloth, const VecX& x) {
-  return std::any_of(cloth.edges.begin(), cloth.edges.end(),
-                     [&](const RestEdge& e) { return strain(e, x) > cloth.tearing->limit; });
+// Whether an edge is strained too far that may be cut in this step. pinned: particles, ascending. Copies nothing: where cloth
+// draws back, or is held as far as it gives way, this is so for many steps.
+bool may_tear(const Cloth& cloth, const State& state, const std::vector<int>& pinned) {
+  const Tearing& tearing = *cloth.tearing;
+  const auto draws_back = [&](int particle) {
+    return internal::draws_back(particle - cloth.first_particle, tearing, state.time);
+  };
+  const auto may_part = [&](int particle) {
+    return internal::may_part(particle - cloth.first_particle, tearing, state.time) &&
+           !std::binary_search(pinned.begin(), pinned.end(), particle);
+  };
+  return std::any_of(cloth.edges.begin(), cloth.edges.end(), [&](const RestEdge& e) {
+    return strain(e, state.x) > tearing.limit && !draws_back(e.i) && !draws_back(e.j) &&
+           (may_part(e.i) || may_part(e.j));
+  });
 }
 
 // A grid of quads stays one when only their sides are cut.
@@ -173,15 +185,15 @@ Tearing internal::tearing_of(const ClothPart& part, const Cloth& cloth) {
 }
 
 int Assembly::tear_cloths() {
-  const auto too_far = [&](const Cloth& cloth) {
-    return cloth.tearing && is_strained_too_far(cloth, state.x);
+  const auto tears = [&](const Cloth& cloth) {
+    return cloth.tearing && may_tear(cloth, state, constraints->pinned());
   };
-  if (std::none_of(cloths.begin(), cloths.end(), too_far)) return 0;
+  if (std::none_of(cloths.begin(), cloths.end(), tears)) return 0;
   if (!state.x.allFinite() || !state.v.allFinite()) return 0;  // the step has failed
   std::vector<std::vector<CutEdge>> cuts(cloths.size());
   std::size_t count = 0;
   for (std::size_t k = 0; k < cloths.size(); ++k) {
-    if (too_far(cloths[k])) cuts[k] = edges_to_cut(cloths[k], state, constraints->pinned());
+    if (tears(cloths[k])) cuts[k] = edges_to_cut(cloths[k], state, constraints->pinned());
     count += cuts[k].size();
   }
   if (count == 0) return 0;

@@ -11,6 +11,19 @@ namespace {
 
 CutEdge sorted(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
+template <class T>
+T value(const std::vector<T>& by_vertex, int v) {
+  const auto k = static_cast<std::size_t>(v);
+  return k < by_vertex.size() ? by_vertex[k] : T{};
+}
+
+// Whether a tear ends there, which so far has parted the vertices before it.
+bool is_tip(int v, const Tearing& tearing) {
+  return value(tearing.at_cut, v) != 0 && value(tearing.rests_until, v) == 0;
+}
+
+bool another_may_begin(const Tearing& tearing, double t) { return t >= tearing.last + draw_back; }
+
 // The vertices round one, in order; of a closed fan the last is beside the first.
 struct Fan {
   std::vector<int> around;
@@ -35,11 +48,12 @@ class TearSearch {
   std::vector<CutEdge> cuts() {
     std::vector<StrainedEdge> over;
     for (const StrainedEdge& e : cloth_.edges)
-      if (e.strain > tearing_.limit && !rests(e.a) && !rests(e.b)) over.push_back(e);
+      if (e.strain > tearing_.limit && !draws_back(e.a, tearing_, t_) && !draws_back(e.b, tearing_, t_))
+        over.push_back(e);
     std::stable_sort(over.begin(), over.end(),
                      [](const StrainedEdge& e, const StrainedEdge& f) { return e.strain > f.strain; });
     for (const StrainedEdge& e : over) part_an_end(e, true);
-    if (!cuts_.empty() || t_ < tearing_.last + draw_back) return cuts_;
+    if (!cuts_.empty() || !another_may_begin(tearing_, t_)) return cuts_;
     for (const StrainedEdge& e : over) {
       part_an_end(e, false);
       if (!cuts_.empty()) break;
@@ -48,14 +62,6 @@ class TearSearch {
   }
 
  private:
-  bool rests(int v) const { return t_ < value(tearing_.rests_until, v); }
-  // Whether a tear ends there, which so far has parted the vertices before it.
-  bool is_tip(int v) const { return value(tearing_.at_cut, v) != 0 && value(tearing_.rests_until, v) == 0; }
-  template <class T>
-  static T value(const std::vector<T>& by_vertex, int v) {
-    const auto k = static_cast<std::size_t>(v);
-    return k < by_vertex.size() ? by_vertex[k] : T{};
-  }
   Vec3 place(int v) const { return cloth_.x[static_cast<std::size_t>(v)]; }
 
   void sort_edges() {
@@ -177,7 +183,7 @@ class TearSearch {
     std::optional<Parted> chosen;
     int vertex = -1;
     for (const int end : {edge.a, edge.b}) {
-      if (grow && !is_tip(end)) continue;
+      if (grow && !is_tip(end, tearing_)) continue;
       std::optional<Parted> parted = best(end);
       if (!parted || (chosen && std::tuple(parted->at_border, parted->pull) <=
                                     std::tuple(chosen->at_border, chosen->pull)))
@@ -203,6 +209,14 @@ class TearSearch {
 };
 
 }  // namespace
+
+bool may_part(int vertex, const Tearing& tearing, double t) {
+  return is_tip(vertex, tearing) || another_may_begin(tearing, t);
+}
+
+bool draws_back(int vertex, const Tearing& tearing, double t) {
+  return t < value(tearing.rests_until, vertex);
+}
 
 std::vector<CutEdge> edges_to_cut(TearingCloth cloth, const Tearing& tearing, double t) {
   return TearSearch(std::move(cloth), tearing, t).cuts();

@@ -42,6 +42,12 @@ struct TearingCloth {
   std::vector<CutEdge> never_cut;   // edges that stay whole, the lower vertex first; sorted
 };
 
+// Whether a vertex may part at the time t [s], where an edge of its is strained too far and nothing holds it: a tear ends
+// there and may grow, or another may begin by now. No edge is cut of which neither end may, or of which one draws back.
+bool may_part(int vertex, const Tearing& tearing, double t);
+// Whether a vertex draws back at the time t [s], because it has parted.
+bool draws_back(int vertex, const Tearing& tearing, double t);
+
 // The edges that are cut at the time t [s].  O(n log n) for n triangles.
 std::vector<CutEdge> edges_to_cut(TearingCloth cloth, const Tearing& tearing, double t);
 
