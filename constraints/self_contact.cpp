@@ -22,9 +22,11 @@ constexpr double rope_sinks = 5e-5;  // m, under a load: a rope is thick, and is
 // How much stiffer a contact becomes so, at most: with steps of 10 ms and r = 1 mm it then bears 3000 times the weight of
 // its lighter side.
 constexpr double stiffest = 1000;
-// What is left of its stiffness after a step, at least: where many layers press each other in turn, springs that were stiff
-// while they were pressed and soft before would make energy.
-constexpr double slowest_fall = 0.9;
+// A contact that was eased for this time [s] becomes softer; this share of its stiffness is left after 10 ms, at least. It is
+// eased while it bears less than this share of what it is stiff for; else the time runs back, faster. So a contact that has
+// borne its load for a while stays as stiff as it is while a pile swings up and down, and one that took an impact does not.
+// Springs that become stiff while they are pressed, and soft before they are pressed again, make energy.
+constexpr double eased_for = 0.25, slowest_fall = 0.9, eased_below = 0.8, runs_back = 2.5;
 
 // How fast a contact that has become thinner than its cloth may thicken [m/s]: so slowly that, on earth, what it lifts flies no
 // farther than the contact is remembered.
@@ -132,7 +134,12 @@ void SelfContacts::stiffen(SelfContact& contact, const StepMotion& step) const {
   double bears =
       contact.load / (ropes_->is_rope(contact.who) ? std::min(under_load, rope_sinks) : under_load);
   if (step.last_h > 0) contact.stiff *= step.last_h * step.last_h / (step.h * step.h);
-  if (contact.stiff > 0) bears = std::max(std::sqrt(bears * contact.stiff), slowest_fall * contact.stiff);
+  if (contact.stiff > 0) {
+    const bool eases = bears < eased_below * contact.stiff;
+    contact.eased = std::clamp(contact.eased + (eases ? step.h : -runs_back * step.h), 0.0, 2 * eased_for);
+    const double least = contact.eased > eased_for ? std::pow(slowest_fall, step.h / 0.01) : 1;
+    bears = std::max(std::sqrt(bears * contact.stiff), least * contact.stiff);
+  }
   contact.stiffness = std::clamp(std::max(bears, stops / (arrival_sinks * sinks)), contact.stiffness,
                                  stiffest * contact.stiffness);
 }

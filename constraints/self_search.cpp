@@ -130,6 +130,7 @@ void SelfContacts::take_over(SelfContact& contact, double recovery) const {
   contact.before = at->before;
   contact.load = at->load;
   contact.stiff = at->stiff;
+  contact.eased = at->eased;
   contact.hold = across(contact.normal, at->hold);
   contact.thickness =
       std::min(thickness_of(contact.who), std::max(contact.thickness, at->thickness + recovery));

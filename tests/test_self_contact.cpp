@@ -223,6 +223,25 @@ TEST_CASE("what stops the lowest layers of a pile that falls lets the others fal
   }
 }
 
+TEST_CASE("a high pile that falls does not swing up and down for ever", "[self-contact]") {
+  const int layers = 50;
+  for (const double h : {0.01, 0.005})
+    for (const int n : {2, 3, 4}) {
+      if (h < 0.01 && n > 2) continue;
+      INFO(n << " vertices along an edge, steps of " << 1000 * h << " ms");
+      Layers pile = pile_of(layers, n, 5e-3, 8e-3);
+      const auto mean_speed = [&] { return pile.momentum().norm() / (layers * 0.2 * 0.01); };
+      while (pile.state.time < 1.2) REQUIRE(pile.advance(h).done);
+      double most = 0;
+      while (pile.state.time < 1.4) {
+        REQUIRE(pile.advance(h).done);
+        most = std::max(most, mean_speed());
+      }
+      CHECK(most < 5e-4);
+      CHECK(pile.crossings() == 0);
+    }
+}
+
 TEST_CASE("thin cloth on a coarse mesh crumples, and is not held up where it nearly touches",
           "[self-contact]") {
   for (int n : {12, 16, 20}) {
@@ -239,7 +258,7 @@ TEST_CASE("thin cloth on a coarse mesh crumples, and is not held up where it nea
       REQUIRE(report.done);
       if (k >= 130) held_up += report.self_guarded;
     }
-    CHECK(held_up <= 20);  // of 20 steps
+    CHECK(held_up <= 40);  // in 20 steps
     CHECK(sheet.crossings() == 0);
     CHECK(largest_strain(sheet.cloths, sheet.state.x) < 0.1);
   }
