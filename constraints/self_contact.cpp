@@ -22,11 +22,14 @@ constexpr double rope_sinks = 5e-5;  // m, under a load: a rope is thick, and is
 // How much stiffer a contact becomes so, at most: with steps of 10 ms and r = 1 mm it then bears 3000 times the weight of
 // its lighter side.
 constexpr double stiffest = 1000;
-// A contact that was eased for this time [s] becomes softer; this share of its stiffness is left after 10 ms, at least. It is
-// eased while it bears less than this share of what it is stiff for; else the time runs back, faster. So a contact that has
-// borne its load for a while stays as stiff as it is while a pile swings up and down, and one that took an impact does not.
-// Springs that become stiff while they are pressed, and soft before they are pressed again, make energy.
-constexpr double eased_for = 0.25, slowest_fall = 0.9, eased_below = 0.8, runs_back = 2.5;
+// A contact is eased while it bears less than this share of what it is stiff for.
+constexpr double eased_below = 0.8;
+// It becomes softer only when it was eased for this time [s], which is longer than a pile swings up and down: springs that
+// become stiff while they are pressed, and soft before they are pressed again, make energy. While the contact bears its load
+// that time runs back, this many times as fast. It begins full, so that what took an impact becomes softer at once.
+constexpr double eased_for = 0.25, runs_back = 2.5;
+// What is then left of its stiffness after 10 ms, at least.
+constexpr double slowest_fall = 0.9;
 
 // How fast a contact that has become thinner than its cloth may thicken [m/s]: so slowly that, on earth, what it lifts flies no
 // farther than the contact is remembered.
