@@ -182,6 +182,15 @@ void BodyMeeting::solve(Bodies& bodies, std::vector<Nip>& nips) {
   give(bodies, nips);
 }
 
+void BodyMeeting::show(std::vector<BodyTouch>& touches) const {
+  touches.clear();
+  for (const Meeting& m : meetings_) {
+    const int reacts = movers_[m.a].reacts ? m.a : m.b;
+    const Vec3 place = movers_[reacts].centre + (reacts == m.a ? m.arm_a : m.arm_b);
+    touches.push_back({m.a, m.b, place, m.normal, m.carried, m.mu, m.target, m.impulse()});
+  }
+}
+
 void BodyMeeting::apply(const Meeting& m, const Vec3& impulse) {
   Mover &a = movers_[m.a], &b = movers_[m.b];
   a.v += a.inverse_mass * impulse;

@@ -22,6 +22,7 @@
 
 #include <vector>
 
+#include "constraints/carriers.h"
 #include "constraints/nip.h"
 
 namespace drape {
@@ -52,6 +53,8 @@ class BodyMeeting {
   void solve(Bodies& bodies, std::vector<Nip>& nips);
   BodyMeetingReport end_step(const Bodies& bodies,
                              const std::vector<Nip>& nips);  // keeps the impulses for the next step
+
+  void show(std::vector<BodyTouch>& touches) const;  // as they are in the step under way
 
   // Pairs of bodies that were inside each other by more than `margin` [m] when the last step began.
   struct Overlap {

@@ -20,11 +20,11 @@ struct CarriedContact {
   Vec3 body_velocity;  // m/s, in the step
   Friction friction;
   double restitution;
-  // N s, which the carriers give to the particle, and the body gets the opposite. It is zero where they do not answer.
-  Vec3 impulse = Vec3::Zero();
+  bool taken = false;           // whether the carriers answer it
+  Vec3 impulse = Vec3::Zero();  // N s, which they give to the particle, and the body gets the opposite
 };
 
-// How a body moves in the step without the impulses of carriers.
+// How a body moves in the step without the impulses of carriers and of other bodies.
 struct CarriedBody {
   bool reacts = false;           // else its velocity is that of each contact, whatever is given to it
   Vec3 centre = Vec3::Zero();    // m, of mass
@@ -33,6 +33,16 @@ struct CarriedBody {
   Vec3 velocity_before = Vec3::Zero(), spin_before = Vec3::Zero();  // when the step begins
   double inverse_mass = 0;                                          // 1/kg
   Mat3 inverse_inertia = Mat3::Zero();                              // 1/(kg m^2)
+};
+
+// Where two bodies touch, of which one reacts at least (constraints/body_meeting.h).
+struct BodyTouch {
+  int a, b;
+  Vec3 place;         // m
+  Vec3 normal;        // from b to a
+  Vec3 carried;       // m/s, what a body that does not react adds to the velocity of a against b
+  double mu, target;  // -, m/s: that velocity along the normal is this at least
+  Vec3 impulse;       // N s, on a, which the last step or round found
 };
 
 // The motion of the particles in the step as it would be without bodies; carriers change it.
@@ -44,6 +54,7 @@ struct CarriedMotion {
   const std::vector<double>& masses;  // kg
   const VecX& start;                  // m
   const std::vector<CarriedBody>& bodies;
+  const std::vector<BodyTouch>& touches;
   VecX& before;  // m/s, when the step begins: an impact changes it
   VecX& x;       // m, at the end
   VecX& v;       // m/s, at the end
@@ -54,6 +65,7 @@ class Carriers {
   virtual ~Carriers() = default;
   // Marks the pairs of cloth that the carriers answer in the step in place of springs. held: by particle.
   virtual void take(std::vector<SelfContact>& pairs, const std::vector<char>& held) = 0;
+  virtual bool carries(int particle) const = 0;
   // Adds the impulses to what the particles meet, and to the pairs that were taken; true when there are any.
   virtual bool carry(std::vector<CarriedContact>& met, std::vector<SelfContact>& pairs,
                      const CarriedMotion& motion) = 0;

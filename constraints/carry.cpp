@@ -7,6 +7,9 @@
 namespace drape {
 namespace {
 
+// What the motion that carriers make meets of bodies that react is added to the rest at most so often.
+constexpr int most_rounds = 8;
+
 bool before(const CarriedContact& a, const CarriedContact& b) {
   return std::pair(a.particle, a.body) < std::pair(b.particle, b.body);
 }
@@ -18,25 +21,31 @@ bool is_carried(const std::vector<CarriedContact>& met, const std::vector<Carrie
   const auto first = std::lower_bound(met.begin(), met.end(), particle,
                                       [](const CarriedContact& c, int i) { return c.particle < i; });
   for (auto c = first; c != met.end() && c->particle == particle; ++c)
-    if (bodies[c->body].reacts && !c->impulse.isZero(0)) return true;
+    if (bodies[c->body].reacts && c->taken) return true;
   return false;
 }
 
-// Adds the contact to those that are sorted by particle and body; of the same two, the impulse stays.
-void note(CarriedContact contact, std::vector<CarriedContact>& met) {
+// Adds the contact to those that are sorted by particle and body, or takes the place of the one of the same two.
+void note(const CarriedContact& contact, std::vector<CarriedContact>& met) {
   const auto place = std::lower_bound(met.begin(), met.end(), contact, before);
-  if (place == met.end() || before(contact, *place)) {
+  if (place == met.end() || before(contact, *place))
     met.insert(place, contact);
-    return;
-  }
-  contact.impulse = place->impulse;
-  *place = contact;
+  else
+    *place = contact;
+}
+
+// Adds it where the two are not known; true when it did.
+bool note_new(const CarriedContact& contact, std::vector<CarriedContact>& met) {
+  const auto place = std::lower_bound(met.begin(), met.end(), contact, before);
+  if (place != met.end() && !before(contact, *place)) return false;
+  met.insert(place, contact);
+  return true;
 }
 
 }  // namespace
 
 // The bodies as carriers see them: without what these gave them in the last response, or are expected to give them before
-// the first one.
+// the first one, and without what they do to each other, which the carriers find together with their own impulses.
 void ContactStep::see_bodies() {
   const std::vector<MovingBody>& bodies = constraints_->bodies_;
   std::vector<CarriedBody>& seen = constraints_->carried_bodies_;
@@ -50,13 +59,14 @@ void ContactStep::see_bodies() {
     const Mat3 inverse_inertia = body->inverse_inertia();
     seen[b] = {.reacts = true,
                .centre = body->centre(),
-               .velocity = body->free_velocity() + body->met_velocity() - given[b].first / body->mass(),
-               .spin = body->free_spin() + body->met_spin() - inverse_inertia * given[b].second,
+               .velocity = body->free_velocity() - given[b].first / body->mass(),
+               .spin = body->free_spin() - inverse_inertia * given[b].second,
                .velocity_before = body->velocity(),
                .spin_before = body->spin(),
                .inverse_mass = 1 / body->mass(),
                .inverse_inertia = inverse_inertia};
   }
+  constraints_->meeting_.show(constraints_->carried_touches_);
 }
 
 // Lets carriers take what their particles meet, and then the particles what is left.
@@ -70,14 +80,12 @@ void ContactStep::carry(ContactMode mode, const VecX& x, const VecX& v, Carriers
   // the impact has made it do so.
   for (CarriedContact& c : met)
     c.body_velocity = constraints_->bodies_[c.body].velocity(step.place(c.particle));
-  contacts.each_response([&](const ContactResponse& r) {
+  const auto contact_of = [&](const ContactResponse& r) {
     const Obstacle& obstacle = constraints_->bodies_[r.body].obstacle();
-    note({r.particle, r.body, r.normal, r.gap, r.body_velocity, obstacle.friction, obstacle.restitution},
-         met);
-  });
-  constraints_->carried_x_ = x;
-  constraints_->carried_v_ = v;
-  constraints_->carried_before_ = step.v;
+    return CarriedContact{r.particle,          r.body, r.normal, r.gap, r.body_velocity, obstacle.friction,
+                          obstacle.restitution};
+  };
+  contacts.each_response([&](const ContactResponse& r) { note(contact_of(r), met); });
   const CarriedMotion motion{mode,
                              step.h,
                              contacts.recovery_speed(),
@@ -85,40 +93,63 @@ void ContactStep::carry(ContactMode mode, const VecX& x, const VecX& v, Carriers
                              step.masses,
                              step.x,
                              constraints_->carried_bodies_,
+                             constraints_->carried_touches_,
                              constraints_->carried_before_,
                              constraints_->carried_x_,
                              constraints_->carried_v_};
-  if (!carriers.carry(met, constraints_->self_.touching(), motion)) return;
-  if (!bodies()) {
-    x_new = constraints_->carried_x_;
-    v_new = constraints_->carried_v_;
-    return;
+  bool more = true;
+  for (int round = 0; more && round < most_rounds; ++round) {
+    constraints_->carried_x_ = x;
+    constraints_->carried_v_ = v;
+    constraints_->carried_before_ = step.v;
+    if (!carriers.carry(met, constraints_->self_.touching(), motion)) return;
+    if (!bodies()) {
+      x_new = constraints_->carried_x_;
+      v_new = constraints_->carried_v_;
+      return;
+    }
+    step.v.swap(constraints_->carried_before_);
+    contacts.respond_again(mode, constraints_->bodies_, step, constraints_->carried_x_,
+                           constraints_->carried_v_, x_new, v_new);
+    step.v.swap(constraints_->carried_before_);
+    more = false;
+    contacts.each_response([&](const ContactResponse& r) {
+      if (!constraints_->carried_bodies_[r.body].reacts || !carriers.carries(r.particle)) return;
+      CarriedContact contact = contact_of(r);
+      contact.taken = true;  // also in the last round, where nothing answers it any more
+      more = note_new(contact, met) || more;
+    });
   }
-  step.v.swap(constraints_->carried_before_);
-  contacts.respond_again(mode, constraints_->bodies_, step, constraints_->carried_x_,
-                         constraints_->carried_v_, x_new, v_new);
-  step.v.swap(constraints_->carried_before_);
   // Where a body reacts, the carriers know better than the plane how it moves with what they push it by.
   for (const CarriedContact& c : met) {
-    if (!constraints_->carried_bodies_[c.body].reacts || c.impulse.isZero(0)) continue;
+    if (!constraints_->carried_bodies_[c.body].reacts || !c.taken) continue;
     x_new.segment<3>(3 * c.particle) = constraints_->carried_x_.segment<3>(3 * c.particle);
     v_new.segment<3>(3 * c.particle) = constraints_->carried_v_.segment<3>(3 * c.particle);
   }
 }
 
-// Gives the bodies what carriers took of them; v: without bodies.
+// Gives the bodies what carriers took of them; v: without bodies. The carriers have reckoned with how a body gives way, so that
+// it may become as fast as their impulses make it.
 void ContactStep::push_carried(const VecX& v, const VecX& x_new) {
   const StepMotion& step = constraints_->step_;
-  for (const CarriedContact& c : constraints_->carried_) {
-    if (c.impulse.isZero(0)) continue;
+  const std::vector<CarriedContact>& met = constraints_->carried_;
+  for (const CarriedContact& c : met) {
     const Vec3 place = x_new.segment<3>(3 * c.particle);
     const CarriedBody& body = constraints_->carried_bodies_[c.body];
     auto& [impulse, moment] = constraints_->carried_by_[c.body];
     impulse -= c.impulse;
     moment -= (place - (body.centre + step.h * body.velocity)).cross(c.impulse);
     constraints_->step_.work += c.body_velocity.dot(c.impulse);
-    constraints_->bodies_[c.body].push(-c.impulse, place,
-                                       (c.body_velocity - Vec3(v.segment<3>(3 * c.particle))).norm());
+  }
+  for (const CarriedContact& c : met) {
+    if (c.impulse.isZero(0)) continue;
+    const Vec3 place = x_new.segment<3>(3 * c.particle);
+    const CarriedBody& body = constraints_->carried_bodies_[c.body];
+    const auto& [impulse, moment] = constraints_->carried_by_[c.body];
+    const Vec3 change =
+        body.inverse_mass * impulse + (body.inverse_inertia * moment).cross(Vec3(place - body.centre));
+    const Vec3 nearer = c.body_velocity - v.segment<3>(3 * c.particle);
+    constraints_->bodies_[c.body].push(-c.impulse, place, std::max(nearer.norm(), change.norm()));
   }
 }
 

@@ -127,6 +127,16 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
   return ContactStep(*this);
 }
 
+void Constraints::keep() {
+  for (MovingBody& body : bodies_) body.keep();
+  kept_carried_by_ = last_carried_by_;
+}
+
+void Constraints::go_back() {
+  for (MovingBody& body : bodies_) body.go_back();
+  last_carried_by_ = kept_carried_by_;
+}
+
 std::vector<double> Constraints::penetration(const VecX& x) const {
   std::vector<double> depth(static_cast<std::size_t>(x.size() / 3), 0.0);
   const int n = static_cast<int>(depth.size());

@@ -74,6 +74,10 @@ class Constraints {
                                        double t, double h, Foresight foresight = Foresight::ahead,
                                        double kappa = implicit_kappa);
 
+  // For a step that is taken in parts: go_back() takes the bodies back to where they were at the last keep().
+  void keep();
+  void go_back();
+
   // How deep each particle, or the ball of its radius, is inside a body [m]; 0 where it is outside. Meant for the
   // start and the end of a run.
   std::vector<double> penetration(const VecX& x) const;
@@ -100,7 +104,8 @@ class Constraints {
   // completed step.
   std::vector<CarriedContact> carried_;
   std::vector<CarriedBody> carried_bodies_;
-  std::vector<std::pair<Vec3, Vec3>> carried_by_, last_carried_by_;
+  std::vector<BodyTouch> carried_touches_;
+  std::vector<std::pair<Vec3, Vec3>> carried_by_, last_carried_by_, kept_carried_by_;
   VecX carried_x_, carried_v_, carried_before_;  // scratch: the motion as carriers change it
 };
 

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "constraints/contact.h"
 #include "constraints/reacting_body.h"
@@ -48,6 +49,9 @@ class MovingBody {
 
   void begin_step(double t, double h);
   bool end_step();  // false: the reaction has not converged. A step that is abandoned does not move the body.
+  // go_back() makes the body what it was at the last keep(), whatever steps have ended since.
+  void keep() { kept_ = {now_, reacting_}; }
+  void go_back() { now_ = kept_.first, reacting_ = kept_.second; }
 
   // The impulses of the particles on the body in this step, summed from zero. Where they make the body move
   // otherwise than was assumed, `correct` is true, and the planes that it made must be updated (their
@@ -102,6 +106,7 @@ class MovingBody {
   bool turns_ = false;  // whether the body turns in this step
   Pose now_, start_, end_;
   std::optional<ReactingBody> reacting_;
+  std::pair<Pose, std::optional<ReactingBody>> kept_;
 };
 
 }  // namespace drape

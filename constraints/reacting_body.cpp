@@ -136,7 +136,7 @@ void ReactingBody::stay_in_reach() {
 
 bool ReactingBody::correct(Pose& end, double noise) {
   const Vec6 d = difference();
-  if (corrections_ == 0) meeting_ = approach_;
+  if (corrections_ == 0 || meeting_ == 0) meeting_ = approach_;  // of the first solve that pushes it
   const double near = close_enough * change() + noise / body_.mass + round_off * q_.norm();
   if (corrections_ == most_corrections || d.norm() <= near) return false;
   if (relaxation_ == 0) {

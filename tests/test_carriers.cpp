@@ -24,11 +24,13 @@ struct Pusher : Carriers {
   std::vector<Vec3> seen;  // m/s, velocity of body 0
   explicit Pusher(const Vec3& velocity) : wanted(velocity) {}
   void take(std::vector<SelfContact>&, const std::vector<char>&) override {}
+  bool carries(int) const override { return true; }
   bool carry(std::vector<CarriedContact>& met, std::vector<SelfContact>&,
              const CarriedMotion& motion) override {
     for (CarriedContact& c : met) {
       if (c.body != 0) continue;
       seen.push_back(motion.bodies[0].velocity);
+      c.taken = true;
       c.impulse = mass * (wanted - Vec3(motion.v));
       motion.v = wanted;
       motion.x = motion.start + motion.h * wanted;

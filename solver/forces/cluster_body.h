@@ -34,6 +34,9 @@ struct ClusterMotion {
   Vec3 velocity;  // m/s, v
   Vec3 spin;      // rad/s, w
   Vec3 at(const Vec3& r) const { return velocity + spin.cross(r); }
+  ClusterMotion operator+(const ClusterMotion& other) const {
+    return {velocity + other.velocity, spin + other.spin};
+  }
 };
 ClusterMotion motion_of(std::span<const ClusterMember> cluster, const ClusterBody& body, const VecX& x,
                         const VecX& v);

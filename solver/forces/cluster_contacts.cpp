@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace drape {
 namespace {
@@ -48,6 +49,7 @@ ClusterContacts::ClusterContacts(const std::vector<const Clusters*>& clusters) {
   free_.resize(clusters_.size());
   const std::size_t bodies = clusters_.size() + next.size(), points = places_.size() + next.size();
   impulses_.reserve(bodies, points);
+  inner_.reserve(bodies, points);
   carried_.reserve(bodies);
   numbered_.reserve(bodies);
   touches_.reserve(points);
@@ -150,9 +152,11 @@ void ClusterContacts::hold_pair(const SelfContact& pair, const CarriedMotion& mo
   }
 }
 
-void ClusterContacts::hold_obstacle(const CarriedContact& contact, const CarriedMotion& motion) {
-  const CarriedBody& obstacle = motion.bodies[static_cast<std::size_t>(contact.body)];
-  int& number = obstacles_[static_cast<std::size_t>(contact.body)];
+// side: 1 or -1, of the obstacle in the point.
+void ClusterContacts::hold_obstacle(int body, double side, const Vec3& place, const CarriedMotion& motion) {
+  const CarriedBody& obstacle = motion.bodies[static_cast<std::size_t>(body)];
+  if (!obstacle.reacts) return;
+  int& number = obstacles_[static_cast<std::size_t>(body)];
   if (number == none) {
     carried_.push_back({none, none, obstacle.centre, 0, 0});
     number = impulses_.add({.inverse_mass = obstacle.inverse_mass,
@@ -160,7 +164,7 @@ void ClusterContacts::hold_obstacle(const CarriedContact& contact, const Carried
                             .before = {obstacle.velocity_before, obstacle.spin_before},
                             .free = {obstacle.velocity, obstacle.spin}});
   }
-  impulses_.hold(number, -1, obstacle.centre - at(motion.start, contact.particle));
+  impulses_.hold(number, side, side * (place - obstacle.centre));
 }
 
 // The pairs that were taken, and what their particles, and those of free clusters, meet of bodies.
@@ -177,19 +181,34 @@ void ClusterContacts::find(std::vector<CarriedContact>& met, std::vector<SelfCon
     if (!pair.by_carriers) continue;
     hold_pair(pair, motion);
     impulses_.add_point(pair.normal, Vec3::Zero()).guess = last_of(last_of_pairs_, pair.who);
-    touches_.push_back({nullptr, &pair, pair.normal.dot(pair.place) - pair.thickness, pair.friction});
+    touches_.push_back(
+        {nullptr, &pair, nullptr, pair.normal.dot(pair.place) - pair.thickness, pair.friction});
     pair.carried_force.setZero();
   }
   for (CarriedContact& contact : met) {
     contact.impulse.setZero();
+    contact.taken = false;
     const std::size_t own = clusters_.size() + static_cast<std::size_t>(contact.particle);
     if (!is_carried(contact.particle) && numbers_[own] == none) continue;
     hold(contact.particle, 1, at(motion.start, contact.particle), motion);
     const bool reacts = motion.bodies[static_cast<std::size_t>(contact.body)].reacts;
-    if (reacts) hold_obstacle(contact, motion);
+    hold_obstacle(contact.body, -1, at(motion.start, contact.particle), motion);
     impulses_.add_point(contact.normal, reacts ? Vec3(Vec3::Zero()) : contact.body_velocity).guess =
         last_of(last_of_contacts_, {contact.particle, contact.body});
-    touches_.push_back({&contact, nullptr, contact.gap, 0});
+    touches_.push_back({&contact, nullptr, nullptr, contact.gap, 0});
+    contact.taken = true;
+  }
+  find_bodies(motion);
+}
+
+// Where bodies touch each other, when one of them that reacts is touched by what is carried.
+void ClusterContacts::find_bodies(const CarriedMotion& motion) {
+  if (std::all_of(obstacles_.begin(), obstacles_.end(), [](int number) { return number == none; })) return;
+  for (const BodyTouch& touch : motion.touches) {
+    hold_obstacle(touch.a, 1, touch.place, motion);
+    hold_obstacle(touch.b, -1, touch.place, motion);
+    impulses_.add_point(touch.normal, -touch.carried).guess = touch.impulse;
+    touches_.push_back({nullptr, nullptr, &touch, 0, touch.mu});
   }
 }
 
@@ -214,7 +233,11 @@ void ClusterContacts::set_targets(Phase phase, const CarriedMotion& motion) {
     const CarriedContact* const contact = touches_[k].contact;
     const bool by_speed = contact && motion.mode == ContactMode::velocity;
     point.target = -std::max(touches_[k].gap, by_speed ? deepest : slowest) / motion.h;
-    point.mu = touches_[k].pair || phase == Phase::support ? touches_[k].mu : 0;
+    point.mu = !contact || phase == Phase::support ? touches_[k].mu : 0;
+    if (const BodyTouch* const bodies = touches_[k].bodies) {
+      point.target = phase == Phase::recovery ? -std::numeric_limits<double>::max() : bodies->target;
+      continue;
+    }
     if (!contact || motion.mode == ContactMode::velocity || phase == Phase::recovery) continue;
     point.target = phase == Phase::impact
                        ? std::max(0.0, -contact->restitution * impulses_.slip(point).dot(point.normal))
@@ -229,7 +252,7 @@ void ClusterContacts::remember() {
     const Vec3& impulse = impulses_.points()[k].impulse;
     if (const SelfContact* const pair = touches_[k].pair)
       last_of_pairs_.emplace_back(pair->who, impulse);
-    else
+    else if (touches_[k].contact)
       last_of_contacts_.emplace_back(std::pair(touches_[k].contact->particle, touches_[k].contact->body),
                                      impulse);
   }
@@ -259,7 +282,7 @@ void ClusterContacts::take_impulses(double h) {
     const Vec3& impulse = impulses_.points()[k].impulse;
     if (touches_[k].contact)
       touches_[k].contact->impulse += impulse;
-    else
+    else if (touches_[k].pair)
       touches_[k].pair->carried_force += impulse / h;
   }
 }
@@ -307,10 +330,20 @@ void ClusterContacts::move(const CarriedMotion& motion) const {
   }
 }
 
-// Parts the pairs whose particles come nearer within their clusters, each by itself and without friction; true when there are
-// any. What is tolerated is more than sweeps leave of stiff bodies, which have to rub.
-bool ClusterContacts::part_particles(const CarriedMotion& motion) const {
-  bool any = false;
+// What particles that move within their clusters meet of bodies that react.
+void ClusterContacts::meet_by_particle(const CarriedMotion& motion) {
+  inner_.begin(motion);
+  for (const Touch& touch : touches_) {
+    if (!touch.contact || !motion.bodies[static_cast<std::size_t>(touch.contact->body)].reacts) continue;
+    const int number = obstacles_[static_cast<std::size_t>(touch.contact->body)];
+    const Impulses::Body& body = impulses_.bodies()[static_cast<std::size_t>(number)];
+    inner_.add(*touch.contact, touch.gap, touch.mu, body.after(Phase::support), motion);
+  }
+  inner_.answer(motion);
+}
+
+// Parts the pairs whose particles come nearer within their clusters, each by itself and without friction. What is tolerated is more than sweeps leave of stiff bodies, which have to rub.
+void ClusterContacts::part_particles(const CarriedMotion& motion) const {
   for (const Touch& touch : touches_) {
     if (!touch.pair) continue;
     const SelfContact& pair = *touch.pair;
@@ -327,14 +360,12 @@ bool ClusterContacts::part_particles(const CarriedMotion& motion) const {
     const double in_way = -std::max(touch.gap, -motion.recovery_speed * motion.h) - pair.normal.dot(p),
                  in_speed = -std::max(touch.gap, 0.0) / motion.h - pair.normal.dot(u);
     if (in_way <= tolerated * pair.thickness) continue;
-    any = true;
     for (std::size_t k = 0; k < 4; ++k) {
       const Vec3 push = ways[k] / gives_way * pair.normal;
       motion.x.segment<3>(3 * pair.particles[k]) += std::max(in_way, 0.0) * push;
       motion.v.segment<3>(3 * pair.particles[k]) += std::max(in_speed, 0.0) * push;
     }
   }
-  return any;
 }
 
 void ClusterContacts::forget() {
@@ -357,8 +388,9 @@ bool ClusterContacts::carry(std::vector<CarriedContact>& met, std::vector<SelfCo
   take_impulses(motion.h);
   bring_out(motion);
   move(motion);
-  return part_particles(motion) ||
-         std::any_of(impulses_.bodies().begin(), impulses_.bodies().end(), is_pushed);
+  meet_by_particle(motion);
+  part_particles(motion);
+  return true;
 }
 
 }  // namespace drape

@@ -15,7 +15,9 @@
 // as constraints/response.h has it for a particle. What is left, such as particles that move within their cluster, is answered
 // by particle: of bodies by that, of pairs by the push w_k / m_k along the normal.
 //
-// A body that reacts (constraints/reacting_body.h) takes part with its own K and the opposite impulses. A cluster with a particle
+// A body that reacts (constraints/reacting_body.h) takes part with its own K and the opposite impulses, where such bodies touch each
+// other and the obstacles (constraints/body_meeting.h), they are held there as well, and what particles that
+// move within their cluster meet of it is answered here, too (solver/forces/inner_contacts.h). A cluster with a particle
 // that is held, or that a body carries, is no free body: its particles are on their own. So are pairs with no free cluster, and
 // those with one on both sides: springs answer them.
 // J [N s], u, v, v_b [m/s], w [rad/s], K [1/kg], r, gap [m], h [s].
@@ -26,6 +28,7 @@
 
 #include "constraints/carriers.h"
 #include "solver/forces/impulses.h"
+#include "solver/forces/inner_contacts.h"
 
 namespace drape {
 
@@ -35,6 +38,7 @@ class ClusterContacts final : public Carriers {
   explicit ClusterContacts(const std::vector<const Clusters*>& clusters);
 
   void take(std::vector<SelfContact>& pairs, const std::vector<char>& held) override;
+  bool carries(int particle) const override { return is_carried(particle); }
   bool carry(std::vector<CarriedContact>& met, std::vector<SelfContact>& pairs,
              const CarriedMotion& motion) override;
 
@@ -55,9 +59,10 @@ class ClusterContacts final : public Carriers {
     double part,
         pushed;  // of the step that is left after its impacts, as a sum over these [N s], and what they sum to
   };
-  struct Touch {  // what a point of the impulses is: one of the two
+  struct Touch {  // what a point of the impulses is: one of the three
     CarriedContact* contact;
     SelfContact* pair;
+    const BodyTouch* bodies;
     double gap;  // m
     double mu;   // -
   };
@@ -70,7 +75,8 @@ class ClusterContacts final : public Carriers {
   int number_of(int key, const CarriedMotion& motion);
   void hold(int particle, double weight, const Vec3& place, const CarriedMotion& motion);
   void hold_pair(const SelfContact& pair, const CarriedMotion& motion);
-  void hold_obstacle(const CarriedContact& contact, const CarriedMotion& motion);
+  void hold_obstacle(int body, double side, const Vec3& place, const CarriedMotion& motion);
+  void find_bodies(const CarriedMotion& motion);
   void remember();
   void find_friction();
   void set_targets(Phase phase, const CarriedMotion& motion);
@@ -79,7 +85,8 @@ class ClusterContacts final : public Carriers {
   void take_impulses(double h);
   void find_parts(const CarriedMotion& motion);
   void move(const CarriedMotion& motion) const;
-  bool part_particles(const CarriedMotion& motion) const;
+  void meet_by_particle(const CarriedMotion& motion);
+  void part_particles(const CarriedMotion& motion) const;
 
   std::vector<std::span<const ClusterMember>> clusters_;
   std::vector<std::size_t> places_start_;  // particles + 1 entries into places_
@@ -91,6 +98,7 @@ class ClusterContacts final : public Carriers {
   std::vector<int> numbers_, obstacles_;
   std::vector<int> numbered_;  // what has one
   Impulses impulses_;
+  InnerContacts inner_;
   std::vector<Carried> carried_;  // by body of the impulses
   std::vector<Touch> touches_;    // by point of the impulses
   // The impulses of the support found last [N s], sorted, from which the next ones are looked for.

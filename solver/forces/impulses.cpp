@@ -8,18 +8,13 @@ namespace {
 constexpr int most_sweeps = 200;
 constexpr double exactness = 1e-9;  // of the largest velocity: what a sweep changes at the end
 
-ClusterMotion sum(const ClusterMotion& a, const ClusterMotion& b) {
-  return {a.velocity + b.velocity, a.spin + b.spin};
-}
-
-// The motion of a body when the phase begins.
-ClusterMotion start_of(Phase phase, const Impulses::Body& body) {
-  if (phase == Phase::impact) return body.before;
-  const ClusterMotion forced = sum(body.free, body.change(Phase::impact));
-  return phase == Phase::support ? forced : sum(forced, body.change(Phase::support));
-}
-
 }  // namespace
+
+ClusterMotion Impulses::Body::start_of(Phase phase) const {
+  if (phase == Phase::impact) return before;
+  const ClusterMotion forced = free + change(Phase::impact);
+  return phase == Phase::support ? forced : forced + change(Phase::support);
+}
 
 void Impulses::reserve(std::size_t bodies, std::size_t points) {
   bodies_.reserve(bodies);
@@ -76,7 +71,7 @@ void Impulses::take_guess() {
 }
 
 void Impulses::begin(Phase phase) {
-  for (Body& body : bodies_) body.now = start_of(phase, body);
+  for (Body& body : bodies_) body.now = body.start_of(phase);
   for (Point& point : points_) {
     point.impulse.setZero();
     point.way.setZero();
@@ -146,7 +141,7 @@ double Impulses::settle(Phase phase) {
     last = size;
   }
   for (Body& body : bodies_) {
-    const ClusterMotion start = start_of(phase, body);
+    const ClusterMotion start = body.start_of(phase);
     body.changes[static_cast<std::size_t>(phase)] = {body.now.velocity - start.velocity,
                                                      body.now.spin - start.spin};
   }

@@ -34,6 +34,8 @@ class Impulses {
     std::array<ClusterMotion, 3> changes = {at_rest, at_rest, at_rest};  // by phase
 
     const ClusterMotion& change(Phase phase) const { return changes[static_cast<std::size_t>(phase)]; }
+    ClusterMotion start_of(Phase phase) const;  // its motion when the phase begins
+    ClusterMotion after(Phase phase) const { return start_of(phase) + change(phase); }
   };
   struct Hold {  // the part of a body in a point
     int body;

@@ -35,7 +35,7 @@ StepReport Bdf::advance(State& state, double h) {
   StepReport report;
   {
     const Stopwatch watch(report.step_ms);
-    take_in_pieces(system_, state, h, options_.max_halvings, before_, report,
+    take_in_pieces(system_, constraints_, state, h, options_.max_halvings, before_, report,
                    [&](const Piece& piece) { return attempt(state, piece, report); });
   }
   return report;

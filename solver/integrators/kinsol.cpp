@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "mesh/base/parallel.h"
 #include "mesh/base/stopwatch.h"
@@ -110,7 +111,7 @@ StepReport NewtonKinsol::advance(State& state, double h) {
   double step_ms = 0;
   {
     const Stopwatch watch(step_ms);
-    take_in_pieces(system_, state, h, options_.max_halvings, before_, report_,
+    take_in_pieces(system_, constraints_, state, h, options_.max_halvings, before_, report_,
                    [&](const Piece& piece) { return attempt(state, piece); });
   }
   report_.step_ms = step_ms;
@@ -228,6 +229,9 @@ int NewtonKinsol::iterate(double wanted, double& norm) {
     KINGetNumNonlinSolvIters(kinsol_, &iterations);
     report_.newton_iterations += static_cast<int>(iterations);
     KINGetFuncNorm(kinsol_, &norm);
+    // Where F is not a finite number at the start, that norm is of another solve.
+    if (flag == KIN_FIRST_SYSFUNC_ERR || flag == KIN_SYSFUNC_FAIL)
+      norm = std::numeric_limits<double>::infinity();
     if (norm <= wanted || flag == KIN_STEP_LT_STPTOL) break;
     largest *= 0.5 * wanted / norm;
   }

@@ -48,6 +48,8 @@ StepReport Pbd::advance(State& state, double h) {
   StepReport report;
   const Stopwatch watch(report.step_ms);
   before_ = state;
+  system_.keep();
+  constraints_.keep();
   const int substeps = options_.projection.substeps;
   for (int k = 0; k < substeps && report.done; ++k) {
     take(state, h / substeps, k + 1 == substeps, report);
@@ -59,6 +61,8 @@ StepReport Pbd::advance(State& state, double h) {
     report.converged = report.converged && report.residual <= options_.tolerance;
   } else {
     state = before_;
+    system_.go_back();
+    constraints_.go_back();
     clusters_.forget();
   }
   return report;

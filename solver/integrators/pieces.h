@@ -17,10 +17,10 @@ struct Piece {
 
 // attempt(piece) takes `state` on by the piece, or returns false and leaves the state as it is. `before` is
 // the state to which a step that fails half-way returns; it belongs to the caller, so that nothing is
-// allocated. What the forces know of the past returns with it.
+// allocated. What the forces know of the past returns with it, and so do the bodies that react.
 template <class Attempt>
-void take_in_pieces(System& system, State& state, double h, int max_halvings, State& before,
-                    StepReport& report, const Attempt& attempt) {
+void take_in_pieces(System& system, Constraints& constraints, State& state, double h, int max_halvings,
+                    State& before, StepReport& report, const Attempt& attempt) {
   const double end = state.time + h;
   int halvings = 0, left = 1;
   report.substeps = 0;
@@ -33,10 +33,12 @@ void take_in_pieces(System& system, State& state, double h, int max_halvings, St
     if (halvings == 0) {
       before = state;
       system.keep();
+      constraints.keep();
     }
     if (halvings == max_halvings) {
       state = before;
       system.go_back();
+      constraints.go_back();
       report.done = false;
       return;
     }
