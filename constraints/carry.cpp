@@ -34,12 +34,25 @@ void note(const CarriedContact& contact, std::vector<CarriedContact>& met) {
     *place = contact;
 }
 
-// Adds it where the two are not known; true when it did.
-bool note_new(const CarriedContact& contact, std::vector<CarriedContact>& met) {
-  const auto place = std::lower_bound(met.begin(), met.end(), contact, before);
-  if (place != met.end() && !before(contact, *place)) return false;
-  met.insert(place, contact);
-  return true;
+CarriedContact contact_of(const ContactResponse& r, const std::vector<MovingBody>& bodies) {
+  const Obstacle& obstacle = bodies[r.body].obstacle();
+  return {r.particle, r.body, r.normal, r.gap, r.body_velocity, obstacle.friction, obstacle.restitution};
+}
+
+// Adds what the motion that carriers have made meets of bodies that react, where it is not known yet; true when there is any.
+bool note_more(const ParticleContacts& contacts, const std::vector<MovingBody>& bodies,
+               const Carriers& carriers, std::vector<CarriedContact>& met) {
+  bool any = false;
+  contacts.each_response([&](const ContactResponse& r) {
+    if (!bodies[r.body].reacting() || !carriers.carries(r.particle)) return;
+    CarriedContact contact = contact_of(r, bodies);
+    contact.taken = true;  // also after the last round, where nothing answers it any more
+    const auto place = std::lower_bound(met.begin(), met.end(), contact, before);
+    if (place != met.end() && !before(contact, *place)) return;
+    met.insert(place, contact);
+    any = true;
+  });
+  return any;
 }
 
 }  // namespace
@@ -80,12 +93,7 @@ void ContactStep::carry(ContactMode mode, const VecX& x, const VecX& v, Carriers
   // the impact has made it do so.
   for (CarriedContact& c : met)
     c.body_velocity = constraints_->bodies_[c.body].velocity(step.place(c.particle));
-  const auto contact_of = [&](const ContactResponse& r) {
-    const Obstacle& obstacle = constraints_->bodies_[r.body].obstacle();
-    return CarriedContact{r.particle,          r.body, r.normal, r.gap, r.body_velocity, obstacle.friction,
-                          obstacle.restitution};
-  };
-  contacts.each_response([&](const ContactResponse& r) { note(contact_of(r), met); });
+  contacts.each_response([&](const ContactResponse& r) { note(contact_of(r, constraints_->bodies_), met); });
   const CarriedMotion motion{mode,
                              step.h,
                              contacts.recovery_speed(),
@@ -112,13 +120,7 @@ void ContactStep::carry(ContactMode mode, const VecX& x, const VecX& v, Carriers
     contacts.respond_again(mode, constraints_->bodies_, step, constraints_->carried_x_,
                            constraints_->carried_v_, x_new, v_new);
     step.v.swap(constraints_->carried_before_);
-    more = false;
-    contacts.each_response([&](const ContactResponse& r) {
-      if (!constraints_->carried_bodies_[r.body].reacts || !carriers.carries(r.particle)) return;
-      CarriedContact contact = contact_of(r);
-      contact.taken = true;  // also in the last round, where nothing answers it any more
-      more = note_new(contact, met) || more;
-    });
+    more = note_more(contacts, constraints_->bodies_, carriers, met);
   }
   // Where a body reacts, the carriers know better than the plane how it moves with what they push it by.
   for (const CarriedContact& c : met) {

@@ -146,3 +146,30 @@ TEST_CASE("a body that falls on a cluster comes to rest there", "[clusters][pbd]
           CHECK(all.body().centre()[1] == Approx(top + 0.05 + 2 * margin).margin(1e-3));
         }
 }
+
+TEST_CASE("a cluster on which a rope hangs keeps the momentum when it meets a body that reacts",
+          "[clusters][rope][pbd]") {
+  for (const char* contact : {"velocity", "restitution"})
+    for (const double heavy : {0.05, 1.0, 20.0})  // kg/m
+      for (const double mass : {0.2, 5.0})
+        for (const Kind& kind : kinds) {
+          INFO(contact << ", " << heavy << " kg/m, " << mass << " kg, clusters " << kind.clusters);
+          Scene all(Vec3::Zero(), 0.4, mass, Vec3::Zero(), 0.3, 0.3);
+          const double half = 0.5 * edge * (kind.counts[1] - 1), over = kind.turned == 0 ? 0.003 : 0.05;
+          all.add_box(kind, 1e6, kind.turn(), {0.02, 0.2 + half + over, 0.03});
+          int highest = 0;
+          for (int i = 0; i < all.state.particles(); ++i)
+            if (all.state.x[3 * i + 1] > all.state.x[3 * highest + 1]) highest = i;
+          std::vector<Vec3> points;
+          for (int k = 0; k < 5; ++k)
+            points.push_back(all.state.x.segment<3>(3 * highest) + edge * k * Vec3(0.6, 0.8, 0));
+          all.add(RopePart{
+              .points = points, .material = {.mass_per_length = heavy, .radius = 1e-4}, .first = highest});
+          all.use_pbd(contact);
+          for (int i = 0; i < all.state.particles(); ++i) all.state.v.segment<3>(3 * i) = Vec3(0.05, -1, 0);
+          const Vec3 before = all.momentum();
+          for (int n = 0; n < 25; ++n) REQUIRE(all.advance(2e-3).done);
+          CHECK((all.momentum() - before).norm() < 1e-4 * before.norm());
+          CHECK(all.body().velocity()[1] < -5e-3);
+        }
+}
