@@ -45,8 +45,7 @@ bool note_more(const ParticleContacts& contacts, const std::vector<MovingBody>& 
   bool any = false;
   contacts.each_response([&](const ContactResponse& r) {
     if (!bodies[r.body].reacting() || !carriers.carries(r.particle)) return;
-    CarriedContact contact = contact_of(r, bodies);
-    contact.taken = true;  // also after the last round, where nothing answers it any more
+    const CarriedContact contact = contact_of(r, bodies);
     const auto place = std::lower_bound(met.begin(), met.end(), contact, before);
     if (place != met.end() && !before(contact, *place)) return;
     met.insert(place, contact);

@@ -83,9 +83,6 @@ void InnerContacts::answer(const CarriedMotion& motion) {
     motion.v.segment<3>(3 * particle) += change;
     motion.x.segment<3>(3 * particle) += motion.h * change;
   }
-  for (const Touch& touch : touches_)
-    if (const double in = depth(touch, motion); in > 0)
-      motion.x.segment<3>(3 * touch.contact->particle) += in * touch.contact->normal;
 }
 
 }  // namespace drape

@@ -4,7 +4,7 @@
 //   u = v_i - V - W x r,   K = 1/m_i + 1/M - [r] I^-1 [r]
 //   velocity      n.u >= -gap/h, with friction
 //   restitution   n.u >= 0 with friction, for those that would end the step inside: the rebound is that of the clusters
-// What still ends inside is moved along the normal.
+// What still ends inside by the way that its mean velocity has made is brought out by the next step.
 // u, v_i, V [m/s], W [rad/s], m_i, M [kg], I [kg m^2], r, gap [m], h [s].
 #pragma once
 
