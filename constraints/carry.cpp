@@ -129,28 +129,19 @@ void ContactStep::carry(ContactMode mode, const VecX& x, const VecX& v, Carriers
   }
 }
 
-// Gives the bodies what carriers took of them; v: without bodies. The carriers have reckoned with how a body gives way, so that
-// it may become as fast as their impulses make it.
+// Gives the bodies what carriers took of them; v: without bodies.
 void ContactStep::push_carried(const VecX& v, const VecX& x_new) {
   const StepMotion& step = constraints_->step_;
-  const std::vector<CarriedContact>& met = constraints_->carried_;
-  for (const CarriedContact& c : met) {
+  for (const CarriedContact& c : constraints_->carried_) {
+    if (c.impulse.isZero(0)) continue;
     const Vec3 place = x_new.segment<3>(3 * c.particle);
     const CarriedBody& body = constraints_->carried_bodies_[c.body];
     auto& [impulse, moment] = constraints_->carried_by_[c.body];
     impulse -= c.impulse;
     moment -= (place - (body.centre + step.h * body.velocity)).cross(c.impulse);
     constraints_->step_.work += c.body_velocity.dot(c.impulse);
-  }
-  for (const CarriedContact& c : met) {
-    if (c.impulse.isZero(0)) continue;
-    const Vec3 place = x_new.segment<3>(3 * c.particle);
-    const CarriedBody& body = constraints_->carried_bodies_[c.body];
-    const auto& [impulse, moment] = constraints_->carried_by_[c.body];
-    const Vec3 change =
-        body.inverse_mass * impulse + (body.inverse_inertia * moment).cross(Vec3(place - body.centre));
-    const Vec3 nearer = c.body_velocity - v.segment<3>(3 * c.particle);
-    constraints_->bodies_[c.body].push(-c.impulse, place, std::max(nearer.norm(), change.norm()));
+    constraints_->bodies_[c.body].pull(-c.impulse, place,
+                                       (c.body_velocity - Vec3(v.segment<3>(3 * c.particle))).norm());
   }
 }
 

@@ -69,11 +69,8 @@ void ContactStep::receive_pin(const MovingPin& pin, const Vec3& impulse) {
   const Vec3 velocity = constraints_->pins_.velocity(pin.particle);
   constraints_->step_.work += velocity.dot(impulse);
   if (pin.body < 0) return;
-  // A pin pulls at a body that it has not run into: the body may become as fast as the pull itself makes it.
-  MovingBody& body = constraints_->bodies_[pin.body];
-  const double by_pull = body.reacting() ? impulse.norm() / body.obstacle().rigid->mass : 0;
-  const double approach = (velocity - step.velocity(pin.particle)).norm();
-  body.push(-impulse, step.place(pin.particle) + step.h * velocity, std::max(approach, by_pull));
+  constraints_->bodies_[pin.body].pull(-impulse, step.place(pin.particle) + step.h * velocity,
+                                       (velocity - step.velocity(pin.particle)).norm());
 }
 
 void ContactStep::receive_faces(const VecX& v) {

@@ -42,6 +42,10 @@ void MovingBody::push(const Vec3& impulse, const Vec3& place, double approach) {
   if (reacting_) reacting_->push(impulse, place, approach);
 }
 
+void MovingBody::pull(const Vec3& impulse, const Vec3& place, double approach) {
+  if (reacting_) reacting_->pull(impulse, place, approach);
+}
+
 SurfacePoint MovingBody::at_start(const Vec3& x) const { return closest(obstacle_.shape, start_.to_body(x)); }
 
 SurfacePoint MovingBody::near_start(const Vec3& x) const {

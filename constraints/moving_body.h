@@ -62,6 +62,7 @@ class MovingBody {
   }
   void clear_impulse();
   void push(const Vec3& impulse, const Vec3& place, double approach = 0);
+  void pull(const Vec3& impulse, const Vec3& place, double approach);  // see ReactingBody::pull
   bool correct(double noise) { return reacting_ && reacting_->correct(end_, noise); }
 
   // Impulse [N s] and moment [N m s] of other bodies on this one, which reacts (constraints/body_meeting.h).

@@ -89,7 +89,16 @@ void ReactingBody::begin_corrections() {
 void ReactingBody::clear_impulse() {
   J_.setZero();
   T_.setZero();
+  pulled_J_.setZero();
+  pulled_T_.setZero();
   approach_ = 0;
+}
+
+void ReactingBody::pull(const Vec3& impulse, const Vec3& place, double approach) {
+  const Vec3 J = J_, T = T_;
+  push(impulse, place, std::max(approach, impulse.norm() / body_.mass));
+  pulled_J_ += J_ - J;
+  pulled_T_ += T_ - T;
 }
 
 void ReactingBody::push(const Vec3& impulse, const Vec3& place, double approach) {
@@ -136,7 +145,10 @@ void ReactingBody::stay_in_reach() {
 
 bool ReactingBody::correct(Pose& end, double noise) {
   const Vec6 d = difference();
-  if (corrections_ == 0 || meeting_ == 0) meeting_ = approach_;  // of the first solve that pushes it
+  if (corrections_ == 0 || meeting_ == 0) {
+    const double spun = radius_ * (world_inertia(pose_).inverse() * pulled_T_).norm();
+    meeting_ = std::max(approach_, pulled_J_.norm() / body_.mass + spun);
+  }
   const double near = close_enough * change() + noise / body_.mass + round_off * q_.norm();
   if (corrections_ == most_corrections || d.norm() <= near) return false;
   if (relaxation_ == 0) {

@@ -67,6 +67,9 @@ class ReactingBody {
   // from a particle [m/s].
   void clear_impulse();
   void push(const Vec3& impulse, const Vec3& place, double approach = 0);
+  // The same of what pulls without having run into the body, or reckons with how it gives way: the body may become as fast as all
+  // of that together makes it.
+  void pull(const Vec3& impulse, const Vec3& place, double approach);
   // Forgets the solves of this step so far, because what pushes next is another problem.
   void begin_corrections();
   // True when the impulses make another motion than the prescribed one; `end` is then the new pose.
@@ -112,11 +115,12 @@ class ReactingBody {
   // These belong to the step under way.
   double h_ = 0;
   Vec3 J_ = Vec3::Zero(), T_ = Vec3::Zero();
-  Vec3 A_ = Vec3::Zero();                       // moment of what other bodies do
-  Vec6 met_ = Vec6::Zero(), y_ = Vec6::Zero();  // what they change of q', and of the pose alone
-  double relaxation_ = 0;                       // a above; 0: nothing touches the body
-  double approach_ = 0;                         // the largest approach of the last solve [m/s]
-  double meeting_ = 0;                          // the approach at the start of the step [m/s]
+  Vec3 A_ = Vec3::Zero();                                   // moment of what other bodies do
+  Vec6 met_ = Vec6::Zero(), y_ = Vec6::Zero();              // what they change of q', and of the pose alone
+  double relaxation_ = 0;                                   // a above; 0: nothing touches the body
+  Vec3 pulled_J_ = Vec3::Zero(), pulled_T_ = Vec3::Zero();  // what of these pulls
+  double approach_ = 0;                                     // the largest approach of the last solve [m/s]
+  double meeting_ = 0;  // the speed that the first solve that pushes may change [m/s]
   Vec6 q_ = Vec6::Zero(), q_free_ = Vec6::Zero();
   Vec6 last_q_ = Vec6::Zero(), last_d_ = Vec6::Zero();
   int corrections_ = 0, changes_ = 0;

@@ -62,6 +62,7 @@ const Part gallery[] = {
     {"poncho-sewn", 0.5, 4},      // is sewn after 0.2 s
     {"rabbit-clusters", 0.6, 2},
     {"rabbit-links", 0.6, 2},     // has come to the steps
+    {"rabbit-seesaw", 0.6, 2},    // the board lies on the floor, and the rabbit on its side
     {"reef-knot", 1.2, 4},        // the bands have come to each other
     {"rope-box", 1.0, 2},         // swings through below its pin
     {"rope-chain", 0.6, 2},
