@@ -21,7 +21,7 @@ usage: ./build.sh WORD
                   checked out, from the one before), from REVISION, or all
   format          format the sources in place; format --check only looks
   sanitize        build with the address and undefined-behaviour sanitizers and run the tests, but for the slow ones
-  soak            look for a way through cloth in 1,000,000 motions and 1,000 drops of garments: two hours
+  soak            look for a way through cloth in 1,000,000 motions and 1,000 drops of garments: an hour or two
   debug           build with assertions, for a debugger, and run the quick tests
   clang           build with clang and run the quick tests
   odr             build the program as for debug and check, when linking, that no two source files mean different things by one name
