@@ -65,6 +65,7 @@ class Carriers {
   virtual ~Carriers() = default;
   // Marks the pairs of cloth that the carriers answer in the step in place of springs. held: by particle.
   virtual void take(std::vector<SelfContact>& pairs, const std::vector<char>& held) = 0;
+  // Whether the particle moves as what carries it, and not by itself.
   virtual bool carries(int particle) const = 0;
   // Adds the impulses to what the particles meet, and to the pairs that were taken; true when there are any.
   virtual bool carry(std::vector<CarriedContact>& met, std::vector<SelfContact>& pairs,
