@@ -449,7 +449,7 @@ changed_sources() {
   git diff --name-only --diff-filter=d "$1" -- '*.h' '*.cpp' | while read -r changed; do
     [[ "$changed" == *.h ]] || { printf '%s\n' "$changed"; continue; }
     users=$(git grep -lF "#include \"$changed\"" -- "${changed%/*}/*.cpp" || true)
-    [[ -n "$users" ]] || users=$(git grep -lF "#include \"$changed\"" -- '*.cpp' | head -n 1)
+    [[ -n "$users" ]] || users=$(git grep -lF "#include \"$changed\"" -- '*.cpp' | sed -n 1p || true)
     printf '%s\n' "$users"
   done | grep . | sort -u
 }
