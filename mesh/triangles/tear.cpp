@@ -52,6 +52,7 @@ std::vector<Side> sides_by_edge(const TriangleMesh& mesh) {
 
 std::vector<CutEdge> sorted_cuts(const std::vector<CutEdge>& cuts) {
   std::vector<CutEdge> sorted;
+  sorted.reserve(cuts.size());
   for (const auto& [a, b] : cuts) sorted.emplace_back(std::min(a, b), std::max(a, b));
   std::sort(sorted.begin(), sorted.end());
   return sorted;

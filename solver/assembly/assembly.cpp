@@ -257,6 +257,7 @@ void Assembly::connect(Cloth& cloth, Forces& forces) const {
   if (cloth.soft) return append(internal::soft_forces(cloth), forces);
   if (cloth.rope) {
     std::vector<int> particles;
+    particles.reserve(cloth.mesh.positions.size());
     for (int v = 0; v < cloth.mesh.vertex_count(); ++v) particles.push_back(cloth.embedding.particle(v));
     return append(rope_forces(cloth.rest.positions, particles, *cloth.rope), forces);
   }
