@@ -54,7 +54,8 @@ class BodyMeeting {
   BodyMeetingReport end_step(const Bodies& bodies,
                              const std::vector<Nip>& nips);  // keeps the impulses for the next step
 
-  void show(std::vector<BodyTouch>& touches) const;  // as they are in the step under way
+  // Lists where bodies touch in the step under way, with the impulses that were found last.
+  void show(std::vector<BodyTouch>& touches) const;
 
   // Pairs of bodies that were inside each other by more than `margin` [m] when the last step began.
   struct Overlap {

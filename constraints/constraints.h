@@ -101,10 +101,10 @@ class Constraints {
   VecX x_new_;       // scratch
   // Of carriers: what they took in the last response, the bodies as they see them, and what these got from them, as an impulse
   // [N s] and its moment [N m s]: in the last response, before the first one what they are expected to get, and in the last
-  // completed step.
+  // completed step, also as of the last keep().
   std::vector<CarriedContact> carried_;
   std::vector<CarriedBody> carried_bodies_;
-  std::vector<BodyTouch> carried_touches_;
+  std::vector<BodyTouch> carried_touches_;  // where these touch each other
   std::vector<std::pair<Vec3, Vec3>> carried_by_, last_carried_by_, kept_carried_by_;
   VecX carried_x_, carried_v_, carried_before_;  // scratch: the motion as carriers change it
 };

@@ -118,7 +118,7 @@ class ReactingBody {
   Vec3 A_ = Vec3::Zero();                                   // moment of what other bodies do
   Vec6 met_ = Vec6::Zero(), y_ = Vec6::Zero();              // what they change of q', and of the pose alone
   double relaxation_ = 0;                                   // a above; 0: nothing touches the body
-  Vec3 pulled_J_ = Vec3::Zero(), pulled_T_ = Vec3::Zero();  // what of these pulls
+  Vec3 pulled_J_ = Vec3::Zero(), pulled_T_ = Vec3::Zero();  // the part of J_ and T_ that pulls
   double approach_ = 0;                                     // the largest approach of the last solve [m/s]
   double meeting_ = 0;  // the speed that the first solve that pushes may change [m/s]
   Vec6 q_ = Vec6::Zero(), q_free_ = Vec6::Zero();

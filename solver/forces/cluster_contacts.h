@@ -15,9 +15,9 @@
 // as constraints/response.h has it for a particle. What is left, such as particles that move within their cluster, is answered
 // by particle: of bodies by that, of pairs by the push w_k / m_k along the normal.
 //
-// A body that reacts (constraints/reacting_body.h) takes part with its own K and the opposite impulses, where such bodies touch each
-// other and the obstacles (constraints/body_meeting.h), they are held there as well, and what particles that
-// move within their cluster meet of it is answered here, too (solver/forces/inner_contacts.h). A cluster with a particle
+// A body that reacts (constraints/reacting_body.h) takes part with its own K and gets the opposite impulses. Where such bodies
+// touch each other and obstacles (constraints/body_meeting.h), those impulses are found in the same sweeps. What particles that
+// move within their cluster meet of such a body is answered here, too (solver/forces/inner_contacts.h). A cluster with a particle
 // that is held, or that a body carries, is no free body: its particles are on their own. So are pairs with no free cluster, and
 // those with one on both sides: springs answer them.
 // J [N s], u, v, v_b [m/s], w [rad/s], K [1/kg], r, gap [m], h [s].
