@@ -115,7 +115,7 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
     x_new_ = x;
     if (foresight == Foresight::ahead) x_new_ += h * v;
     if (!faces_.all().empty()) {
-      faces_.begin_step(bodies_, x, x_new_, options_.recovery_speed * h);
+      faces_.begin_step(bodies_, contacts_.touching(), x, x_new_, options_.recovery_speed * h);
       if (foresight != Foresight::ahead) faces_.limit_dampers(masses, h);
     }
   }

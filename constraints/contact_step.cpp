@@ -169,6 +169,8 @@ ContactReport ContactStep::finish(VecX& x_new, VecX& v_new) {
   report.self_contacts = constraints_->self_.pushing();
   report.tangled = constraints_->self_.tangled();
   report.pinched = constraints_->self_.pinched();
+  for (const Contact& c : touching())
+    if (c.clamped && !constraints_->self_.is_pinched(c.particle)) ++report.pinched;
   if (bodies()) {
     if (report.self_guarded > 0 || report.tangled > 0)
       constraints_->contacts_.look_again();  // these went otherwise than bodies were told

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "constraints/nip.h"
 #include "mesh/base/parallel.h"
 #include "mesh/distance/closest_on_triangle.h"
 #include "mesh/triangles/normals.h"
@@ -121,8 +122,8 @@ double FaceContacts::travel(const ClothFace& face) const {
   return most;
 }
 
-void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new,
-                              double recovery) {
+void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const std::vector<Contact>& contacts,
+                              const VecX& x, const VecX& x_new, double recovery) {
   const int n = static_cast<int>(faces_.size());
   if (n == 0 || bodies.empty()) return;
   if (room_.size() != bodies.size() * faces_.size()) {
@@ -133,13 +134,16 @@ void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const VecX&
   }
   touching_.clear();
   counted_ = false;
+  clamped_.assign(static_cast<std::size_t>(x.size() / 3), 0);
+  for (const Contact& c : contacts)
+    if (c.clamped) clamped_[c.particle] = 1;
   for (const MovingBody& body : bodies) {
     measure_travel(body, x, x_new);
     parallel_for(chunk_count(n), n < serial_below, [&](int k) {
       auto& found = found_[k];
       found.clear();
       for (int f = k * chunk_size; f < std::min(n, (k + 1) * chunk_size); ++f)
-        look(f, body, x, x_new, recovery, found);
+        look(f, body, bodies, x, x_new, recovery, found);
     });
     for (const auto& found : found_) touching_.insert(touching_.end(), found.begin(), found.end());
   }
@@ -166,15 +170,32 @@ void FaceContacts::take_impulse(double h, const VecX& x_new, const VecX& v_new) 
   for (FaceContact& c : touching_) c.impulse = h * c.force_at(x_new, v_new);
 }
 
-void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX& x_new, double recovery,
-                        std::vector<FaceContact>& found) {
+// Whether another body closes on this place of the triangle from the other side: its vertices are then held between both.
+bool FaceContacts::is_squeezed(int f, const MovingBody& body, const std::vector<MovingBody>& bodies,
+                               const Vec3& place) const {
+  return !body.reacting() && std::any_of(bodies.begin(), bodies.end(), [&](const MovingBody& other) {
+    const double offset = 0.5 * other.obstacle().margin;
+    const double room =
+        room_[static_cast<std::size_t>(other.number()) * faces_.size() + static_cast<std::size_t>(f)];
+    if (other.number() == body.number() || other.reacting() || room > offset + travel(faces_[f]))
+      return false;
+    const Squeeze between = squeeze(body, other, place);
+    return between.holds && between.at_a.distance < 0.5 * body.obstacle().margin &&
+           between.at_b.distance < offset;
+  });
+}
+
+void FaceContacts::look(int f, const MovingBody& body, const std::vector<MovingBody>& bodies, const VecX& x,
+                        const VecX& x_new, double recovery, std::vector<FaceContact>& found) {
   const ClothFace& face = faces_[f];
   const std::size_t entry =
       static_cast<std::size_t>(body.number()) * faces_.size() + static_cast<std::size_t>(f);
   double& room = room_[entry];
   Vec3& likely = likely_[entry];
   const double offset = 0.5 * body.obstacle().margin, reach = offset + travel(face);
-  if (room > reach) return;
+  const auto& corners = faces_[f].particles;
+  if (room > reach || std::any_of(corners.begin(), corners.end(), [&](int i) { return clamped_[i] != 0; }))
+    return;
   const Lowest start = lowest_point(
       Corners(face, x), [&](const Vec3& p) { return body.near_start(p); }, reach, likely);
   likely = start.weights;
@@ -184,7 +205,7 @@ void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX
       Corners(face, x_new), [&](const Vec3& p) { return body.near_end(p); }, offset, likely);
   if (start.distance > offset && end.distance > offset) return;  // the triangle passes by
   const SurfacePoint below = body.at_start(start.point);
-  if (below.covered) return;  // its vertices go with the body
+  if (below.covered || is_squeezed(f, body, bodies, start.point)) return;  // its vertices go with the body
   const ContactPlane plane = body.plane(start.point, below, body.carried(start.point));
   const double depth = std::max(plane.gap + body.obstacle().margin - offset, -std::max(recovery, offset));
   FaceContact contact{.body = body.number(),

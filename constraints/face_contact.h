@@ -81,7 +81,9 @@ class FaceContacts {
 
   // x -> x_new is the predicted motion. recovery: how far a triangle that starts inside a body is brought out
   // in this step at most [m].
-  void begin_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new, double recovery);
+  // A triangle with a corner that is clamped in `contacts` goes with that corner, and touches nothing.
+  void begin_step(const std::vector<MovingBody>& bodies, const std::vector<Contact>& contacts, const VecX& x,
+                  const VecX& x_new, double recovery);
   // For methods that take the force as it is at the start of the step: limits the dampers so that they stop
   // sliding within a few steps of h [s] and never throw it back, however many faces share a particle.
   void limit_dampers(const std::vector<double>& masses, double h);
@@ -105,8 +107,10 @@ class FaceContacts {
  private:
   void measure_travel(const MovingBody& body, const VecX& x, const VecX& x_new);
   double travel(const ClothFace& face) const;
-  void look(int face, const MovingBody& body, const VecX& x, const VecX& x_new, double recovery,
-            std::vector<FaceContact>& found);
+  bool is_squeezed(int face, const MovingBody& body, const std::vector<MovingBody>& bodies,
+                   const Vec3& place) const;
+  void look(int face, const MovingBody& body, const std::vector<MovingBody>& bodies, const VecX& x,
+            const VecX& x_new, double recovery, std::vector<FaceContact>& found);
   const FaceContact* before(int body, int face) const;
 
   std::vector<ClothFace> faces_;
@@ -117,6 +121,7 @@ class FaceContacts {
   std::vector<Vec3> likely_;
   // By particle: how far it moves as seen by the body that is being looked at [m].
   std::vector<double> travel_;
+  std::vector<char> clamped_;  // by particle
   bool counted_ = false;
   // Contacts of this step, and of the last completed one; sorted by body, then by face.
   std::vector<FaceContact> touching_, last_;

@@ -12,6 +12,7 @@
 //              the step begins; a slip that could be stopped within the step is damped, with h D = mu N / |s|.
 #pragma once
 
+#include "constraints/moving_body.h"
 #include "constraints/touch.h"
 
 namespace drape {
@@ -25,5 +26,17 @@ struct Nip {
   double impulse = 0;  // N, in the step under way [N s]
   int other() const { return holder == a ? b : a; }
 };
+
+// How two bodies that do not react stand to a place that goes with both of them, by the mean of their ways, to where the step
+// ends. Bodies that close on a place have no room for what is there, and what they do not let slip out is clamped between them.
+struct Squeeze {
+  SurfacePoint at_a, at_b;  // there, with normals out of the bodies
+  Vec3 way;                 // m/s, the mean
+  bool closes;              // the bodies come nearer to each other
+  bool
+      holds;  // the place cannot slip out: one normal is as near to the opposite of the other as friction of both holds
+};
+// x [m]: the place when the step begins.
+Squeeze squeeze(const MovingBody& a, const MovingBody& b, const Vec3& x);
 
 }  // namespace drape

@@ -1,5 +1,6 @@
 // Particles that two bodies pinch: constraints/nip.h.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "constraints/particle_contacts.h"
@@ -10,6 +11,11 @@ namespace {
 // Two surfaces pinch what is between them when one normal is at most as far from the opposite of the other as this cosine says.
 constexpr double facing = 0.9;
 constexpr double still = 1e-9;  // m/s: a smaller slip is not told from none
+constexpr double closed =
+    1e-9;  // m: bodies that leave less room too little have closed on what is between them
+// Two surfaces hold what is between them when the angle between one normal and the opposite of the other is at most this one,
+// even without friction: it is what the planes of a contact differ by at least. (rad)
+constexpr double nearly_opposite = 0.1;
 
 // Whether friction could stop the slip v - v_body of a particle at x within a step, if the body alone gave way. A body that does
 // not react gives no way. share: the length of this step over that of the last.
@@ -22,6 +28,15 @@ bool could_stop(const MovingBody& body, const Vec3& normal, const Vec3& x, const
 }
 
 }  // namespace
+
+Squeeze squeeze(const MovingBody& a, const MovingBody& b, const Vec3& x) {
+  const Vec3 v_a = a.velocity(x), v_b = b.velocity(x), way = 0.5 * (v_a + v_b);
+  const SurfacePoint at_a = a.near_end(x + a.step() * way), at_b = b.near_end(x + a.step() * way);
+  const double held =
+      std::atan(a.obstacle().friction.kinetic) + std::atan(b.obstacle().friction.kinetic);  // rad
+  return {at_a, at_b, way, (v_a - v_b).dot(at_a.normal - at_b.normal) > still,
+          -at_a.normal.dot(at_b.normal) >= std::cos(std::max(held, nearly_opposite))};
+}
 
 const Nip* ParticleContacts::nip_of(int particle) const {
   const int k = nip_of_[particle];
@@ -72,6 +87,43 @@ void ParticleContacts::add_nip(const Bodies& bodies, const StepMotion& step, con
                    .holder = holder,
                    .runs = slides && step.foresight == Foresight::ahead,
                    .touch = {x, (at_b.normal - at_a.normal).normalized(), gap}});
+}
+
+// Makes the contact a clamp where two bodies close on its particle, or have closed on it.
+void ParticleContacts::clamp_between(const Bodies& bodies, const StepMotion& step, const Contact* before,
+                                     Contact& contact) const {
+  const int particle = contact.particle;
+  const Vec3 x = step.place(particle);
+  const auto offset = [&](int o) { return bodies[o].obstacle().margin + step.radius_of(particle); };
+  const auto touch = [&](int o) { return touching_range(bodies[o].obstacle().margin); };
+  // How much farther off the body may be than it can come within the step.
+  const auto spare = [&](int o) {
+    return clearance(o, particle) - offset(o) - touch(o) - bodies[o].travel(x, x);
+  };
+  const bool clamped = before && before->clamped;
+  if (contact.comes_out) return;
+  const int count = static_cast<int>(bodies.size());
+  for (int a = 0; a < count; ++a)
+    for (int b = a + 1; b < count && !bodies[a].reacting(); ++b) {
+      if (bodies[b].reacting() || spare(a) + spare(b) > 0) continue;
+      const auto [at_a, at_b, way, closes, holds] = squeeze(bodies[a], bodies[b], x);
+      if (!holds && !clamped) continue;
+      const double gap_a = at_a.distance - offset(a), gap_b = at_b.distance - offset(b);
+      const double least = std::min(touch(a), touch(b));
+      const bool no_room = !clamped && closes ? gap_a + gap_b < -closed
+                                              : std::max(gap_a, gap_b) < (clamped ? -closed : -0.1 * least);
+      if (!no_room) continue;
+      const bool in_a = at_a.distance < at_b.distance;
+      contact = {.particle = particle, .planes = 1, .known = 1, .plane = {}, .clamped = true};
+      contact.plane[0] =
+          in_a ? ContactPlane{a, at_a.normal, gap_a, way} : ContactPlane{b, at_b.normal, gap_b, way};
+      if (!clamped) {  // it begins in the middle
+        const Vec3 out_of_a = (at_a.normal - at_b.normal).normalized();
+        contact.plane[0].body_velocity +=
+            (gap_b - gap_a) / (2 * step.h * out_of_a.dot(at_a.normal)) * out_of_a;
+      }
+      return;
+    }
 }
 
 std::array<double, 3> ParticleContacts::presses(const Contact& contact, const Vec3& r) const {

@@ -151,6 +151,11 @@ void ParticleContacts::look_for(int particle, const Bodies& bodies, const StepMo
   }
   if (nip && !contact.active()) look_at(bodies[nip->other()], step, true, contact, deepest);
   if (!contact.active()) return;
+  if (!contact.clamped) {
+    const double touch = touching_range(bodies[contact.plane[0].obstacle].obstacle().margin);
+    contact.comes_out = contact.plane[0].gap < -touch && (!before || before->comes_out);
+    clamp_between(bodies, step, before, contact);
+  }
   // What is known of friction is of the body that it was on.
   if (nip && before && before->plane[0].obstacle != contact.plane[0].obstacle) before = nullptr;
   if (!contact.clamped) start_grip(bodies, step, contact, before);
@@ -248,7 +253,8 @@ void ParticleContacts::follow(const Bodies& bodies, const StepMotion& step) {
     c.changes = 0;
     for (int k = 0; k < c.known; ++k) {
       ContactPlane& p = c.plane[k];
-      p.body_velocity = bodies[p.obstacle].velocity(step.place(c.particle));
+      if (bodies[p.obstacle].reacting())
+        p.body_velocity = bodies[p.obstacle].velocity(step.place(c.particle));
     }
   }
 }

@@ -38,7 +38,7 @@ struct ContactReport {
   int self_contacts = 0;    // pairs of cloth and cloth that push each other
   int self_guarded = 0;     // particles whose way was shortened so that no cloth passes through cloth
   int tangled = 0;          // particles where cloth passes through cloth
-  int pinched = 0;          // particles that a body could not be kept off
+  int pinched = 0;          // particles that a body could not be kept off, or that bodies hold between them
   int body_contacts = 0;    // points at which bodies press on each other
   double body_overlap = 0;  // how deep bodies were inside each other when the step began [m]
 };
@@ -137,6 +137,8 @@ class ParticleContacts {
   double sticking(const Contact& contact, const Friction& mu) const;
   const Nip* nip_of(int particle) const;
   void add_nip(const Bodies& bodies, const StepMotion& step, const Contact& contact, int first, int second);
+  void clamp_between(const Bodies& bodies, const StepMotion& step, const Contact* before,
+                     Contact& contact) const;
   void rub_in_nips(const Bodies& bodies, const StepMotion& step);
   // What presses the particle against each plane, with what the bodies press where it is in a nip; and the sum of it [N s].
   std::array<double, 3> presses(const Contact& contact, const Vec3& r) const;
@@ -157,6 +159,9 @@ class ParticleContacts {
                std::size_t chunk, VecX& x_new, VecX& v_new);
   bool respond(ContactMode mode, const MovingBody& body, const StepMotion& step, std::size_t chunk,
                StepVelocities& velocities, Contact& contact);
+  double clearance(int body, int particle) const {
+    return clearance_[static_cast<std::size_t>(body) * particles_ + static_cast<std::size_t>(particle)];
+  }
   double& clearance(int body, int particle) {
     return clearance_[static_cast<std::size_t>(body) * particles_ + static_cast<std::size_t>(particle)];
   }

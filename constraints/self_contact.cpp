@@ -103,6 +103,7 @@ int SelfContacts::cloth_particles() const { return surfaces_->cloth(); }
 bool SelfContacts::crossing() const { return tangles_->any(); }
 int SelfContacts::tangled() const { return tangles_->particles(); }
 int SelfContacts::pinched() const { return surfaces_->pinched(); }
+bool SelfContacts::is_pinched(int particle) const { return pinched() > 0 && surfaces_->is_pinched(particle); }
 
 bool SelfContacts::is_on_body(const Encounter& e) const {
   return e.v[0] >= cloth_particles() || e.v[3] >= cloth_particles();
@@ -194,7 +195,8 @@ void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<Movi
 void SelfContacts::pinch(const Contact& contact, const MovingBody& body) {
   constexpr double deep = 1e-6;  // m
   const double depth = -body.obstacle().margin - contact.plane[0].gap;
-  if (any() && body.surface() && depth > deep) surfaces_->pinch(contact.particle);
+  const bool inside = body.surface() && depth > deep;
+  if (any() && (contact.clamped || inside)) surfaces_->pinch(contact.particle);
 }
 
 void SelfContacts::follow(const std::vector<MovingBody>& bodies) {

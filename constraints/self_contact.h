@@ -33,6 +33,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -95,13 +96,14 @@ struct SelfContact {
   double thickness;               // r [m]
   double friction;                // mu
   double before = 0;              // f at the end of the last step [N]
-  double load = 0;           // f there, or in the last solve of the step where the guard then stopped it [N]
-  double stiff = 0;          // k of the last step [N/m]; 0: there was no contact
-  double eased = 0.5;        // for how long the load has asked for less [s]; of a new contact, for long
-  Vec3 hold = Vec3::Zero();  // t_0 [N]
-  bool active = false;       // whether it acts in the next solve
-  double push = 0;           // f of the last solve [N]
-  double share = 0;          // of the spring that friction is in the next solve, 0 to 1
+  double load = 0;   // f there, or in the last solve of the step where the guard then stopped it [N]
+  double stiff = 0;  // k of the last step [N/m]; 0: there was no contact
+  // For how long the load has asked for less [s]; of a new contact, for ever.
+  double eased = std::numeric_limits<double>::infinity();
+  Vec3 hold = Vec3::Zero();    // t_0 [N]
+  bool active = false;         // whether it acts in the next solve
+  double push = 0;             // f of the last solve [N]
+  double share = 0;            // of the spring that friction is in the next solve, 0 to 1
   Vec3 slides = Vec3::Zero();  // d/|d| where friction is a force along d in the next solve, else zero
   double slide = 0;            // that force [N]
   double spring = 1;           // what is left there of the spring along d, as a share of the weakened one
@@ -215,6 +217,7 @@ class SelfContacts {
   bool crossing() const;
   int tangled() const;  // particles near triangles that pass through each other at the end of the last step
   int pinched() const;  // particles that may pass a body, because it could not be kept out of there
+  bool is_pinched(int particle) const;
 
  private:
   void begin_anew();

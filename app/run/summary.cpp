@@ -27,8 +27,9 @@ std::string hints(const RunRecord& record, const Output& output) {
     text += "hint: vertices were stopped on their way " + counted(record.self_guarded, "time") +
             ", so that no cloth passes through cloth: a smaller time step is smoother\n";
   if (record.pinched > 0)
-    text += "hint: a body passes through the cloth near " + counted(record.pinched, "vertex") +
-            ": it started there, or could not be kept off without cloth passing through cloth\n";
+    text += "hint: a body passes through the cloth, or holds it against another body, near " +
+            counted(record.pinched, "vertex") +
+            ": it started there, or could not be kept off without cloth passing through cloth or a body\n";
   if (record.max_penetration > 1e-4)
     text +=
         "hint: a vertex was inside a body by up to " + rounded(1000 * record.max_penetration, 2) + " mm\n";

@@ -71,7 +71,8 @@ struct StepReport {
   int self_contacts = 0;        // pairs of cloth and cloth that push each other at the end
   int self_guarded = 0;         // particles whose way was shortened so that no cloth passes through cloth
   int tangled = 0;              // particles where cloth passes through cloth, and is brought apart
-  int pinched = 0;              // particles that a body may pass, because it could not be kept off them
+  // Particles that a body may pass, because it could not be kept off them, or that two bodies hold between them.
+  int pinched = 0;
   int body_contacts = 0;        // points at which bodies press on each other at the end
   double body_overlap = 0;      // m: how far bodies were inside each other at the start
   double contact_residual = 0;  // how far they were from settled in the worst of the pieces, see StepOptions

@@ -1,0 +1,212 @@
+// Cloth between two bodies that close on it and do not give way: it stays there, keeps still, and comes out where it was.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <numbers>
+
+#include "mesh/triangles/topology.h"
+#include "solver/assembly/assembly.h"
+#include "tests/integrators.h"
+#include "tests/same_bits.h"
+#include "tests/shapes.h"
+#include "tests/sheets.h"
+
+using namespace drape;
+using namespace drape::test;
+
+namespace {
+
+constexpr double margin = 2e-3;  // m
+
+// A body whose surface is at the origin of its motion and which reaches to the side of +y or -y.
+struct Jaw {
+  const char* name;
+  Shape shape;
+};
+Jaw ball(double side) { return {"ball", Sphere{{0, 0.1 * side, 0}, 0.1}}; }
+Jaw block(double side) { return {"block", Box{.centre = {0, 0.05 * side, 0}, .size = {0.1, 0.1, 0.14}}}; }
+Jaw wall(double side) { return {"wall", Plane{.point = Vec3::Zero(), .normal = {0, -side, 0}}}; }
+Jaw mesh(double side) {
+  return {"mesh", std::make_shared<const SurfaceDistance>(lat_long_sphere(24, 40, 0.1, {0, 0.1 * side, 0}))};
+}
+
+// A sheet in the plane y = 0, held along its border, and two jaws that are `apart` [m] at the given times [s].
+struct Press : Assembly {
+  using Way = std::vector<std::pair<double, double>>;
+
+  // share: how much of the way the upper jaw makes.
+  Press(const Jaw& upper, const Jaw& lower, const Way& apart, double share, double friction)
+      : Assembly(Vec3::Zero()) {
+    const auto add_jaw = [&](const Jaw& jaw, double side, double part) {
+      std::vector<Keyframe> keys;
+      for (const auto& [time, gap] : apart)
+        keys.push_back({.time = time, .translate = {0, side * (0.01 + part * (gap - 0.02)), 0}});
+      constraints->add(Obstacle{.shape = jaw.shape,
+                                .friction = friction,
+                                .margin = margin,
+                                .motion = Motion::keyframes(keys, Vec3::Zero())});
+    };
+    add_jaw(upper, 1, share);
+    add_jaw(lower, -1, 1 - share);
+  }
+  void add_sheet(int n, Kind kind, bool self_contact) {
+    const TriangleMesh sheet = bent(n, kind, 0.3, [](double, double) { return 0.0; });
+    ClothPart part{.mesh = sheet,
+                   .fabric = {.area_density = 0.2, .stretch = 500, .bend = 1e-5, .damping = 0.02},
+                   .model = ClothModel::woven};
+    if (self_contact) part.self_contact = SelfContactOptions{.thickness = 1e-3, .friction = 0.3};
+    add(std::move(part));
+    Vec3 half = Vec3::Zero();
+    for (const Vec3& x : sheet.positions) half = half.cwiseMax(x.cwiseAbs());
+    for (int i = 0; i < sheet.vertex_count(); ++i)
+      if (sheet.positions[i][0] > half[0] - 0.02 || sheet.positions[i][0] < 0.02 - half[0])
+        constraints->pin(i);
+    use("implicit-euler", "auto", {.tolerance = 1e-6});
+  }
+  double strain() const {
+    double most = 0;
+    const VecX& x = state.x;
+    for (const Edge& e : edges(cloths[0].mesh)) {
+      const int i = e.a, j = e.b;
+      const double rest = (cloths[0].mesh.positions[i] - cloths[0].mesh.positions[j]).norm();
+      most = std::max(most, (x.segment<3>(3 * i) - x.segment<3>(3 * j)).norm() / rest - 1);
+    }
+    return most;
+  }
+  // The largest speed of particles within this distance of the middle [m/s].
+  double speed(double within) const {
+    double most = 0;
+    for (int i = 0; i < state.particles(); ++i)
+      if (cloths[0].mesh.positions[i].norm() < within)
+        most = std::max(most, state.v.segment<3>(3 * i).norm());
+    return most;
+  }
+  double deepest() const {
+    const std::vector<double> depths = constraints->penetration(state.x);
+    return *std::max_element(depths.begin(), depths.end());
+  }
+};
+
+}  // namespace
+
+TEST_CASE("cloth between bodies that overlap keeps still, is not drawn out, and comes out where it was",
+          "[nips]") {
+  const std::vector<std::pair<Jaw, Jaw>> jaws = {
+      {ball(1), ball(-1)}, {ball(1), wall(-1)}, {mesh(1), mesh(-1)}, {block(1), mesh(-1)}};
+  for (const auto& [upper, lower] : jaws)
+    for (int n : {12, 17, 23})
+      for (Kind kind : kinds) {
+        const bool self_contact = n == 17;
+        // A wall would come past the border of the sheet, which is held.
+        const double share = std::holds_alternative<Plane>(lower.shape) ? 1.0
+                             : n == 12                                  ? 0.7
+                             : n == 17                                  ? 0.5
+                                                                        : 0.4;
+        INFO(upper.name << " on " << lower.name << ", " << n << " vertices along an edge, kind "
+                        << static_cast<int>(kind));
+        Press press(upper, lower, {{0, 0.02}, {0.2, -0.02}, {0.5, -0.02}, {0.7, 0.02}, {0.8, 0.02}}, share,
+                    0.5);
+        press.add_sheet(n, kind, self_contact);
+        int pinched = 0;
+        for (int k = 0; k < 110; ++k) {
+          INFO("step " << k);
+          const StepReport report = press.advance(0.01);
+          REQUIRE(report.done);
+          pinched = std::max(pinched, report.pinched);
+          if (k == 48) {
+            CHECK(press.speed(0.04) < 1e-9);  // between the bodies; the rest of the sheet still swings
+            CHECK(press.speed(1) < 0.1);
+            CHECK(press.strain() < 0.4);
+          }
+        }
+        CHECK(pinched > 0);
+        CHECK(press.deepest() == 0);
+        CHECK(press.strain() < 0.01);
+        CHECK(press.speed(1) < 0.1);
+      }
+}
+
+TEST_CASE(
+    "a particle in a wedge that closes is held where the friction of both sides can hold it, and else slips "
+    "out",
+    "[nips]") {
+  constexpr double h = 0.01;
+  for (double mu_a : {0.0, 0.2, 0.5})
+    for (double mu_b : {0.1, 0.4})
+      for (double share : {0.0, 0.5, 0.8})
+        for (double beyond : {-0.03, 0.03}) {  // rad
+          const double holds = std::atan(mu_a) + std::atan(mu_b), angle = std::max(holds, 0.1) + beyond;
+          INFO("friction " << mu_a << " and " << mu_b << ", " << share << " of the way, " << angle << " rad");
+          // Planes that face each other, and meet far off at x < 0.
+          const Vec3 up(std::sin(angle / 2), std::cos(angle / 2), 0), down(up[0], -up[1], 0);
+          Constraints constraints;
+          const auto add = [&](const Vec3& normal, double mu, double part) {
+            constraints.add(
+                {.shape = Plane{.point = -0.005 * normal, .normal = normal},
+                 .friction = mu,
+                 .margin = margin,
+                 .motion = Motion::keyframes({{.time = 0}, {.time = 0.1, .translate = 0.01 * part * normal}},
+                                             Vec3::Zero())});
+          };
+          add(up, mu_a, share);
+          add(down, mu_b, 1 - share);
+          System system({1e-3});
+          system.add(Gravity{{0, 0, -0.1}});  // along the wedge
+          State state{0, VecX::Zero(3), VecX::Zero(3)};
+          ImplicitEuler stepper(system, constraints, make_linear_solver("mpcg"), {});
+          int held = 0;
+          for (int k = 0; k < 10; ++k) {
+            const StepReport report = stepper.advance(state, h);
+            INFO(report.failure.what);
+            REQUIRE(report.done);
+            held += report.pinched;
+          }
+          const double overlap =
+              0.01 - 2 * (0.005 - margin);  // m, by which the way of both is longer than the room
+          if (beyond > 0) {
+            CHECK(held == 0);
+            for (const auto& plane : {up, down})
+              CHECK(plane.dot(Vec3(state.x)) - (plane == up ? share : 1 - share) * 0.01 + 0.005 >
+                    margin - 1e-9);
+            CHECK(state.x[0] > 0.9 * overlap / 2 / std::sin(angle / 2));
+          } else {
+            CHECK(held > 0);
+            CHECK(std::abs(state.x[0]) < 1.5 * overlap);
+          }
+        }
+}
+
+TEST_CASE("what friction has drawn under a ball that lies on a floor can be drawn out again", "[nips]") {
+  for (double mu : {0.0, 0.3, 1.0})
+    for (double gap : {-1.5e-3, -2e-3, -4e-3}) {  // m, between the margins where ball and floor are nearest
+      INFO("friction " << mu << ", gap " << gap);
+      Constraints constraints;
+      constraints.add({.shape = Plane{}, .friction = mu, .margin = margin});
+      constraints.add(
+          {.shape = Sphere{{0, 0.1 + 2 * margin + gap, 0}, 0.1}, .friction = mu, .margin = margin});
+      State state{0, VecX::Zero(3), VecX::Zero(3)};
+      state.x = Vec3(0.1, margin, 0);
+      const auto pull = [&](const Vec3& force, int steps) {
+        System system({1e-3});
+        system.add(Gravity{force});
+        ImplicitEuler stepper(system, constraints, make_linear_solver("mpcg"), {});
+        for (int k = 0; k < steps; ++k) {
+          const StepReport report = stepper.advance(state, 0.01);
+          REQUIRE(report.done);
+          CHECK(report.pinched == 0);
+        }
+      };
+      pull({-20, -1, 0}, 60);
+      CHECK(state.x[0] < 0.05);
+      pull({20, -1, 0}, 60);
+      CHECK(state.x[0] > 0.1);
+    }
+}
+
+TEST_CASE("cloth that bodies hold between them has the same bits on any number of threads", "[nips]") {
+  check_same_bits([] {
+    Press press(ball(1), mesh(-1), {{0, 0.01}, {0.1, -0.01}}, 0.5, 0.5);
+    press.add_sheet(60, Kind::irregular, true);
+    for (int k = 0; k < 12; ++k) REQUIRE(press.advance(0.01).done);
+    return press.state;
+  });
+}
