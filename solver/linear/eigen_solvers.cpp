@@ -74,7 +74,7 @@ class EigenCg final : public LinearSolver {
       if (right == 0) {
         dv.setZero();
       } else {
-        filter.apply(dv);
+        dv *= best_multiple(A, filter, system_.right_side(), dv, scratch_);
         dv = cg_.solveWithGuess(system_.right_side(), dv).eval();
         report.iterations = static_cast<int>(cg_.iterations());
       }

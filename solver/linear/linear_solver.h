@@ -52,7 +52,8 @@ class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   virtual std::string_view name() const = 0;
-  // dv goes in as the guess (its locked part is replaced by z) and comes out as the solution.
+  // dv goes in as the guess and comes out as the solution. An iterative solver replaces the locked part of the guess by z, and
+  // starts from the multiple of the rest that is nearest to the solution in the norm of A.
   virtual LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter,
                              const LinearOptions& options, VecX& dv) = 0;
 };

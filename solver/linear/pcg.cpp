@@ -1,9 +1,9 @@
 // The preconditioned conjugate gradient within a filter, in two variants:
 //   mpcg  Baraff & Witkin's modified CG. The unknown is dv itself; residual and search directions are
-//         filtered. It starts from dv_0 = S guess + z and has the symmetric convergence test of Ascher &
+//         filtered. It starts from dv_0 = a S guess + z, a as in residual.h, and has the symmetric convergence test of Ascher &
 //         Boxerman.
 //                                              [Baraff & Witkin 1998, 5.3; Ascher & Boxerman 2003]
-//   ppcg  plain CG on the prefiltered system (S A S + I - S) y = S (b - A z), dv = y + z, y_0 = S guess. It
+//   ppcg  plain CG on the prefiltered system (S A S + I - S) y = S (b - A z), dv = y + z, y_0 = a S guess. It
 //         takes any preconditioner that was built for the projected matrix.
 //                                                              [Tamstorf, Jones & McCormick 2015]
 // In exact arithmetic both take the same steps. So the loop stands here once; the variants differ in what
@@ -34,15 +34,15 @@ class Pcg final : public LinearSolver {
       const Stopwatch watch(report.solve_ms);
       const double reference = reference_impulse(A, b, filter, options, z_, r_);  // leaves S (b - A z) in r
       if (reference == 0) dv.setZero();  // no impulse acts, so there is nothing to do
-      if (prefiltered_) {
+      const double multiple = best_multiple(A, filter, r_, dv, q_);
+      dv *= multiple;
+      if (prefiltered_)
         right_ = r_;
-        filter.apply(dv);
-        iterate(A, right_, filter, options, reference, dv, report);
+      else
         dv += z_;
-      } else {
-        filter.impose(dv);
-        iterate(A, b, filter, options, reference, dv, report);
-      }
+      r_ -= multiple * q_;
+      iterate(A, prefiltered_ ? right_ : b, filter, options, reference, dv, report);
+      if (prefiltered_) dv += z_;
       conclude(A, b, filter, options, reference, dv, report);
     }
     return report;
@@ -59,7 +59,7 @@ class Pcg final : public LinearSolver {
     if (!preconditioner_->prepare(A, filter, report)) report.reason = StopReason::indefinite;
   }
 
-  // Solves S (right - A x) = 0 in the free directions, starting from x.
+  // Solves S (right - A x) = 0 in the free directions, starting from x, where r is the residual.
   void iterate(const BlockMatrix& A, const VecX& right, const Filter& filter, const LinearOptions& options,
                double reference, VecX& x, LinearReport& report) {
     const int rows = A.rows(), limit = iteration_limit(options, rows);
@@ -67,7 +67,6 @@ class Pcg final : public LinearSolver {
     const auto note = [&](double rr) {
       if (options.history) options.history->push_back(reference > 0 ? std::sqrt(rr) / reference : 0);
     };
-    residual(A, right, filter, x, r_);
     double rr = dot(r_, r_);
     note(rr);
     const double far_off = 1e12 * (rr + reference * reference);  // no sound iteration has such a residual

@@ -63,7 +63,7 @@ class Petsc final : public LinearSolver {
     {
       const Stopwatch watch(report.solve_ms);
       const double reference = reference_impulse(A, b, filter, options, z_, right_);
-      filter.apply(dv);
+      dv *= best_multiple(A, filter, right_, dv, scratch_);
       if (right_.allFinite() && dv.allFinite() && reference > 0)
         iterate(A.rows(), options, reference, dv, report);
       if (reference == 0) dv.setZero();

@@ -42,6 +42,17 @@ inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filte
   return std::max(std::sqrt(dot(r, r)), options.scale);
 }
 
+// The multiple of the guess at which y . S A S y / 2 - y . r, with r = S (b - A z), is least along it. Free fall, say, is right
+// where nothing holds, and as wrong as can be where all lies still. Takes what is locked out of dv, and leaves S A dv in q.
+inline double best_multiple(const BlockMatrix& A, const Filter& filter, const VecX& r, VecX& dv, VecX& q) {
+  filter.apply(dv);
+  q.resize(dv.size());
+  A.multiply(dv, q);
+  filter.apply(q);
+  const double curvature = dot(dv, q), multiple = dot(dv, r) / curvature;
+  return curvature > 0 && std::isfinite(multiple) ? multiple : 1;
+}
+
 // Completes the report of a solver that has no residual of its own; dv meets the constraints to the last bit.
 inline void finish(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
                    double reference, VecX& dv, VecX& scratch, LinearReport& report) {

@@ -40,7 +40,7 @@ class SundialsPcg final : public LinearSolver {
       const Stopwatch watch(report.solve_ms);
       const double reference = reference_impulse(A, b, filter, options, z_, right_);
       y_ = dv;
-      filter.apply(y_);
+      y_ *= best_multiple(A, filter, right_, y_, x_);
       iterate(A.rows(), options, reference, report);
       dv = y_ + z_;
       finish(A, b, filter, options, reference, dv, x_, report);
