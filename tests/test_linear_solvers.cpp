@@ -205,7 +205,7 @@ TEST_CASE("a solve that stops early says so, with the true residual", "[solvers]
   }
 }
 
-TEST_CASE("a solve that begins at the solution is over at once", "[solvers]") {
+TEST_CASE("a solve that begins at the solution, or at a multiple of it, is over at once", "[solvers]") {
   for (const std::string& name : names()) {
     INFO(name);
     Problem p(40, 11, true);
@@ -213,7 +213,12 @@ TEST_CASE("a solve that begins at the solution is over at once", "[solvers]") {
     const auto solver = make_linear_solver(name);
     const int iterations = solver->solve(p.A, p.b, p.filter, {.tolerance = 1e-11}, dv).iterations;
     CHECK((iterations == 0) == is_direct(name));
-    CHECK(solver->solve(p.A, p.b, p.filter, {.tolerance = 1e-6}, dv).iterations == 0);
+    const VecX solution = dv;
+    for (const double multiple : {1.0, -3.5, 1e-6, 1e6}) {
+      dv = multiple * solution;
+      CHECK(solver->solve(p.A, p.b, p.filter, {.tolerance = 1e-6}, dv).iterations == 0);
+      CHECK((dv - solution).norm() < 1e-6 * solution.norm());
+    }
   }
 }
 

@@ -86,6 +86,33 @@ struct Press : Assembly {
   }
 };
 
+// A particle of 1 g, and bodies that go through keyframes.
+struct One {
+  explicit One(const Vec3& place) {
+    system.add(Gravity{{0, 0, -1e-3}});
+    state.x = place;
+  }
+  void add(const Jaw& jaw, const std::vector<std::pair<double, Vec3>>& places, double friction) {
+    std::vector<Keyframe> keys;
+    for (const auto& [time, place] : places) keys.push_back({.time = time, .translate = place});
+    constraints.add({.shape = jaw.shape,
+                     .friction = friction,
+                     .margin = margin,
+                     .motion = Motion::keyframes(keys, Vec3::Zero())});
+  }
+  StepReport advance() {
+    const StepReport report = stepper.advance(state, 0.01);
+    INFO(report.failure.what);
+    REQUIRE(report.done);
+    return report;
+  }
+
+  System system{{1e-3}};
+  Constraints constraints;
+  State state{0, VecX::Zero(3), VecX::Zero(3)};
+  ImplicitEuler stepper{system, constraints, make_linear_solver("mpcg"), {}};
+};
+
 }  // namespace
 
 TEST_CASE("cloth between bodies that overlap keeps still, is not drawn out, and comes out where it was",
@@ -173,6 +200,59 @@ TEST_CASE(
             CHECK(std::abs(state.x[0]) < 1.5 * overlap);
           }
         }
+}
+
+TEST_CASE("what two bodies hold stays in the middle between them, whichever of them moves", "[nips]") {
+  for (double share : {0.0, 0.3, 0.5, 1.0})
+    for (double speed : {0.05, 0.4})  // m/s, at which they close
+      for (double start : {-0.002, 0.0, 0.003}) {
+        INFO(share << " of the way, " << speed << " m/s, from " << start << " m");
+        const double room = 0.016, way = 0.03;  // m, the distance of the bodies and by how much they close
+        One one({0, start, 0});
+        one.add(wall(1), {{0, {0, room / 2, 0}}, {way / speed, {0, room / 2 - share * way, 0}}}, 0.3);
+        one.add(wall(-1), {{0, {0, -room / 2, 0}}, {way / speed, {0, (1 - share) * way - room / 2, 0}}}, 0.3);
+        double held = 0;
+        for (int k = 0; k * 0.01 < way / speed; ++k) {
+          if (one.advance().pinched == 0) continue;
+          ++held;
+          const auto& bodies = one.constraints.bodies();
+          CHECK(bodies[0].distance(one.state.x) == Approx(bodies[1].distance(one.state.x)).margin(1e-9));
+        }
+        CHECK(held > 1);
+      }
+}
+
+TEST_CASE("what starts inside bodies that overlap comes out of both", "[nips]") {
+  for (double beside : {0.03, 0.05, 0.06})
+    for (double mu : {0.3, 1.0}) {
+      INFO(beside << " m beside the middle, friction " << mu);
+      One one({beside, 0.001, 0});
+      one.add(ball(1), {{0, {0, -0.03, 0}}}, mu);
+      one.add(ball(-1), {{0, {0, 0.03, 0}}}, mu);
+      for (int k = 0; k < 60; ++k) one.advance();
+      for (const MovingBody& body : one.constraints.bodies())
+        CHECK(body.distance(one.state.x) > margin - 1e-9);
+    }
+}
+
+TEST_CASE("what is held stays held where another side of the body is nearer", "[nips]") {
+  for (double from_side : {0.003, 0.006}) {
+    INFO(from_side << " m from the side of the block");
+    One one({0.05 - from_side, 0, 0});
+    const auto keys = [](double side) {
+      return std::vector<std::pair<double, Vec3>>{{0.0, {0, side * 0.01, 0}},
+                                                  {0.2, {0, side * -0.01, 0}},
+                                                  {0.4, {0, side * -0.01, 0}},
+                                                  {0.6, {0, side * 0.01, 0}}};
+    };
+    one.add(block(1), keys(1), 0.5);
+    one.add(wall(-1), keys(-1), 0.5);
+    for (int k = 0; k < 60; ++k) {
+      one.advance();
+      CHECK(one.state.x[0] == Approx(0.05 - from_side).margin(1e-9));
+      CHECK(std::abs(one.state.x[1]) < 0.009);
+    }
+  }
 }
 
 TEST_CASE("what friction has drawn under a ball that lies on a floor can be drawn out again", "[nips]") {

@@ -12,6 +12,7 @@
 #include "mesh/triangles/normals.h"
 #include "mesh/triangles/topology.h"
 #include "solver/assembly/cloth_parts.h"
+#include "solver/assembly/coincident.h"
 #include "solver/assembly/imperfection.h"
 #include "solver/assembly/soft_forces.h"
 #include "solver/forces/choi_ko.h"
@@ -152,8 +153,8 @@ Layers layers_of(const std::optional<SelfContactOptions>& options, const Triangl
 }
 
 // Where the cloth starts: off its mesh by its imperfection, and by its layers. A vertex of several layers belongs to the
-// lowest.
-std::vector<Vec3> start_of(const Cloth& cloth, const Layers& layers) {
+// lowest, and where none is given, what lies below at exactly the same place counts: `below`, by vertex.
+std::vector<Vec3> start_of(const Cloth& cloth, const Layers& layers, const std::vector<int>& below) {
   std::vector<Vec3> positions = cloth.mesh.positions;
   if (cloth.imperfection > 0) {
     const std::vector<Vec3> moved = imperfection(cloth.mesh, cloth.rest, cloth.imperfection);
@@ -164,6 +165,8 @@ std::vector<Vec3> start_of(const Cloth& cloth, const Layers& layers) {
   for (std::size_t t = 0; t < layers.size(); ++t)
     for (int v : cloth.mesh.triangles[t])
       if (layers[t] && (!lowest[v] || *layers[t] < *lowest[v])) lowest[v] = layers[t];
+  for (std::size_t v = 0; v < below.size(); ++v)
+    if (!lowest[v] && below[v] > 0) lowest[v] = below[v];
   if (std::none_of(lowest.begin(), lowest.end(), [](const auto& layer) { return layer.has_value(); }))
     return positions;
   const std::vector<Vec3> normals = vertex_normals(cloth.mesh);
@@ -228,7 +231,8 @@ Cloth& Assembly::add(ClothPart part) {
   }
   const Layers layers = layers_of(part.self_contact, cloth.mesh);
   if (part.self_contact) meet(cloth, *part.self_contact, faces, layers);
-  const std::vector<Vec3> positions = start_of(cloth, layers);
+  const std::vector<Vec3> positions = start_of(
+      cloth, layers, part.self_contact ? internal::layers_below(cloths, cloth.mesh) : std::vector<int>{});
   return take(std::move(cloth), positions, masses);
 }
 

@@ -1,0 +1,88 @@
+// Layers that start at exactly one place: they come apart, and never pass through each other.
+#include <catch2/catch.hpp>
+
+#include "mesh/distance/triangle_crossings.h"
+#include "solver/assembly/assembly.h"
+#include "solver/assembly/coincident.h"
+#include "tests/integrators.h"
+#include "tests/sheets.h"
+#include "tests/together.h"
+
+using namespace drape;
+using namespace drape::test;
+
+namespace {
+
+constexpr double r = 1e-3;  // m
+
+TriangleMesh wavy(int n, Kind kind) {
+  return bent(n, kind, 0.2, [](double x, double z) { return 0.006 * std::sin(40 * x) + 0.02 + 0.1 * z; });
+}
+
+// `layers` copies of a sheet, as cloths of their own or as one mesh, over a floor.
+struct Copies : Assembly {
+  Copies(const TriangleMesh& sheet, int layers, bool one_mesh) {
+    constraints->add(Obstacle{.shape = Plane{}, .friction = 0.3});
+    all = together(std::vector<TriangleMesh>(static_cast<std::size_t>(layers), sheet));
+    for (int k = 0; k < (one_mesh ? 1 : layers); ++k)
+      add(ClothPart{.mesh = one_mesh ? all : sheet,
+                    .fabric = {.area_density = 0.2, .stretch = 500, .bend = 1e-5, .damping = 0.002},
+                    .model = ClothModel::woven,
+                    .self_contact = SelfContactOptions{.thickness = r, .friction = 0.3}});
+    use("implicit-euler", "auto", {.tolerance = 1e-4});
+  }
+  int crossings() const { return crossing_count(crossing_contours(unstacked(state.x), all.triangles)); }
+
+  TriangleMesh all;
+};
+
+}  // namespace
+
+TEST_CASE("copies of a sheet at exactly one place come apart in order and never cross", "[self-contact]") {
+  for (const bool one_mesh : {false, true})
+    for (int layers : {2, 4})
+      for (int n : {7, 11, 16})
+        for (Kind kind : kinds) {
+          if ((one_mesh || layers > 2) && n > 7) continue;
+          INFO(layers << " layers, " << n << " vertices along an edge, kind " << static_cast<int>(kind)
+                      << (one_mesh ? ", one mesh" : ""));
+          const TriangleMesh sheet = wavy(n, kind);
+          Copies copies(sheet, layers, one_mesh);
+          for (int k = 0; k < 60; ++k) {
+            INFO("step " << k);
+            REQUIRE(copies.advance(0.01).done);
+            REQUIRE(copies.crossings() == 0);
+          }
+          const int count = sheet.vertex_count();
+          for (int k = 1; k < layers; ++k) {  // the later copy is the upper one, by a thickness
+            double apart = 0;
+            for (int i = 0; i < count; ++i)
+              apart +=
+                  (copies.state.x[3 * (k * count + i) + 1] - copies.state.x[3 * ((k - 1) * count + i) + 1]) /
+                  count;
+            CHECK(apart == Approx(r).epsilon(0.25));
+          }
+        }
+}
+
+TEST_CASE("only triangles at exactly one place count as layers", "[self-contact]") {
+  const TriangleMesh sheet = wavy(5, Kind::irregular);
+  const auto below = [&](const TriangleMesh& mesh) { return internal::layers_below({}, mesh); };
+  const auto all = [](int n, int value) { return std::vector<int>(static_cast<std::size_t>(n), value); };
+  CHECK(below(sheet) == all(25, 0));
+  std::vector<int> expected = all(25, 0);
+  for (int k : {1, 2}) expected.insert(expected.end(), 25, k);
+  CHECK(below(together({sheet, sheet, sheet})) == expected);
+  TriangleMesh moved = sheet;
+  for (Vec3& x : moved.positions) x[0] += 1e-9;
+  CHECK(below(together({sheet, moved})) == all(50, 0));
+  // Panels that share the places of a border, and a triangle that is there twice.
+  TriangleMesh beside = sheet;
+  double widest = 0;
+  for (const Vec3& x : sheet.positions) widest = std::max(widest, x[0]);
+  for (Vec3& x : beside.positions) x[0] = 2 * widest - x[0];
+  CHECK(below(together({sheet, beside})) == all(50, 0));
+  TriangleMesh twice = sheet;
+  twice.triangles.push_back(twice.triangles.front());
+  CHECK(below(twice) == all(25, 0));
+}
