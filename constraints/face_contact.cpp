@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "constraints/nip.h"
 #include "mesh/base/parallel.h"
 #include "mesh/distance/closest_on_triangle.h"
 #include "mesh/triangles/normals.h"
@@ -143,7 +142,7 @@ void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const std::
       auto& found = found_[k];
       found.clear();
       for (int f = k * chunk_size; f < std::min(n, (k + 1) * chunk_size); ++f)
-        look(f, body, bodies, x, x_new, recovery, found);
+        look(f, body, x, x_new, recovery, found);
     });
     for (const auto& found : found_) touching_.insert(touching_.end(), found.begin(), found.end());
   }
@@ -170,23 +169,8 @@ void FaceContacts::take_impulse(double h, const VecX& x_new, const VecX& v_new) 
   for (FaceContact& c : touching_) c.impulse = h * c.force_at(x_new, v_new);
 }
 
-// Whether another body closes on this place of the triangle from the other side: its vertices are then held between both.
-bool FaceContacts::is_squeezed(int f, const MovingBody& body, const std::vector<MovingBody>& bodies,
-                               const Vec3& place) const {
-  return !body.reacting() && std::any_of(bodies.begin(), bodies.end(), [&](const MovingBody& other) {
-    const double offset = 0.5 * other.obstacle().margin;
-    const double room =
-        room_[static_cast<std::size_t>(other.number()) * faces_.size() + static_cast<std::size_t>(f)];
-    if (other.number() == body.number() || other.reacting() || room > offset + travel(faces_[f]))
-      return false;
-    const Squeeze between = squeeze(body, other, place);
-    return between.holds && between.at_a.distance < 0.5 * body.obstacle().margin &&
-           between.at_b.distance < offset;
-  });
-}
-
-void FaceContacts::look(int f, const MovingBody& body, const std::vector<MovingBody>& bodies, const VecX& x,
-                        const VecX& x_new, double recovery, std::vector<FaceContact>& found) {
+void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX& x_new, double recovery,
+                        std::vector<FaceContact>& found) {
   const ClothFace& face = faces_[f];
   const std::size_t entry =
       static_cast<std::size_t>(body.number()) * faces_.size() + static_cast<std::size_t>(f);
@@ -205,7 +189,7 @@ void FaceContacts::look(int f, const MovingBody& body, const std::vector<MovingB
       Corners(face, x_new), [&](const Vec3& p) { return body.near_end(p); }, offset, likely);
   if (start.distance > offset && end.distance > offset) return;  // the triangle passes by
   const SurfacePoint below = body.at_start(start.point);
-  if (below.covered || is_squeezed(f, body, bodies, start.point)) return;  // its vertices go with the body
+  if (below.covered) return;  // its vertices go with the body
   const ContactPlane plane = body.plane(start.point, below, body.carried(start.point));
   const double depth = std::max(plane.gap + body.obstacle().margin - offset, -std::max(recovery, offset));
   FaceContact contact{.body = body.number(),

@@ -107,10 +107,8 @@ class FaceContacts {
  private:
   void measure_travel(const MovingBody& body, const VecX& x, const VecX& x_new);
   double travel(const ClothFace& face) const;
-  bool is_squeezed(int face, const MovingBody& body, const std::vector<MovingBody>& bodies,
-                   const Vec3& place) const;
-  void look(int face, const MovingBody& body, const std::vector<MovingBody>& bodies, const VecX& x,
-            const VecX& x_new, double recovery, std::vector<FaceContact>& found);
+  void look(int face, const MovingBody& body, const VecX& x, const VecX& x_new, double recovery,
+            std::vector<FaceContact>& found);
   const FaceContact* before(int body, int face) const;
 
   std::vector<ClothFace> faces_;

@@ -11,10 +11,10 @@ namespace {
 // Two surfaces pinch what is between them when one normal is at most as far from the opposite of the other as this cosine says.
 constexpr double facing = 0.9;
 constexpr double still = 1e-9;  // m/s: a smaller slip is not told from none
-constexpr double closed =
-    1e-9;  // m: bodies that leave less room too little have closed on what is between them
-// Two surfaces hold what is between them when the angle between one normal and the opposite of the other is at most this one,
-// even without friction: it is what the planes of a contact differ by at least. (rad)
+// Bodies that leave too little room by more than this have closed on what is between them [m].
+constexpr double closed = 1e-9;
+// The angle between one normal and the opposite of another up to which their bodies hold what is between them even without
+// friction [rad]: as much as the planes of one contact have to differ by.
 constexpr double nearly_opposite = 0.1;
 
 // Whether friction could stop the slip v - v_body of a particle at x within a step, if the body alone gave way. A body that does
@@ -27,8 +27,16 @@ bool could_stop(const MovingBody& body, const Vec3& normal, const Vec3& x, const
   return (slip - slip.dot(normal) * normal).norm() <= 2 * body.obstacle().friction.kinetic * pressed;
 }
 
-}  // namespace
+// How two bodies that do not react stand to a place that goes with both of them, by the mean of their ways, at the end of the
+// step.
+struct Squeeze {
+  SurfacePoint at_a, at_b;  // there, with normals out of the bodies
+  Vec3 way;                 // m/s, the mean
+  bool closes;              // the bodies come nearer to each other
+  bool holds;               // the friction of both keeps what is there from slipping out
+};
 
+// x [m]: the place when the step begins.
 Squeeze squeeze(const MovingBody& a, const MovingBody& b, const Vec3& x) {
   const Vec3 v_a = a.velocity(x), v_b = b.velocity(x), way = 0.5 * (v_a + v_b);
   const SurfacePoint at_a = a.near_end(x + a.step() * way), at_b = b.near_end(x + a.step() * way);
@@ -37,6 +45,8 @@ Squeeze squeeze(const MovingBody& a, const MovingBody& b, const Vec3& x) {
   return {at_a, at_b, way, (v_a - v_b).dot(at_a.normal - at_b.normal) > still,
           -at_a.normal.dot(at_b.normal) >= std::cos(std::max(held, nearly_opposite))};
 }
+
+}  // namespace
 
 const Nip* ParticleContacts::nip_of(int particle) const {
   const int k = nip_of_[particle];

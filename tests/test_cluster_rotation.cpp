@@ -58,7 +58,7 @@ double largest_singular_value(const Mat3& A) { return Eigen::JacobiSVD<Mat3>(A).
 // max tr(R^T A) over proper rotations, by another method: the singular values, the last with the sign of the determinant.
 double best(const Mat3& A) {
   const Eigen::JacobiSVD<Mat3> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Vec3 s = svd.singularValues();
+  const Vec3& s = svd.singularValues();
   return s[0] + s[1] + (svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -s[2] : s[2]);
 }
 
@@ -96,7 +96,7 @@ TEST_CASE("a good first guess changes nothing", "[clusters]") {
         (q * Quaternion(Eigen::AngleAxisd(random.between(0, 0.3), random.vector().normalized())))
             .normalized();
     const Eigen::JacobiSVD<Mat3> svd(A);
-    const Vec3 s = svd.singularValues();
+    const Vec3& s = svd.singularValues();
     if (s[1] - s[2] < 0.01 * s[0]) continue;  // the rotation is hardly determined
     CHECK(q.angularDistance(nearest_rotation(A, near)) < 1e-12);
   }
