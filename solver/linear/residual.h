@@ -45,10 +45,13 @@ inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filte
 // The multiple of the guess at which y . S A S y / 2 - y . r, with r = S (b - A z), is least along it. Free fall, say, is right
 // where nothing holds, and as wrong as can be where all lies still. Takes what is locked out of dv, and leaves S A dv in q.
 inline double best_multiple(const BlockMatrix& A, const Filter& filter, const VecX& r, VecX& dv, VecX& q) {
+  constexpr double round_off = 1e-10;
+  const double whole = dot(dv, dv);
   filter.apply(dv);
   q.resize(dv.size());
   A.multiply(dv, q);
   filter.apply(q);
+  if (dot(dv, dv) < round_off * round_off * whole) return 0;  // all of it was locked
   const double curvature = dot(dv, q), multiple = dot(dv, r) / curvature;
   return curvature > 0 && std::isfinite(multiple) ? multiple : 1;
 }
