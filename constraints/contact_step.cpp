@@ -97,7 +97,7 @@ ContactImbalance ContactStep::imbalance(const VecX& v, const VecX& r, const VecX
   if (step.foresight == Foresight::ahead)
     found.wrong = std::hypot(found.wrong, constraints_->faces_.imbalance(step.h, x_new));
   for (const Contact& c : touching())
-    if (c.active()) found.borne += r.segment<3>(3 * c.particle).squaredNorm();
+    if (c.active() && !c.clamped) found.borne += r.segment<3>(3 * c.particle).squaredNorm();
   found.borne = std::sqrt(found.borne);
   return found;
 }

@@ -16,6 +16,10 @@ constexpr double closed = 1e-9;
 // The angle between one normal and the opposite of another up to which their bodies hold what is between them even without
 // friction [rad]: as much as the planes of one contact have to differ by.
 constexpr double nearly_opposite = 0.1;
+// The same with any friction: a body that pushes cloth along a floor does not hold it against that [rad].
+constexpr double widest_held = 1.2;
+// Bodies that stand hold what they have less room for than this share of the least margin.
+constexpr double share_of_touch = 0.1;
 
 // Whether friction could stop the slip v - v_body of a particle at x within a step, if the body alone gave way. A body that does
 // not react gives no way. share: the length of this step over that of the last.
@@ -43,7 +47,7 @@ Squeeze squeeze(const MovingBody& a, const MovingBody& b, const Vec3& x) {
   const double held =
       std::atan(a.obstacle().friction.kinetic) + std::atan(b.obstacle().friction.kinetic);  // rad
   return {at_a, at_b, way, (v_a - v_b).dot(at_a.normal - at_b.normal) > still,
-          -at_a.normal.dot(at_b.normal) >= std::cos(std::max(held, nearly_opposite))};
+          -at_a.normal.dot(at_b.normal) >= std::cos(std::clamp(held, nearly_opposite, widest_held))};
 }
 
 }  // namespace
@@ -113,27 +117,32 @@ void ParticleContacts::clamp_between(const Bodies& bodies, const StepMotion& ste
   const bool clamped = before && before->clamped;
   if (contact.comes_out) return;
   const int count = static_cast<int>(bodies.size());
-  for (int a = 0; a < count; ++a)
-    for (int b = a + 1; b < count && !bodies[a].reacting(); ++b) {
-      if (bodies[b].reacting() || spare(a) + spare(b) > 0) continue;
+  for (int a = 0; a < count; ++a) {
+    if (bodies[a].reacting()) continue;
+    const double spare_a = spare(a);
+    for (int b = a + 1; b < count; ++b) {
+      if (bodies[b].reacting() || spare_a + spare(b) > 0) continue;
       const auto [at_a, at_b, way, closes, holds] = squeeze(bodies[a], bodies[b], x);
       if (!holds && !clamped) continue;
       const double gap_a = at_a.distance - offset(a), gap_b = at_b.distance - offset(b);
       const double least = std::min(touch(a), touch(b));
-      const bool no_room = !clamped && closes ? gap_a + gap_b < -closed
-                                              : std::max(gap_a, gap_b) < (clamped ? -closed : -0.1 * least);
+      const bool no_room = !clamped && closes
+                               ? gap_a + gap_b < -closed
+                               : std::max(gap_a, gap_b) < (clamped ? -closed : -share_of_touch * least);
       if (!no_room) continue;
-      const bool in_a = at_a.distance < at_b.distance;
+      const bool in_a = gap_a < gap_b;
       contact = {.particle = particle, .planes = 1, .known = 1, .plane = {}, .clamped = true};
       contact.plane[0] =
           in_a ? ContactPlane{a, at_a.normal, gap_a, way} : ContactPlane{b, at_b.normal, gap_b, way};
       if (!clamped) {  // it begins in the middle
         const Vec3 out_of_a = (at_a.normal - at_b.normal).normalized();
-        contact.plane[0].body_velocity +=
-            (gap_b - gap_a) / (2 * step.h * out_of_a.dot(at_a.normal)) * out_of_a;
+        const double most = std::max(recovery_speed_, (bodies[a].velocity(x) - bodies[b].velocity(x)).norm());
+        const double speed = (gap_b - gap_a) / (2 * step.h * out_of_a.dot(at_a.normal));
+        contact.plane[0].body_velocity += std::clamp(speed, -most, most) * out_of_a;
       }
       return;
     }
+  }
 }
 
 std::array<double, 3> ParticleContacts::presses(const Contact& contact, const Vec3& r) const {

@@ -196,7 +196,7 @@ void SelfContacts::pinch(const Contact& contact, const MovingBody& body) {
   constexpr double deep = 1e-6;  // m
   const double depth = -body.obstacle().margin - contact.plane[0].gap;
   const bool inside = body.surface() && depth > deep;
-  if (any() && (contact.clamped || inside)) surfaces_->pinch(contact.particle);
+  if (any() && surfaces_->any() && (contact.clamped || inside)) surfaces_->pinch(contact.particle);
 }
 
 void SelfContacts::follow(const std::vector<MovingBody>& bodies) {

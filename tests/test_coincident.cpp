@@ -65,6 +65,25 @@ TEST_CASE("copies of a sheet at exactly one place come apart in order and never 
         }
 }
 
+TEST_CASE("copies with and without a layer start apart", "[self-contact]") {
+  using Layer = std::optional<int>;
+  for (const std::vector<Layer>& layers :
+       std::vector<std::vector<Layer>>{{1, {}}, {{}, {}, 1}, {{}, 1, {}}, {2, {}, {}, 1}}) {
+    const TriangleMesh sheet = wavy(5, Kind::squares);
+    Assembly all;
+    for (const Layer& layer : layers)
+      all.add(ClothPart{.mesh = sheet,
+                        .imperfection = 0,
+                        .self_contact = SelfContactOptions{.thickness = r, .layer = layer}});
+    const int count = sheet.vertex_count(), cloths = static_cast<int>(layers.size());
+    for (int k = 0; k < cloths; ++k)
+      for (int l = 0; l < k; ++l)
+        for (int i = 0; i < count; ++i)
+          CHECK((all.state.x.segment<3>(3 * (k * count + i)) - all.state.x.segment<3>(3 * (l * count + i)))
+                    .norm() > 2e-6);
+  }
+}
+
 TEST_CASE("only triangles at exactly one place count as layers", "[self-contact]") {
   const TriangleMesh sheet = wavy(5, Kind::irregular);
   const auto below = [&](const TriangleMesh& mesh) { return internal::layers_below({}, mesh); };

@@ -92,7 +92,7 @@ Eigen::MatrixXd dense(const Smoother& rows) {
 
 }  // namespace
 
-TEST_CASE("better preconditioners need fewer iterations, multigrid as few on a finer or stiffer sheet",
+TEST_CASE("better preconditioners need fewer iterations, multigrid hardly more on a finer or stiffer sheet",
           "[solvers]") {
   std::vector<int> by_multigrid;  // the last is as stiff for its mass as a sheet of half a million vertices
   for (const auto& [side, stretch] : {std::pair{33, 2e3}, {65, 2e3}, {150, 2e3}, {150, 5e4}}) {

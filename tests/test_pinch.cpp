@@ -247,11 +247,13 @@ TEST_CASE("what is held stays held where another side of the body is nearer", "[
     };
     one.add(block(1), keys(1), 0.5);
     one.add(wall(-1), keys(-1), 0.5);
+    int held = 0;
     for (int k = 0; k < 60; ++k) {
-      one.advance();
+      held += one.advance().pinched;
       CHECK(one.state.x[0] == Approx(0.05 - from_side).margin(1e-9));
       CHECK(std::abs(one.state.x[1]) < 0.009);
     }
+    CHECK(held > 20);
   }
 }
 
@@ -286,7 +288,13 @@ TEST_CASE("cloth that bodies hold between them has the same bits on any number o
   check_same_bits([] {
     Press press(ball(1), mesh(-1), {{0, 0.01}, {0.1, -0.01}}, 0.5, 0.5);
     press.add_sheet(60, Kind::irregular, true);
-    for (int k = 0; k < 12; ++k) REQUIRE(press.advance(0.01).done);
+    int held = 0;
+    for (int k = 0; k < 12; ++k) {
+      const StepReport report = press.advance(0.01);
+      REQUIRE(report.done);
+      held = std::max(held, report.pinched);
+    }
+    CHECK(held > 0);
     return press.state;
   });
 }

@@ -1,4 +1,5 @@
 // A band of cloth that is drawn over a cylinder of cloth: friction between layers bears exp(mu angle) of the tension.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>

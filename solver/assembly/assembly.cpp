@@ -153,7 +153,8 @@ Layers layers_of(const std::optional<SelfContactOptions>& options, const Triangl
 }
 
 // Where the cloth starts: off its mesh by its imperfection, and by its layers. A vertex of several layers belongs to the
-// lowest, and where none is given, what lies below at exactly the same place counts: `below`, by vertex.
+// lowest. Where none is given, what lies below at exactly the same place counts (`below`, by vertex), half a layer lower than
+// layers that are given, so that both kinds stay apart.
 std::vector<Vec3> start_of(const Cloth& cloth, const Layers& layers, const std::vector<int>& below) {
   std::vector<Vec3> positions = cloth.mesh.positions;
   if (cloth.imperfection > 0) {
@@ -165,13 +166,12 @@ std::vector<Vec3> start_of(const Cloth& cloth, const Layers& layers, const std::
   for (std::size_t t = 0; t < layers.size(); ++t)
     for (int v : cloth.mesh.triangles[t])
       if (layers[t] && (!lowest[v] || *layers[t] < *lowest[v])) lowest[v] = layers[t];
-  for (std::size_t v = 0; v < below.size(); ++v)
-    if (!lowest[v] && below[v] > 0) lowest[v] = below[v];
-  if (std::none_of(lowest.begin(), lowest.end(), [](const auto& layer) { return layer.has_value(); }))
-    return positions;
+  std::vector<double> out(positions.size(), 0);
+  for (std::size_t v = 0; v < out.size(); ++v)
+    out[v] = apart * (lowest[v] ? *lowest[v] : v < below.size() && below[v] > 0 ? below[v] - 0.5 : 0);
+  if (std::all_of(out.begin(), out.end(), [](double way) { return way == 0; })) return positions;
   const std::vector<Vec3> normals = vertex_normals(cloth.mesh);
-  for (std::size_t v = 0; v < positions.size(); ++v)
-    if (lowest[v]) positions[v] += apart * *lowest[v] * normals[v];
+  for (std::size_t v = 0; v < positions.size(); ++v) positions[v] += out[v] * normals[v];
   return positions;
 }
 
