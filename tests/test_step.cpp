@@ -44,7 +44,7 @@ TEST_CASE("a truncated solve says so, and does not eat gravity", "[step]") {
     CHECK(report.residual >= 0);
   }
   CHECK(said);
-  CHECK(-sheet.state.x[3 * far + 1] == Approx(9.81 * 1e-4 * 55).epsilon(0.01));
+  CHECK(-sheet.state.x[3 * far + 1] == Approx(9.81 * 1e-4 * 55).epsilon(0.02));
 }
 
 TEST_CASE("the same bits with 1, 2 and 7 threads, and from run to run", "[step]") {
