@@ -135,7 +135,8 @@ void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const std::
   counted_ = false;
   clamped_.assign(static_cast<std::size_t>(x.size() / 3), 0);
   for (const Contact& c : contacts)
-    if (c.clamped) clamped_[c.particle] = 1;
+    if (c.clamped && !bodies[c.plane[0].obstacle].near_start(x.segment<3>(3 * c.particle)).covered)
+      clamped_[c.particle] = 1;  // by two bodies, and not where one overlaps itself
   for (const MovingBody& body : bodies) {
     measure_travel(body, x, x_new);
     parallel_for(chunk_count(n), n < serial_below, [&](int k) {
