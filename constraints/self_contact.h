@@ -186,7 +186,8 @@ class SelfContacts {
   double push_bodies(std::vector<MovingBody>& bodies, const VecX& x_new) const;
   // The norm of the impulses that are wrong in a solve that came to x_new [N s].
   double imbalance(double h, const VecX& x_new) const;
-  void pinch(const Contact& contact, const MovingBody& body);  // where a particle is inside a body
+  // Lets a particle that is inside a body, or clamped between two, pass the surfaces of bodies.
+  void pinch(const Contact& contact, const MovingBody& body);
   // Changes the contacts to what a solve asks for that came to v and x_new with the reaction r [N s]; true when one
   // changes. Where that would overshoot, they are made for a point on the way there from the last such point: the one
   // at which the energy of the contacts as they are, and of the motion, is least. curvature: d . A d of that way [J];
