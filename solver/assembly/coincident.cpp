@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 
 #include "mesh/triangles/topology.h"
 
@@ -21,7 +22,9 @@ std::vector<int> layers_below(const std::vector<Cloth>& cloths, const TriangleMe
 
   struct Placed {
     std::array<int, 3> place, corners;  // both sorted
-    auto operator<=>(const Placed&) const = default;
+    bool operator<(const Placed& other) const {
+      return std::tie(place, corners) < std::tie(other.place, other.corners);
+    }
   };
   const std::vector<int> place_of = welded(positions);
   std::vector<Placed> placed;
