@@ -18,7 +18,7 @@ constexpr double closed = 1e-9;
 constexpr double nearly_opposite = 0.1;
 // The same with any friction: a body that pushes cloth along a floor does not hold it against that [rad].
 constexpr double widest_held = 1.2;
-// Bodies that stand hold what they have less room for than this share of the least margin.
+// Bodies that stand hold what is inside both of their margins by more than this share of the lesser touching_range().
 constexpr double share_of_touch = 0.1;
 
 // Whether friction could stop the slip v - v_body of a particle at x within a step, if the body alone gave way. A body that does
