@@ -2,6 +2,9 @@
 #include <catch2/catch.hpp>
 
 #include "mesh/base/threads.h"
+#include "solver/forces/linear_spring.h"
+#include "solver/forces/stencil_force.h"
+#include "solver/forces/stencil_laws.h"
 #include "solver/linear/pcg.h"
 #include "tests/falling_sheet.h"
 
@@ -48,6 +51,58 @@ class Failing final : public Preconditioner {
   Told& told_;
 };
 
+// Gives no product beside its vector, so that the conjugate gradient multiplies by itself.
+class WithoutProduct final : public Preconditioner {
+ public:
+  std::string_view name() const override { return "without-product"; }
+  bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
+    return inner_->prepare(A, filter, report);
+  }
+  void apply(const VecX& r, VecX& s) override { inner_->apply(r, s); }
+
+ private:
+  std::unique_ptr<Preconditioner> inner_ = make_multigrid();
+};
+
+// The matrix of a crumpled sheet in which particles far from each other are coupled, too, and its filter.
+struct CoupledSheet {
+  using Springs = StencilForce<AlongDistance<LinearSpring>>;
+  System system;
+  BlockMatrix A;
+  Filter filter;
+
+  explicit CoupledSheet(int side, bool far)
+      : system(lumped_mass(grid(side, side, 1, 1), 0.2)), A(add_forces(side, far)) {
+    const State state = at_rest(grid(side, side, 1, 1));
+    const int n = side * side;
+    const VecX x = state.x + random_vector(3 * n, 0.2 / side, 6), still = VecX::Zero(3 * n);
+    system.begin_step({0, 0.01, x, still});
+    A.set_to_mass(system.masses());
+    VecX unused = still;
+    for (const auto& force : system.forces())
+      force->add_linearised(x, still, still, 0.01, Stiffness::majorant, A, unused);
+    filter.constrain(0, Mat3::Zero(), Vec3::Zero());
+    for (int i = 5; i < n; i += 9) {
+      const Vec3 normal = Vec3(0.1 * (i % 7), 1, -0.2).normalized();
+      filter.constrain(i, Mat3::Identity() - normal * normal.transpose(), Vec3::Zero());
+    }
+    filter.renumber(A.pattern().row_of());
+  }
+
+ private:
+  BlockMatrix add_forces(int side, bool far) {
+    const int n = side * side;
+    system.add(noh_jung(grid(side, side, 1, 1), {}));
+    if (far)
+      system.add(std::make_unique<Springs>([=](const StepStart&, std::vector<Springs::Element>& found) {
+        found.clear();
+        for (int i = 0; i < n; i += 5) found.push_back({{i, (i + n / 2) % n}, {0.1, 2000}});
+        return true;
+      }));
+    return system.matrix();
+  }
+};
+
 const std::vector<std::string> names = {"block-jacobi", "block-ic0", "multigrid"};
 
 }  // namespace
@@ -79,6 +134,54 @@ TEST_CASE("a preconditioner is symmetric and positive definite, the same bits on
       CHECK(Pu == first);
     }
   }
+}
+
+TEST_CASE("a product that a preconditioner gives is that of the matrix, and costs no iteration",
+          "[solvers]") {
+  const ThreadsRestored restored;
+  for (const int side : {12, 30, 60})
+    for (const bool far : {false, true}) {
+      INFO(side << (far ? ", coupled far" : ""));
+      const CoupledSheet sheet(side, far);
+      REQUIRE(sheet.A.overlay().empty() == !far);
+      const VecX zero = VecX::Zero(3 * side * side);
+      VecX r = random_vector(zero.size(), 1, 3), first;
+      sheet.filter.apply(r);
+      for (const int t : {1, 2, 7}) {
+        set_threads(t);
+        const auto multigrid = make_multigrid();
+        LinearReport report;
+        REQUIRE(multigrid->prepare(sheet.A, sheet.filter, report));
+        VecX s = zero, alone = zero, given = zero, product = zero;
+        REQUIRE(multigrid->apply_and_multiply(r, s, given));
+        multigrid->apply(r, alone);
+        CHECK(s == alone);
+        sheet.filter.apply(s);
+        sheet.A.add_overlay(s, given);
+        sheet.A.multiply(s, product);
+        for (VecX* v : {&given, &product}) sheet.filter.apply(*v);
+        double stiffest = 0;
+        for (int i = 0; i < side * side; ++i)
+          stiffest = std::max(stiffest, sheet.A.at(sheet.A.pattern().diagonal(i)).norm());
+        CHECK((given - product).norm() < 2e-7 * stiffest * s.norm());
+        CHECK(product.norm() > 1e-4 * stiffest * s.norm());
+        if (first.size() == 0) first = given;
+        CHECK(given == first);
+      }
+      for (const double tolerance : {1e-5, 1e-7, 1e-11}) {
+        VecX with = random_vector(zero.size(), 1, 4), without = with;
+        const LinearOptions options{.tolerance = tolerance};
+        const LinearReport quick =
+            make_pcg("quick", true, make_multigrid())->solve(sheet.A, r, sheet.filter, options, with);
+        const LinearReport plain = make_pcg("plain", true, std::make_unique<WithoutProduct>())
+                                       ->solve(sheet.A, r, sheet.filter, options, without);
+        INFO(tolerance);
+        CHECK(quick.iterations <= (tolerance > 1e-6 ? 1.02 : 1.1) * plain.iterations + 1);
+        CHECK(quick.reason == StopReason::converged);
+        CHECK(quick.residual <= 1.01 * tolerance);
+        CHECK((with - without).norm() < 10 * tolerance * without.norm());
+      }
+    }
 }
 
 TEST_CASE("contacts that come and go need no new analysis, and every solver still agrees", "[solvers]") {

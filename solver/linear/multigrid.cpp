@@ -84,6 +84,13 @@ class Multigrid final : public Preconditioner {
     cycle(0, r, s);
   }
 
+  bool apply_and_multiply(const VecX& r, VecX& s, VecX& Bs) override {
+    if (fallen_back_ || count_ == 1) return Preconditioner::apply_and_multiply(r, s, Bs);
+    correct(0, r, s);
+    levels_.front().smoother.up(r, s, levels_.front().residual, Bs);
+    return true;
+  }
+
   bool outdated(int iterations, double decades) const override {
     return reused_ && !fallen_back_ && rate_when_new_ &&
            3 * iterations > 4 * *rate_when_new_ * std::max(decades, 1.0) + 12;
@@ -137,16 +144,18 @@ class Multigrid final : public Preconditioner {
   }
 
   void cycle(int depth, const VecX& r, VecX& x) {
-    Level& level = levels_[depth];
-    if (depth + 1 == count_) {
-      if (coarse_) {
-        x = coarse_->solve(r);
-      } else {
-        level.smoother.down(r, x, level.residual);
-        level.smoother.up(r, x);
-      }
-      return;
+    if (depth + 1 == count_ && coarse_) {
+      x = coarse_->solve(r);
+    } else {
+      correct(depth, r, x);
+      levels_[depth].smoother.up(r, x);
     }
+  }
+
+  // All of a cycle but the sweep up.
+  void correct(int depth, const VecX& r, VecX& x) {
+    Level& level = levels_[depth];
+    if (depth + 1 == count_) return level.smoother.down(r, x, level.residual);
     Level& below = levels_[depth + 1];
     level.smoother.down(r, x, level.residual);
     for_chunks(below.smoother.rows(), [&](int begin, int end) {
@@ -162,7 +171,6 @@ class Multigrid final : public Preconditioner {
         for (int k = 0; k < 3; ++k) x[3 * i + k] += correction[k];
       }
     });
-    level.smoother.up(r, x);
   }
 
   std::array<Level, most_levels> levels_;  // the first count_ are in use

@@ -17,6 +17,12 @@ class Preconditioner {
   // positive definite.
   virtual bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) = 0;
   virtual void apply(const VecX& r, VecX& s) = 0;
+  // The same, and Bs = B s where that comes for less than a product: B is the base of the projected matrix, without its
+  // overlay, off by what float loses. False: Bs was not written.
+  virtual bool apply_and_multiply(const VecX& r, VecX& s, VecX& /*Bs*/) {
+    apply(r, s);
+    return false;
+  }
   // Called when it did not act as a positive definite matrix: makes it safer, at the price of more
   // iterations. False: it cannot be made safer.
   virtual bool make_safer(const BlockMatrix& /*A*/, const Filter& /*filter*/, LinearReport& /*report*/) {

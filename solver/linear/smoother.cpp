@@ -11,41 +11,63 @@ void Smoother::for_rows_of(bool odd, const F& f) const {
   });
 }
 
-inline void Smoother::solve_diagonal(int row, Four right, double* x) const {
-  const double* d = inverse_.data() + 9 * static_cast<std::ptrdiff_t>(row);
-  const Four solution = load(d) * right[0] + load(d + 3) * right[1] + load(d + 6) * right[2];
-  for (int k = 0; k < 3; ++k) x[3 * static_cast<std::ptrdiff_t>(row) + k] = solution[k];
-}
-
 namespace {
 
-Four at(const VecX& r, int row) {
-  const Four value = {r[3 * row], r[3 * row + 1], r[3 * row + 2], 0};
+Four at(const VecX& v, int row) {
+  const Four value = {v[3 * row], v[3 * row + 1], v[3 * row + 2], 0};
   return value;
+}
+
+void set(VecX& v, int row, const Four& value) {
+  for (int k = 0; k < 3; ++k) v[3 * static_cast<std::ptrdiff_t>(row) + k] = value[k];
 }
 
 }  // namespace
 
+inline Four Smoother::solve_diagonal(int row, const Four& right) const {
+  const double* d = inverse_.data() + 9 * static_cast<std::ptrdiff_t>(row);
+  return load(d) * right[0] + load(d + 3) * right[1] + load(d + 6) * right[2];
+}
+
+inline Four Smoother::solved_upwards(int row, const VecX& r, const VecX& x) const {
+  return solve_diagonal(row,
+                        at(r, row) - times<true>(lower_[row], x.data()) - times<true>(upper_[row], x.data()));
+}
+
 void Smoother::down(const VecX& r, VecX& x, VecX& residual) const {
   for (const bool odd : {false, true})
     for_rows_of(odd, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) solve_diagonal(i, at(r, i) - times(lower_[i], x.data()), x.data());
+      for (int i = begin; i < end; ++i) set(x, i, solve_diagonal(i, at(r, i) - times(lower_[i], x.data())));
     });
   for_chunks(rows_, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      const Four rest = -times(upper_[i], x.data());
-      for (int k = 0; k < 3; ++k) residual[3 * i + k] = rest[k];
-    }
+    for (int i = begin; i < end; ++i) set(residual, i, -times(upper_[i], x.data()));
   });
 }
 
 void Smoother::up(const VecX& r, VecX& x) const {
   for (const bool odd : {true, false})
     for_rows_of(odd, [&](int begin, int end) {
-      for (int i = end - 1; i >= begin; --i)
-        solve_diagonal(i, at(r, i) - times<true>(lower_[i], x.data()) - times<true>(upper_[i], x.data()),
-                       x.data());
+      for (int i = end - 1; i >= begin; --i) set(x, i, solved_upwards(i, r, x));
     });
+}
+
+void Smoother::up(const VecX& r, VecX& x, VecX& change, VecX& Ax) const {
+  const auto sweep = [&](int begin, int end) {
+    for (int i = end - 1; i >= begin; --i) {
+      const Four solved = solved_upwards(i, r, x);
+      set(change, i, solved - at(x, i));
+      set(x, i, solved);
+    }
+  };
+  const auto multiply = [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) set(Ax, i, at(r, i) + times(lower_[i], change.data()));
+  };
+  for_rows_of(true, sweep);
+  for_rows_of(false, [&](int begin, int end) {
+    sweep(begin, end);
+    multiply(begin, end);  // has no blocks in other chunks, and its own are at hand
+  });
+  for_rows_of(true, multiply);
 }
 
 }  // namespace drape::internal

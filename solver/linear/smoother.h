@@ -2,6 +2,7 @@
 // blocks. The sweep down goes over the matrix once, residual included, and so does the sweep up.
 //   A = L + D + U:   down from x = 0:  (L + D) x = r,  r - A x = -U x;      up:  (D + U) x_new = r - L x
 //                                                              [Briggs, Henson & McCormick 2000]
+// What the sweep up gives needs no whole product with A:   A x_new = r + L (x_new - x).          [Eisenstat 1981]
 // Rows are cut into chunks at least as long as the bandwidth. All even chunks come before all odd ones, and
 // that order says what is L and what is U. Two chunks of one kind have no coupling, so they are swept in
 // parallel, and the sweep up is the adjoint of the sweep down, whatever the number of threads.
@@ -44,11 +45,13 @@ class Smoother {
 
   void down(const VecX& r, VecX& x, VecX& residual) const;
   void up(const VecX& r, VecX& x) const;
+  void up(const VecX& r, VecX& x, VecX& change, VecX& Ax) const;  // change = x_new - x
 
  private:
   template <class F>
   void for_rows_of(bool odd, const F& f) const;  // calls f(begin, end) for every odd or every even chunk
-  void solve_diagonal(int row, Four right, double* x) const;
+  Four solve_diagonal(int row, const Four& right) const;
+  Four solved_upwards(int row, const VecX& r, const VecX& x) const;  // x_new of this row
 
   int rows_ = 0, chunk_rows_ = 1;
   BlockRows lower_, upper_;

@@ -76,7 +76,7 @@ void BlockMatrix::set_diagonal_additions(std::span<const DiagonalBlock> addition
 
 void BlockMatrix::multiply(const VecX& x, VecX& y) const {
   multiply_base(x, y);
-  if (!overlay_->empty()) add_overlay(x, y);
+  add_overlay(x, y);
 }
 
 // Each row gathers its own blocks.

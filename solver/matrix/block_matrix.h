@@ -56,12 +56,12 @@ class BlockMatrix {
   // differs by the additions to the diagonal alone.
   std::uint64_t fill() const { return fill_; }
 
-  void multiply(const VecX& x, VecX& y) const;  // y = A x, in row order
+  void multiply(const VecX& x, VecX& y) const;     // y = A x, in row order
+  void add_overlay(const VecX& x, VecX& y) const;  // y += what the overlay's blocks give of A x
 
  private:
   void clear_overlay();
   void multiply_base(const VecX& x, VecX& y) const;
-  void add_overlay(const VecX& x, VecX& y) const;
 
   std::shared_ptr<const BlockPattern> pattern_;
   std::shared_ptr<const BlockOverlay> overlay_;
