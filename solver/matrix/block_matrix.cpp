@@ -12,7 +12,7 @@ using namespace internal;
 
 namespace {
 
-// y[0..2] += the sums of the lanes of p, q, r.
+// y[0..2] += the sums of the first three lanes of p, q, r.
 inline void add_sums(const Four& p, const Four& q, const Four& r, double* y) {
   const Four pq = __builtin_shufflevector(p, q, 0, 4, 2, 6) + __builtin_shufflevector(p, q, 1, 5, 3, 7);
   y[0] += pq[0] + pq[2];
@@ -83,12 +83,21 @@ void BlockMatrix::multiply(const VecX& x, VecX& y) const {
 void BlockMatrix::add_overlay(const VecX& x, VecX& y) const {
   for_chunks(overlay_->row_count(), [&](int begin, int end) {
     for (int k = begin; k < end; ++k) {
-      Vec3 sum = Vec3::Zero();
+      Four sum = {0, 0, 0, 0};
+      double turned[3] = {0, 0, 0};
       overlay_->in_row(k, [&](const BlockOverlay::Entry& e) {
-        const Vec3 xj = x.segment<3>(3 * e.column);
-        sum += e.transposed ? Vec3(at(e.slot).transpose() * xj) : Vec3(at(e.slot) * xj);
+        const double* a = block(e.slot);
+        const double* xj = x.data() + 3 * static_cast<std::ptrdiff_t>(e.column);
+        const Four c0 = load(a), c1 = load(a + 3), c2 = load(a + 6);
+        if (e.transposed) {
+          const Four masked = {xj[0], xj[1], xj[2], 0};
+          add_sums(c0 * masked, c1 * masked, c2 * masked, turned);
+        } else {
+          sum += c0 * xj[0] + c1 * xj[1] + c2 * xj[2];
+        }
       });
-      y.segment<3>(3 * overlay_->row(k)) += sum;
+      double* out = y.data() + 3 * static_cast<std::ptrdiff_t>(overlay_->row(k));
+      for (int c = 0; c < 3; ++c) out[c] += sum[c] + turned[c];
     }
   });
 }

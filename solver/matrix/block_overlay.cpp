@@ -73,10 +73,11 @@ void BlockOverlay::list_rows(int rows) {
 }
 
 int BlockOverlay::slot(int row, int column) const {
-  const ParticlePair wanted{row, column};
-  const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), wanted, before);
-  if (at == pairs_.end() || !same(*at, wanted)) return -1;
-  return first_slot_ + static_cast<int>(at - pairs_.begin());
+  if (empty() || place_[row] < 0) return -1;
+  const auto begin = entries_.begin() + start_[place_[row]], end = entries_.begin() + start_[place_[row] + 1];
+  const auto at =
+      std::lower_bound(begin, end, column, [](const Entry& e, int wanted) { return e.column < wanted; });
+  return at != end && at->column == column ? at->slot : -1;
 }
 
 const BlockOverlay& BlockLayout::no_overlay() {
