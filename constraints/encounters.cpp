@@ -8,10 +8,11 @@
 namespace drape::internal {
 namespace {
 
-// How far the motions of two patches may come to differ from those that were searched, as a share of an edge, and how
-// many pairs there may be for each of their triangles before this is made less.
+// How far the motions of two patches may come to differ from those that were searched, as a share of an edge.
 constexpr double most_room = 0.4, least_room = 0.04;
-constexpr std::size_t most_pairs = 32;
+// So many pairs of two patches there may be for each of their triangles, and so many of all for each triangle, before this is
+// made less: all lists are gone through in every step.
+constexpr std::size_t most_pairs = 32, most_of_all = 64;
 // Cloth has exploded where there are more pairs for a vertex than this, or more patches near each patch.
 constexpr std::size_t exploded = 2000, most_groups = 1000;
 
@@ -31,6 +32,7 @@ void Encounters::spread(const VecX& x, std::vector<Vec3>& places) const {
 void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<std::array<int, 2>>& segments,
                      int particle_count, std::size_t of_cloth, const VecX& x) {
   faces_.clear();
+  room_ = 0;
   of_cloth_ = 0;
   particles_ = particle_count;
   for (std::size_t k = 0; k < triangles.size(); ++k) {
@@ -214,7 +216,8 @@ bool Encounters::follow(const VecX& x, const VecX& x_new, double gap) {
   }
   start_off_ += largest_difference(of_start_);
   end_off_ += largest_difference(of_end_);
-  const bool again = gap > gap_ || std::max(start_off_, end_off_) > most_room * mean_edge_;
+  if (room_ <= 0) room_ = most_room * mean_edge_;
+  const bool again = gap > gap_ || std::max(start_off_, end_off_) > grouped_room_;
   if (again) boxes_->refit(faces_, start_, end_);
   const bool listed = (!again || group_patches(gap)) && make_lists(gap, again);
   if (!listed) {
@@ -235,7 +238,7 @@ bool Encounters::group_patches(double gap) {
     near_.emplace_back(p, q);
     return near_.size() <= most;
   };
-  if (!boxes_->near_patches(add, gap + most_room * mean_edge_)) return false;
+  if (!boxes_->near_patches(add, gap + room_)) return false;
   std::sort(near_.begin(), near_.end());
   std::swap(groups_, old_);
   groups_.clear();
@@ -257,6 +260,7 @@ bool Encounters::group_patches(double gap) {
   }
   std::move(old, old_.end(), std::back_inserter(spare_));
   gap_ = gap;
+  grouped_room_ = room_;
   start_off_ = end_off_ = 0;
   return true;
 }
@@ -274,8 +278,7 @@ bool Encounters::make_lists(double gap, bool fitted) {
     else
       kept += g.pairs.list.size();
   }
-  if (stale_.empty()) return true;
-  if (!fitted) boxes_->refit(faces_, start_, end_);
+  if (!stale_.empty() && !fitted) boxes_->refit(faces_, start_, end_);
   std::atomic<std::size_t> count = kept;
   parallel_for(static_cast<int>(stale_.size()), particles_ < serial_below, [&](int k) {
     if (count > most) return;
@@ -283,18 +286,34 @@ bool Encounters::make_lists(double gap, bool fitted) {
     make_list(g, gap);
     count += g.pairs.list.size();
   });
-  return count <= most;
+  if (count > most) return false;
+  adapt_room(count);
+  return true;
+}
+
+// Where there are too many pairs, the lists that look too far ahead are made anew in the next step.
+void Encounters::adapt_room(std::size_t pairs) {
+  const double least = least_room * mean_edge_;
+  if (pairs > most_of_all * faces_.size() && room_ > least) {
+    room_ = std::max(0.5 * room_, least);
+    gap_ = -1;
+    for (Group& g : groups_)
+      if (g.room > room_) g.gap = -1;
+  } else if (8 * pairs < most_of_all * faces_.size()) {
+    room_ = std::min(2 * room_, most_room * mean_edge_);
+  }
 }
 
 // A list that would become long is made with less room, for it is gone through in every step.
 void Encounters::make_list(Group& group, double gap) const {
   const auto count = [&](int patch) { return static_cast<std::size_t>(boxes_->patches()[patch].count); };
   const std::size_t most = most_pairs * (count(group.first) + count(group.second));
-  const double largest = most_room * mean_edge_, least = least_room * mean_edge_;
+  const double least = least_room * mean_edge_;
   if (group.room <= 0)
-    group.room = largest;
+    group.room = room_;
   else if (group.pairs.list.size() < most / 4)
-    group.room = std::min(2 * group.room, largest);
+    group.room = 2 * group.room;
+  group.room = std::min(group.room, room_);
   while (
       !search(group, gap + group.room, group.room > least ? most : std::numeric_limits<std::size_t>::max()))
     group.room *= 0.5;

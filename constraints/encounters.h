@@ -51,10 +51,11 @@ class Encounters {
   // exploded; then there is no list.
   bool follow(const VecX& x, const VecX& x_new, double gap);
   // Asks look(pair, corners at x, corners at x_new, the normal found last), which returns an Approach, of the pairs
-  // that could come within the gap, by all threads. Returns those that are not apart, in a fixed order. They stay
-  // until the next call.
-  template <class Look>
-  std::vector<Meeting>& select(const VecX& x, const VecX& x_new, double gap, const Look& look);
+  // that could come within gap_of(pair), at most `gap`, by all threads; a negative one says that the pair is not asked
+  // for. Returns those that are not apart, in a fixed order. They stay until the next call.
+  template <class GapOf, class Look>
+  std::vector<Meeting>& select(const VecX& x, const VecX& x_new, double gap, const GapOf& gap_of,
+                               const Look& look);
   // The step has gone from x to x_new.
   void went(const VecX& x, const VecX& x_new);
   void forget();  // the particles were moved from outside
@@ -101,11 +102,12 @@ class Encounters {
   bool group_patches(double gap);
   bool make_lists(double gap, bool fitted);
   void make_list(Group& group, double gap) const;
+  void adapt_room(std::size_t pairs);
   bool search(Group& group, double within, std::size_t most) const;
   void read_clocks(const VecX& x, const VecX& x_new);
-  template <class Look>
+  template <class GapOf, class Look>
   double select_pair(Pairs& pairs, std::size_t k, Clock clock, const VecX& x, const VecX& x_new, double gap,
-                     const Look& look, std::vector<Meeting>& found) const;
+                     const GapOf& gap_of, const Look& look, std::vector<Meeting>& found) const;
   template <class Select>
   void select_chunks(int n, int in_a_chunk, const Select& select);
 
@@ -121,10 +123,11 @@ class Encounters {
   Pairs beside_;
   std::vector<int> beside_start_;
   std::vector<double> beside_due_;
-  std::vector<Clock> clock_;         // by vertex
-  std::vector<Group> groups_;        // sorted by patches
-  std::vector<Vec3> start_, end_;    // of the motion that was followed last
-  double gap_ = -1, mean_edge_ = 0;  // m
+  std::vector<Clock> clock_;            // by vertex
+  std::vector<Group> groups_;           // sorted by patches
+  std::vector<Vec3> start_, end_;       // of the motion that was followed last
+  double gap_ = -1, mean_edge_ = 0;     // m
+  double room_ = 0, grouped_room_ = 0;  // of new lists, and that for which patches were grouped [m]
   double start_off_ = 0,
          end_off_ = 0;  // by how much any two vertices moved differently since patches were grouped [m]
   Ranges of_start_, of_end_, of_motion_;      // scratch
@@ -135,8 +138,9 @@ class Encounters {
   std::vector<Meeting> selected_;
 };
 
-template <class Look>
-std::vector<Meeting>& Encounters::select(const VecX& x, const VecX& x_new, double gap, const Look& look) {
+template <class GapOf, class Look>
+std::vector<Meeting>& Encounters::select(const VecX& x, const VecX& x_new, double gap, const GapOf& gap_of,
+                                         const Look& look) {
   constexpr int groups_in_a_chunk = 8;
   selected_.clear();
   // Returns when the first of the pairs [begin, end) is due, which are due at `due` by what is known.
@@ -145,7 +149,7 @@ std::vector<Meeting>& Encounters::select(const VecX& x, const VecX& x_new, doubl
     if (due - clock.end > gap) return due;
     double earliest = std::numeric_limits<double>::infinity();
     for (int k = begin; k < end; ++k)
-      earliest = std::min(earliest, select_pair(pairs, k, clock, x, x_new, gap, look, found));
+      earliest = std::min(earliest, select_pair(pairs, k, clock, x, x_new, gap, gap_of, look, found));
     return earliest;
   };
   select_chunks(static_cast<int>(groups_.size()), groups_in_a_chunk, [&](int k, std::vector<Meeting>& found) {
@@ -173,11 +177,15 @@ void Encounters::select_chunks(int n, int in_a_chunk, const Select& select) {
 }
 
 // Returns when the pair is due.
-template <class Look>
+template <class GapOf, class Look>
 double Encounters::select_pair(Pairs& pairs, std::size_t k, Clock clock, const VecX& x, const VecX& x_new,
-                               double gap, const Look& look, std::vector<Meeting>& found) const {
-  if (pairs.due[k] - clock.end > gap) return pairs.due[k];
+                               double gap, const GapOf& gap_of, const Look& look,
+                               std::vector<Meeting>& found) const {
+  const double least = pairs.due[k] - clock.end;  // so far apart it stays at least [m]
+  if (least > gap) return pairs.due[k];
   const Encounter& e = pairs.list[k];
+  const double own = gap_of(e);
+  if (own < 0 || least > own) return pairs.due[k];
   Meeting one{.who = e, .approach = look(e, corners(x, e), corners(x_new, e), pairs.normal[k])};
   pairs.due[k] = clock.start + one.approach.start;
   pairs.normal[k] = one.approach.last.normal;

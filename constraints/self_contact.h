@@ -245,11 +245,15 @@ class SelfContacts {
   // Prepares both searches for this motion; false: so much is near that there is no list.
   bool follow_all(const VecX& x, const VecX& x_new);
   std::vector<internal::Meeting>& near_ones(const StepMotion& step, internal::Encounters& encounters,
-                                            double thickest, double reach_of_all);
+                                            double thickest, double reach_of_all, bool edges);
+  void find_near_ones(const StepMotion& step, double thickest, bool edges);
+  double farthest_of_edges(const Encounter& e, double reach) const;
   bool is_borne_otherwise(const internal::Meeting& edges) const;
   void look_at_ends(std::vector<internal::Meeting>::iterator begin,
                     std::vector<internal::Meeting>::iterator end) const;
   void find_contacts(const StepMotion& step);
+  void find_contacts_of_vertices(const StepMotion& step, double thickest);
+  void find_contacts_of_edges(const StepMotion& step, double thickest);
   std::optional<SelfContact> contact_of(const StepMotion& step, const Encounter& who,
                                         const Nearest& near) const;
   void take_over(SelfContact& contact, double recovery) const;
@@ -287,6 +291,7 @@ class SelfContacts {
   std::vector<SelfContact> met_;                 // scratch
   std::vector<internal::Meeting> found_;         // scratch
   std::vector<double> way_, shorter_, nearest_;  // scratch, by particle
+  std::vector<char> has_edge_;                   // scratch, by particle: whether an edge of it is in last_
   // Of the guard: in one zone are particles with the same root; the others are by root.
   std::vector<int> zone_;
   std::vector<Vec3> common_, kept_;

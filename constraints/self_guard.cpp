@@ -38,9 +38,10 @@ std::vector<Meeting>& SelfContacts::meetings(const VecX& x, const VecX& x_new) {
       std::atomic_ref(is_on_body(e) ? touched_body_ : touched_).store(1, std::memory_order_relaxed);
     return found;
   };
-  found_ = encounters_->select(x, x_new, floor, look);
+  const auto gap_of = [floor](const Encounter&) { return floor; };
+  found_ = encounters_->select(x, x_new, floor, gap_of, look);
   if (surfaces_->any()) {
-    const std::vector<Meeting>& others = on_bodies_->select(x, x_new, floor, look);
+    const std::vector<Meeting>& others = on_bodies_->select(x, x_new, floor, gap_of, look);
     found_.insert(found_.end(), others.begin(), others.end());
   }
   return found_;

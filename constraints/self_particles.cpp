@@ -144,6 +144,7 @@ void SelfContacts::set_particles(const StepMotion& step) {
   ropes_->set(segments_, faces_, rest_, static_cast<int>(n));
   way_.assign(n, 1);
   nearest_.assign(n, 0);
+  has_edge_.assign(n, 0);
 }
 
 }  // namespace drape

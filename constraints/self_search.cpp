@@ -16,6 +16,9 @@ using namespace internal;
 namespace {
 
 constexpr double same_way = 0.5;  // the cosine from which two normals belong to one contact
+// Edges are a contact where they are nearer than this share of what their ends are from the other sheet.
+constexpr double clearly_nearer = 0.7;
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // What is lifted flies no farther than this on earth (self_contact.cpp), and is found to be near while it does.
 double reach_about(double thickness) { return 1.5 * thickness; }
@@ -141,12 +144,26 @@ bool SelfContacts::follow_all(const VecX& x, const VecX& x_new) {
   return !surfaces_->any() || on_bodies_->follow(x, x_new, body_reach_);
 }
 
-// The pairs that come within the thickness, and a little more, on the way to ahead_. thickest: of pairs without a rope.
+// How far apart two edges may be and become a contact: nearest_ is known.
+double SelfContacts::farthest_of_edges(const Encounter& e, double reach) const {
+  if (ropes_->is_rope(e)) return reach;
+  double farthest = reach;
+  for (int v : e.v)
+    if (!is_on_body(e) || v >= cloth_particles()) farthest = std::min(farthest, clearly_nearer * nearest_[v]);
+  const bool may_go_on = std::all_of(e.v.begin(), e.v.end(), [&](int v) { return has_edge_[v] != 0; });
+  return farthest < reach && may_go_on && find(last_, e) ? reach : farthest;
+}
+
+// The pairs of vertices with triangles, or of edges, that come within the thickness, and a little more, on the way to ahead_.
+// thickest: of pairs without a rope.
 std::vector<Meeting>& SelfContacts::near_ones(const StepMotion& step, Encounters& encounters, double thickest,
-                                              double reach_of_all) {
+                                              double reach_of_all, bool edges) {
   const auto inside = [](double w) { return std::abs(w) > 1e-3 && std::abs(w) < 1 - 1e-3; };
   return encounters.select(
       step.x, ahead_, reach_of_all,
+      [&](const Encounter& e) {
+        return e.edges != edges ? -1.0 : edges ? farthest_of_edges(e, reach_of_all) : reach_of_all;
+      },
       [&](const Encounter& e, const FourPoints& start, const FourPoints& end, const Vec3& likely) {
         if (exempt(e) || std::all_of(e.v.begin(), e.v.end(), [&](int v) { return step.is_held(v); }))
           return Approach{};
@@ -192,10 +209,15 @@ bool SelfContacts::is_borne_otherwise(const Meeting& edges) const {
   return false;
 }
 
-// A vertex has one contact with each sheet beside it: the nearest, of triangles that share a particle and lie the
-// same way. What pushed the vertex over the inside of a triangle goes on: in a valley two triangles bear it, and would do so by
-// turns. Two edges that cross are a contact where they are clearly nearer than their ends are to the other sheet, and
-// stay one as long as they are near: or a rim would drop and be lifted by turns.
+void SelfContacts::find_near_ones(const StepMotion& step, double thickest, bool edges) {
+  found_ = near_ones(step, *encounters_, thickest, reach_, edges);
+  // Other methods look at a contact within the step, when the body is not yet where its end takes it.
+  if (!surfaces_->any() || step.foresight != Foresight::ahead) return;
+  const std::vector<Meeting>& others =
+      near_ones(step, *on_bodies_, surfaces_->thickest(), body_reach_, edges);
+  found_.insert(found_.end(), others.begin(), others.end());
+}
+
 void SelfContacts::find_contacts(const StepMotion& step) {
   touching_.clear();
   double thickest = 0, thickest_rope = 0;
@@ -204,13 +226,15 @@ void SelfContacts::find_contacts(const StepMotion& step) {
   reach_ = reach_about(std::max(thickest, thickest_rope));
   body_reach_ = reach_about(surfaces_->thickest());
   if (!follow_all(step.x, ahead_)) return;
-  std::vector<Meeting>& found = found_;
-  found = near_ones(step, *encounters_, thickest, reach_);
-  // Other methods look at a contact within the step, when the body is not yet where its end takes it.
-  if (surfaces_->any() && step.foresight == Foresight::ahead) {
-    const std::vector<Meeting>& others = near_ones(step, *on_bodies_, surfaces_->thickest(), body_reach_);
-    found.insert(found.end(), others.begin(), others.end());
-  }
+  find_contacts_of_vertices(step, thickest);
+  find_contacts_of_edges(step, thickest);
+}
+
+// A vertex has one contact with each sheet beside it: the nearest, of triangles that share a particle and lie the
+// same way. What pushed the vertex over the inside of a triangle goes on: in a valley two triangles bear it, and would do so by
+// turns.
+void SelfContacts::find_contacts_of_vertices(const StepMotion& step, double thickest) {
+  find_near_ones(step, thickest, false);
   const auto add = [&](const Meeting& m) {
     if (const auto contact = contact_of(step, m.who, m.approach.last)) touching_.push_back(*contact);
   };
@@ -220,13 +244,12 @@ void SelfContacts::find_contacts(const StepMotion& step) {
     return before && before->before > 0 &&
            std::all_of(w.begin() + 1, w.end(), [](double k) { return k < -1e-3; });
   };
-  const auto edges =
-      std::partition(found.begin(), found.end(), [](const Meeting& m) { return !m.who.edges; });
-  std::sort(found.begin(), edges, [](const Meeting& a, const Meeting& b) { return a.who < b.who; });
-  std::fill(nearest_.begin(), nearest_.end(), std::numeric_limits<double>::infinity());
-  for (auto first = found.begin(); first != edges;) {
+  std::sort(found_.begin(), found_.end(), [](const Meeting& a, const Meeting& b) { return a.who < b.who; });
+  std::fill(nearest_.begin(), nearest_.end(), infinity);
+  for (auto first = found_.begin(); first != found_.end();) {
     const int vertex = first->who.v[0];
-    const auto last = std::find_if(first, edges, [&](const Meeting& m) { return m.who.v[0] != vertex; });
+    const auto last =
+        std::find_if(first, found_.end(), [&](const Meeting& m) { return m.who.v[0] != vertex; });
     look_at_ends(first, last);
     std::sort(first, last, [](const Meeting& a, const Meeting& b) {
       const double of_a = a.approach.last.distance, of_b = b.approach.last.distance;
@@ -245,14 +268,21 @@ void SelfContacts::find_contacts(const StepMotion& step) {
       if (!told) add(*first);
     }
   }
-  for (auto m = edges; m != found.end(); ++m) {
-    const auto farther = [&](int v) {
-      return (is_on_body(m->who) && v < cloth_particles()) || m->approach.last.distance < 0.7 * nearest_[v];
-    };
-    if (find(last_, m->who) ||
-        (ropes_->is_rope(m->who) ? !is_borne_otherwise(*m)
-                                 : std::all_of(m->who.v.begin(), m->who.v.end(), farther)))
-      add(*m);
+}
+
+// Two edges that cross are a contact where they are clearly nearer than their ends are to the other sheet, and stay one as
+// long as they are near: or a rim would drop and be lifted by turns. The others are not looked at.
+void SelfContacts::find_contacts_of_edges(const StepMotion& step, double thickest) {
+  std::fill(has_edge_.begin(), has_edge_.end(), 0);
+  for (const SelfContact& c : last_)
+    if (c.who.edges)
+      for (int v : c.who.v) has_edge_[v] = 1;
+  find_near_ones(step, thickest, true);
+  for (const Meeting& m : found_) {
+    const bool near = ropes_->is_rope(m.who) ? find(last_, m.who) || !is_borne_otherwise(m)
+                                             : m.approach.last.distance < farthest_of_edges(m.who, infinity);
+    if (!near) continue;
+    if (const auto contact = contact_of(step, m.who, m.approach.last)) touching_.push_back(*contact);
   }
 }
 

@@ -16,22 +16,23 @@ namespace {
 
 constexpr double edge = 0.01, gap = 0.003;  // m
 
-// Two sheets of n x n vertices, one above the other. The upper one may be a body: then its pairs with the lower one count,
+// Sheets of n x n vertices, one above the other. The upper one of two may be a body: then its pairs with the lower one count,
 // without those of a vertex of the lower one.
-struct TwoSheets {
-  TwoSheets(Kind kind, int n, double distance, bool on_body = false) : body(on_body) {
+struct Sheets {
+  Sheets(Kind kind, int n, double distance, bool on_body = false, int sheets = 2) : body(on_body) {
     const TriangleMesh sheet = bent(n, kind, edge * (n - 1), [](double, double) { return 0.0; });
     half = sheet.vertex_count();
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < sheets; ++k) {
       for (const Vec3& at : sheet.positions) places.push_back(at + k * Vec3(0.002, distance, 0.001));
       for (const Triangle& t : sheet.triangles)
         triangles.push_back({k * half + t[0], k * half + t[1], k * half + t[2]});
     }
-    x.resize(6 * half);
-    for (int i = 0; i < 2 * half; ++i) x.segment<3>(3 * i) = places[i];
-    encounters.set(triangles, {}, 2 * half, body ? triangles.size() / 2 : triangles.size(), x);
+    x.resize(3 * vertices());
+    for (int i = 0; i < vertices(); ++i) x.segment<3>(3 * i) = places[i];
+    encounters.set(triangles, {}, vertices(), body ? triangles.size() / 2 : triangles.size(), x);
   }
 
+  int vertices() const { return static_cast<int>(places.size()); }
   bool upper(int vertex) const { return vertex >= half; }
   // Every vertex with every triangle, and every edge with every other, that have no vertex in common.
   std::vector<Encounter> all_pairs() const {
@@ -40,7 +41,7 @@ struct TwoSheets {
     for (const Triangle& t : triangles)
       for (std::size_t k = 0; k < 3; ++k) edges.insert(std::minmax(t[k], t[(k + 1) % 3]));
     for (const Triangle& t : triangles)
-      for (int v = 0; v < 2 * half; ++v)
+      for (int v = 0; v < vertices(); ++v)
         if (v != t[0] && v != t[1] && v != t[2] && (!body || (upper(v) && !upper(t[0]))))
           pairs.push_back({.v = {v, t[0], t[1], t[2]}, .edges = false});
     for (const auto& [a, b] : edges)
@@ -58,7 +59,8 @@ struct TwoSheets {
       if (looks) ++*looks;
       return approach(e.edges, start, end, within, likely);
     };
-    for (const Meeting& m : encounters.select(x, x_new, within, look)) {
+    const auto gap_of = [&](const Encounter&) { return within; };
+    for (const Meeting& m : encounters.select(x, x_new, within, gap_of, look)) {
       found.push_back(m.who);
       std::array<int, 4>& v = found.back().v;
       if (m.who.edges && v[0] > v[2]) v = {v[2], v[3], v[0], v[1]};  // as all_pairs() names it
@@ -79,7 +81,7 @@ struct TwoSheets {
 };
 
 // What each vertex does in a step [m].
-Vec3 motion(int kind, const TwoSheets& two, int i, int step, double shake) {
+Vec3 motion(int kind, const Sheets& two, int i, int step, double shake) {
   const bool upper = i >= two.half;
   const Vec3 tremble = 1e-4 * shake * Vec3(1, -0.5, 0.7);
   if (kind == 0) return tremble;
@@ -119,7 +121,7 @@ TEST_CASE("the search for what could meet misses nothing, and tells each pair on
         for (int moves = 0; moves < 6; ++moves) {
           INFO("mesh " << static_cast<int>(kind) << ", " << n << " vertices along an edge, motion " << moves
                        << (body ? ", on a body" : ""));
-          TwoSheets two(kind, n, 0.002, body);
+          Sheets two(kind, n, 0.002, body);
           const std::vector<Encounter> pairs = two.all_pairs();
           std::mt19937 random(5);
           std::uniform_real_distribution<double> number(-1, 1);
@@ -153,11 +155,45 @@ TEST_CASE("the search for what could meet misses nothing, and tells each pair on
         }
 }
 
+TEST_CASE("the search misses nothing of a pile that is pressed together and comes apart", "[approach]") {
+  constexpr int sheets = 8, n = 5;
+  for (const Kind kind : kinds)
+    for (const double speed : {0.2, 0.6, 1.5}) {  // mm a step, of each sheet against the next
+      INFO("mesh " << static_cast<int>(kind) << ", " << speed << " mm a step");
+      Sheets pile(kind, n, 0.015, false, sheets);
+      const std::vector<Encounter> pairs = pile.all_pairs();
+      std::mt19937 random(5);
+      std::uniform_real_distribution<double> tremble(-1e-5, 1e-5);
+      double distance = 15;  // mm
+      const auto go = [&](double by) {
+        VecX x_new = pile.x;
+        for (int i = 0; i < pile.vertices(); ++i)
+          x_new.segment<3>(3 * i) +=
+              Vec3(tremble(random), 1e-3 * by * (i / pile.half) + tremble(random), tremble(random));
+        const std::vector<Encounter> selected = pile.select(x_new);
+        const std::set<Encounter> found(selected.begin(), selected.end());
+        CHECK(found.size() == selected.size());
+        long missed = 0;
+        for (const Encounter& e : pairs)
+          missed += come_near(e, corners(pile.x, e), corners(x_new, e), 0.99 * gap) && found.count(e) == 0;
+        CHECK(missed == 0);
+        pile.go(x_new);
+        distance += by;
+      };
+      for (int time = 0; time < 2; ++time) {
+        while (distance > 0.5) go(-std::min(speed, distance - 0.4));
+        for (int k = 0; k < 8; ++k) go(0);
+        while (distance < 8) go(1);
+        for (int k = 0; k < 8; ++k) go(0);
+      }
+    }
+}
+
 TEST_CASE("what moves elsewhere, and what all do alike, does not make the search begin again", "[approach]") {
   for (const Kind kind : kinds)
     for (const int n : {12, 18, 24}) {
       INFO("mesh " << static_cast<int>(kind) << ", " << n << " vertices along an edge");
-      TwoSheets two(kind, n, 0.004);  // farther apart than the gap: nothing has to be looked at twice
+      Sheets two(kind, n, 0.004);  // farther apart than the gap: nothing has to be looked at twice
       std::vector<long> looks(6, 0);
       for (int step = 0; step < 6; ++step) {
         VecX x_new = two.x;
@@ -177,7 +213,7 @@ TEST_CASE("the search finds the same, in the same order, on any number of thread
   std::vector<std::vector<Encounter>> found;
   for (const int count : {1, 2, 7}) {
     set_threads(count);
-    TwoSheets two(Kind::irregular, 45, 0.002);  // large enough for more than one thread
+    Sheets two(Kind::irregular, 45, 0.002);  // large enough for more than one thread
     std::mt19937 random(6);
     std::uniform_real_distribution<double> number(-1, 1);
     found.emplace_back();
@@ -197,14 +233,14 @@ TEST_CASE("the search finds the same, in the same order, on any number of thread
 }
 
 TEST_CASE("a search among cloth that has exploded gives up, and begins anew", "[approach]") {
-  TwoSheets two(Kind::squares, 24, 0.004);
+  Sheets two(Kind::squares, 24, 0.004);
   const VecX sound = two.x;
   CHECK_FALSE(two.encounters.follow(VecX::Zero(sound.size()), VecX::Zero(sound.size()), gap));
   VecX broken = sound;
   broken[7] = std::numeric_limits<double>::quiet_NaN();
   CHECK_FALSE(two.encounters.follow(sound, broken, gap));
   const auto found = two.select(sound);
-  TwoSheets fresh(Kind::squares, 24, 0.004);
+  Sheets fresh(Kind::squares, 24, 0.004);
   CHECK(found == fresh.select(sound));
 }
 
@@ -212,13 +248,13 @@ TEST_CASE("particles that were moved from outside are looked at anew", "[approac
   for (const Kind kind : kinds)
     for (const int n : {4, 8, 12}) {
       INFO("mesh " << static_cast<int>(kind) << ", " << n << " vertices along an edge");
-      TwoSheets two(kind, n, 0.006);
+      Sheets two(kind, n, 0.006);
       const VecX before = two.x;
       two.select(before);  // knows from now on that the sheets are 6 mm apart
       two.go(before);
       for (int i = 0; i < two.half; ++i) two.x[3 * i + 1] += 0.0035;
       two.encounters.forget();
-      TwoSheets fresh(kind, n, 0.0025);
+      Sheets fresh(kind, n, 0.0025);
       CHECK(two.select(two.x).size() == fresh.select(fresh.x).size());
     }
 }
