@@ -18,6 +18,8 @@ constexpr std::size_t exploded = 2000, most_groups = 1000;
 
 constexpr double never = -std::numeric_limits<double>::infinity();
 
+bool is_of_vertex(const Encounter& e) { return !e.edges; }
+
 Vec3 place(const VecX& x, std::size_t particle) {
   return x.segment<3>(3 * static_cast<Eigen::Index>(particle));
 }
@@ -80,13 +82,17 @@ void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<s
 
   // A pair of triangles belongs to their lowest common vertex.
   beside_start_.assign(1, 0);
+  beside_edges_.clear();
   for (int c = 0; c < static_cast<int>(particles); ++c) {
     for (int f : around[c])
       for (int g : around[c])
         if (g > f && of_cloth_ == 0 && common(f, g) == c) list(f, g, beside_.list);
+    const auto middle =
+        std::partition(beside_.list.begin() + beside_start_.back(), beside_.list.end(), is_of_vertex);
+    beside_edges_.push_back(static_cast<int>(middle - beside_.list.begin()));
     beside_start_.push_back(static_cast<int>(beside_.list.size()));
   }
-  beside_due_.assign(particles, never);
+  beside_due_.assign(particles, {never, never});
   beside_.due.assign(beside_.list.size(), never);
   beside_.normal.assign(beside_.list.size(), Vec3::Zero());
   clock_.assign(particles, {});
@@ -110,7 +116,7 @@ void Encounters::forget() {
   gap_ = -1;
   for (Group& g : groups_) g.gap = -1;
   std::fill(beside_.due.begin(), beside_.due.end(), never);
-  std::fill(beside_due_.begin(), beside_due_.end(), never);
+  std::fill(beside_due_.begin(), beside_due_.end(), Due{never, never});
 }
 
 void Encounters::list(int first, int second, std::vector<Encounter>& found) const {
@@ -318,11 +324,13 @@ void Encounters::make_list(Group& group, double gap) const {
       !search(group, gap + group.room, group.room > least ? most : std::numeric_limits<std::size_t>::max()))
     group.room *= 0.5;
   Pairs& pairs = group.pairs;
+  group.edges_from = static_cast<int>(std::partition(pairs.list.begin(), pairs.list.end(), is_of_vertex) -
+                                      pairs.list.begin());
   pairs.due.assign(pairs.list.size(), never);
   pairs.normal.assign(pairs.list.size(), Vec3::Zero());
   group.gap = gap;
   group.clock = {};
-  group.due = never;
+  group.due = {never, never};
   group.start_off = group.end_off = 0;
 }
 

@@ -6,7 +6,8 @@
 //   near: their pairs are listed once and for all. The others are listed for every two patches of up to 32
 //   triangles that come near each other. Such a list stands as long as the motions of its two patches have not come to
 //   differ by more from what they were when it was made, in either patch or from patch to patch, than it allows for:
-//   what moves wildly elsewhere, and what both do alike, leaves it as it is.
+//   what moves wildly elsewhere, and what both do alike, leaves it as it is. In a dense pile all lists allow for less, because
+//   every pair of them costs something in every step.
 //   What was found to be apart is not looked at again before it can have come near. No two points of two patches come
 //   nearer to each other in a step than the motions of their vertices differ at most, and no two of triangles that share
 //   the vertex c than by 2 e_c, where e_c is by how much the vertices next to c move otherwise than c.
@@ -50,11 +51,12 @@ class Encounters {
   // does not cover the motion. False: a place is no number, or so much comes near so much else that the cloth must have
   // exploded; then there is no list.
   bool follow(const VecX& x, const VecX& x_new, double gap);
-  // Asks look(pair, corners at x, corners at x_new, the normal found last), which returns an Approach, of the pairs
-  // that could come within gap_of(pair), at most `gap`, by all threads; a negative one says that the pair is not asked
-  // for. Returns those that are not apart, in a fixed order. They stay until the next call.
+  enum class Kind { vertices = 1, edges = 2, both = 3 };
+  // Asks look(pair, corners at x, corners at x_new, the normal found last), which returns an Approach, of the pairs of
+  // these kinds that could come within gap_of(pair), at most `gap`, by all threads. Returns those that are not apart, in a
+  // fixed order. They stay until the next call.
   template <class GapOf, class Look>
-  std::vector<Meeting>& select(const VecX& x, const VecX& x_new, double gap, const GapOf& gap_of,
+  std::vector<Meeting>& select(Kind kind, const VecX& x, const VecX& x_new, double gap, const GapOf& gap_of,
                                const Look& look);
   // The step has gone from x to x_new.
   void went(const VecX& x, const VecX& x_new);
@@ -75,6 +77,8 @@ class Encounters {
   struct Clock {
     double start = 0, end = 0;
   };
+  // The first and the second part of a list: vertices with triangles, and edges.
+  using Due = std::array<double, 2>;  // those of the first pair to come near
   // The range of a vector over the vertices of a patch [m].
   struct Range {
     Eigen::Array3d lower = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
@@ -85,8 +89,9 @@ class Encounters {
   struct Group {
     int first = 0, second = 0;  // patches
     Pairs pairs;
+    int edges_from = 0;
     Clock clock;
-    double due = 0;                     // that of the first pair to come near
+    Due due = {};
     double gap = -1, room = 0;          // m
     double start_off = 0, end_off = 0;  // by how much the two ends of the motion differ by now at most [m]
   };
@@ -118,11 +123,11 @@ class Encounters {
   std::optional<MovingBoxes> boxes_;
   std::vector<int> next_start_, next_;    // the vertices next to each one
   std::vector<int> patch_start_, patch_;  // the vertices of each patch
-  // The pairs that have the common vertex c are the numbers beside_start_[c] to beside_start_[c + 1] of beside_, and
-  // none is due before beside_due_[c].
+  // The pairs that have the common vertex c are the numbers beside_start_[c] to beside_start_[c + 1] of beside_; those of
+  // edges begin at beside_edges_[c], and none is due before beside_due_[c].
   Pairs beside_;
-  std::vector<int> beside_start_;
-  std::vector<double> beside_due_;
+  std::vector<int> beside_start_, beside_edges_;
+  std::vector<Due> beside_due_;
   std::vector<Clock> clock_;            // by vertex
   std::vector<Group> groups_;           // sorted by patches
   std::vector<Vec3> start_, end_;       // of the motion that was followed last
@@ -139,26 +144,27 @@ class Encounters {
 };
 
 template <class GapOf, class Look>
-std::vector<Meeting>& Encounters::select(const VecX& x, const VecX& x_new, double gap, const GapOf& gap_of,
-                                         const Look& look) {
+std::vector<Meeting>& Encounters::select(Kind kind, const VecX& x, const VecX& x_new, double gap,
+                                         const GapOf& gap_of, const Look& look) {
   constexpr int groups_in_a_chunk = 8;
   selected_.clear();
-  // Returns when the first of the pairs [begin, end) is due, which are due at `due` by what is known.
-  const auto select_list = [&](Pairs& pairs, int begin, int end, const Clock& clock, double due,
+  // The pairs of a list that begin at these three places, of which the last is its end.
+  const auto select_list = [&](Pairs& pairs, const std::array<int, 3>& from, const Clock& clock, Due& due,
                                std::vector<Meeting>& found) {
-    if (due - clock.end > gap) return due;
-    double earliest = std::numeric_limits<double>::infinity();
-    for (int k = begin; k < end; ++k)
-      earliest = std::min(earliest, select_pair(pairs, k, clock, x, x_new, gap, gap_of, look, found));
-    return earliest;
+    for (std::size_t part = 0; part < 2; ++part) {
+      if ((static_cast<unsigned>(kind) >> part & 1u) == 0 || due[part] - clock.end > gap) continue;
+      due[part] = std::numeric_limits<double>::infinity();
+      for (int k = from[part]; k < from[part + 1]; ++k)
+        due[part] = std::min(due[part], select_pair(pairs, k, clock, x, x_new, gap, gap_of, look, found));
+    }
   };
   select_chunks(static_cast<int>(groups_.size()), groups_in_a_chunk, [&](int k, std::vector<Meeting>& found) {
     Group& g = groups_[k];
-    g.due = select_list(g.pairs, 0, static_cast<int>(g.pairs.list.size()), g.clock, g.due, found);
+    select_list(g.pairs, {0, g.edges_from, static_cast<int>(g.pairs.list.size())}, g.clock, g.due, found);
   });
   select_chunks(static_cast<int>(clock_.size()), chunk_size, [&](int c, std::vector<Meeting>& found) {
-    beside_due_[c] =
-        select_list(beside_, beside_start_[c], beside_start_[c + 1], clock_[c], beside_due_[c], found);
+    select_list(beside_, {beside_start_[c], beside_edges_[c], beside_start_[c + 1]}, clock_[c],
+                beside_due_[c], found);
   });
   return selected_;
 }
@@ -184,8 +190,7 @@ double Encounters::select_pair(Pairs& pairs, std::size_t k, Clock clock, const V
   const double least = pairs.due[k] - clock.end;  // so far apart it stays at least [m]
   if (least > gap) return pairs.due[k];
   const Encounter& e = pairs.list[k];
-  const double own = gap_of(e);
-  if (own < 0 || least > own) return pairs.due[k];
+  if (least > gap_of(e)) return pairs.due[k];
   Meeting one{.who = e, .approach = look(e, corners(x, e), corners(x_new, e), pairs.normal[k])};
   pairs.due[k] = clock.start + one.approach.start;
   pairs.normal[k] = one.approach.last.normal;

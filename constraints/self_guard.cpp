@@ -39,9 +39,10 @@ std::vector<Meeting>& SelfContacts::meetings(const VecX& x, const VecX& x_new) {
     return found;
   };
   const auto gap_of = [floor](const Encounter&) { return floor; };
-  found_ = encounters_->select(x, x_new, floor, gap_of, look);
+  found_ = encounters_->select(Encounters::Kind::both, x, x_new, floor, gap_of, look);
   if (surfaces_->any()) {
-    const std::vector<Meeting>& others = on_bodies_->select(x, x_new, floor, gap_of, look);
+    const std::vector<Meeting>& others =
+        on_bodies_->select(Encounters::Kind::both, x, x_new, floor, gap_of, look);
     found_.insert(found_.end(), others.begin(), others.end());
   }
   return found_;

@@ -160,10 +160,8 @@ std::vector<Meeting>& SelfContacts::near_ones(const StepMotion& step, Encounters
                                               double reach_of_all, bool edges) {
   const auto inside = [](double w) { return std::abs(w) > 1e-3 && std::abs(w) < 1 - 1e-3; };
   return encounters.select(
-      step.x, ahead_, reach_of_all,
-      [&](const Encounter& e) {
-        return e.edges != edges ? -1.0 : edges ? farthest_of_edges(e, reach_of_all) : reach_of_all;
-      },
+      edges ? Encounters::Kind::edges : Encounters::Kind::vertices, step.x, ahead_, reach_of_all,
+      [&](const Encounter& e) { return edges ? farthest_of_edges(e, reach_of_all) : reach_of_all; },
       [&](const Encounter& e, const FourPoints& start, const FourPoints& end, const Vec3& likely) {
         if (exempt(e) || std::all_of(e.v.begin(), e.v.end(), [&](int v) { return step.is_held(v); }))
           return Approach{};

@@ -60,7 +60,7 @@ struct Sheets {
       return approach(e.edges, start, end, within, likely);
     };
     const auto gap_of = [&](const Encounter&) { return within; };
-    for (const Meeting& m : encounters.select(x, x_new, within, gap_of, look)) {
+    for (const Meeting& m : encounters.select(Encounters::Kind::both, x, x_new, within, gap_of, look)) {
       found.push_back(m.who);
       std::array<int, 4>& v = found.back().v;
       if (m.who.edges && v[0] > v[2]) v = {v[2], v[3], v[0], v[1]};  // as all_pairs() names it
