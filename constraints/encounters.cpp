@@ -297,7 +297,8 @@ bool Encounters::make_lists(double gap, bool fitted) {
   return true;
 }
 
-// Where there are too many pairs, the lists that look too far ahead are made anew in the next step.
+// Where there are too many pairs, the lists that look too far ahead are made anew for the next motion. Where there are few,
+// those that are made later look farther ahead.
 void Encounters::adapt_room(std::size_t pairs) {
   const double least = least_room * mean_edge_;
   if (pairs > most_of_all * faces_.size() && room_ > least) {

@@ -1,5 +1,6 @@
 // Laws of the preconditioners, and of solvers that keep something from one system to the next.
 #include <catch2/catch.hpp>
+#include <limits>
 
 #include "mesh/base/threads.h"
 #include "solver/forces/linear_spring.h"
@@ -62,6 +63,27 @@ class WithoutProduct final : public Preconditioner {
 
  private:
   std::unique_ptr<Preconditioner> inner_ = make_multigrid();
+};
+
+// Multigrid whose products are wrong.
+class WrongProduct final : public Preconditioner {
+ public:
+  explicit WrongProduct(double factor) : factor_(factor) {}
+  std::string_view name() const override { return "wrong-product"; }
+  bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
+    return inner_->prepare(A, filter, report);
+  }
+  void apply(const VecX& r, VecX& s) override { inner_->apply(r, s); }
+  bool apply_and_multiply(const VecX& r, VecX& s, VecX& Bs) override {
+    const bool multiplied = inner_->apply_and_multiply(r, s, Bs);
+    if (++calls_ > 3) Bs *= factor_;
+    return multiplied;
+  }
+
+ private:
+  std::unique_ptr<Preconditioner> inner_ = make_multigrid();
+  double factor_;
+  int calls_ = 0;
 };
 
 // The matrix of a crumpled sheet in which particles far from each other are coupled, too, and its filter.
@@ -181,6 +203,22 @@ TEST_CASE("a product that a preconditioner gives is that of the matrix, and cost
         CHECK(quick.residual <= 1.01 * tolerance);
         CHECK((with - without).norm() < 10 * tolerance * without.norm());
       }
+    }
+}
+
+TEST_CASE("a wrong product of a preconditioner costs iterations, not the solution", "[solvers]") {
+  const CoupledSheet sheet(30, true);
+  VecX b = random_vector(3 * 30 * 30, 1, 3), expected = VecX::Zero(b.size());
+  make_linear_solver("eigen-ldlt")->solve(sheet.A, b, sheet.filter, {}, expected);
+  for (const double factor : {-1.0, 0.0, 0.9, 1e3, std::numeric_limits<double>::quiet_NaN()})
+    for (const bool prefiltered : {false, true}) {
+      INFO((prefiltered ? "ppcg, " : "mpcg, ") << factor);
+      VecX dv = random_vector(b.size(), 1, 4);
+      const auto solver = make_pcg("pcg", prefiltered, std::make_unique<WrongProduct>(factor));
+      const LinearReport report = solver->solve(sheet.A, b, sheet.filter, {.tolerance = 1e-7}, dv);
+      CHECK(report.reason == StopReason::converged);
+      CHECK(report.residual <= 1.01e-7);
+      CHECK((dv - expected).norm() < 1e-5 * expected.norm());
     }
 }
 

@@ -155,9 +155,9 @@ class Multigrid final : public Preconditioner {
   // All of a cycle but the sweep up.
   void correct(int depth, const VecX& r, VecX& x) {
     Level& level = levels_[depth];
-    if (depth + 1 == count_) return level.smoother.down(r, x, level.residual);
-    Level& below = levels_[depth + 1];
     level.smoother.down(r, x, level.residual);
+    if (depth + 1 == count_) return;
+    Level& below = levels_[depth + 1];
     for_chunks(below.smoother.rows(), [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
         const Four sum = times(level.restriction[i], level.residual.data());

@@ -71,7 +71,7 @@ class Pcg final : public LinearSolver {
     note(rr);
     const double far_off = 1e12 * (rr + reference * reference);  // no sound iteration has such a residual
     int restarts = 0, since_ready = 0;
-    // The preconditioner's products are off by what floats lose, until the residual has drifted by that.
+    // Takes the preconditioner's products, which are off by what floats lose, until that shows.
     bool quick = options.tolerance >= 1e-7;
     double rr_ready = rr;  // rr when the preconditioner was made ready
     const auto decades = [&] { return rr > 0 && rr_ready > 0 ? 0.5 * std::log10(rr_ready / rr) : 0; };
@@ -101,6 +101,7 @@ class Pcg final : public LinearSolver {
         rho = rho_new;
         const double curvature = next_direction(A, filter, beta, multiplied);
         if (!(curvature > 0)) {
+          if (multiplied) break;  // A itself decides
           report.reason = std::isfinite(curvature) ? StopReason::indefinite : StopReason::not_finite;
           break;
         }
@@ -120,10 +121,10 @@ class Pcg final : public LinearSolver {
         since_ready = 0;
         rr_ready = rr;
         prepare(A, filter, report);
+      } else if (quick) {
+        quick = false;
       } else if (++restarts > 3) {
         break;
-      } else {
-        quick = false;
       }
     }
     if (report.reason == StopReason::converged)
@@ -190,7 +191,7 @@ class Pcg final : public LinearSolver {
   std::string name_;
   bool prefiltered_;
   std::unique_ptr<Preconditioner> preconditioner_;
-  VecX r_, d_, q_, s_, As_, z_, right_;  // d is a search direction, q = S A d, s = P r
+  VecX r_, d_, q_, s_, As_, z_, right_;  // d is a search direction, q = S A d, s = P r, As = S A s
 };
 
 }  // namespace

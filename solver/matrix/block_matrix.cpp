@@ -12,7 +12,7 @@ using namespace internal;
 
 namespace {
 
-// y[0..2] += the sums of the first three lanes of p, q, r.
+// y[0..2] += the sums of the lanes of p, q, r. The fourth one of p and of q is zero, that of r is not read.
 inline void add_sums(const Four& p, const Four& q, const Four& r, double* y) {
   const Four pq = __builtin_shufflevector(p, q, 0, 4, 2, 6) + __builtin_shufflevector(p, q, 1, 5, 3, 7);
   y[0] += pq[0] + pq[2];

@@ -77,7 +77,7 @@ int BlockOverlay::slot(int row, int column) const {
   const auto begin = entries_.begin() + start_[place_[row]], end = entries_.begin() + start_[place_[row] + 1];
   const auto at =
       std::lower_bound(begin, end, column, [](const Entry& e, int wanted) { return e.column < wanted; });
-  return at != end && at->column == column ? at->slot : -1;
+  return at != end && at->column == column && !at->transposed ? at->slot : -1;
 }
 
 const BlockOverlay& BlockLayout::no_overlay() {
