@@ -173,9 +173,11 @@ TEST_CASE("the search misses nothing of a pile that is pressed together and come
       double distance = 15;  // mm
       const auto go = [&](double by) {
         VecX x_new = pile.x;
-        for (int i = 0; i < pile.vertices(); ++i)
+        for (int i = 0; i < pile.vertices(); ++i) {
+          const int sheet = i / pile.half;
           x_new.segment<3>(3 * i) +=
-              Vec3(tremble(random), 1e-3 * by * (i / pile.half) + tremble(random), tremble(random));
+              Vec3(tremble(random), 1e-3 * by * sheet + tremble(random), tremble(random));
+        }
         const std::vector<Encounter> selected = pile.select(x_new);
         const std::set<Encounter> found(selected.begin(), selected.end());
         CHECK(found.size() == selected.size());
