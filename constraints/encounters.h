@@ -77,8 +77,8 @@ class Encounters {
   struct Clock {
     double start = 0, end = 0;
   };
-  // The first and the second part of a list: vertices with triangles, and edges.
-  using Due = std::array<double, 2>;  // those of the first pair to come near
+  // A list has two parts, vertices with triangles and then edges. When the first pair of each is due.
+  using Due = std::array<double, 2>;
   // The range of a vector over the vertices of a patch [m].
   struct Range {
     Eigen::Array3d lower = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
@@ -89,7 +89,7 @@ class Encounters {
   struct Group {
     int first = 0, second = 0;  // patches
     Pairs pairs;
-    int edges_from = 0;
+    int edges_from = 0;  // where the second part of the list begins
     Clock clock;
     Due due = {};
     double gap = -1, room = 0;          // m

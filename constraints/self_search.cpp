@@ -144,7 +144,7 @@ bool SelfContacts::follow_all(const VecX& x, const VecX& x_new) {
   return !surfaces_->any() || on_bodies_->follow(x, x_new, body_reach_);
 }
 
-// How far apart two edges may be and become a contact: nearest_ is known.
+// How far apart two edges may be to become a contact, at most `reach` [m]. It takes nearest_ of their ends.
 double SelfContacts::farthest_of_edges(const Encounter& e, double reach) const {
   if (ropes_->is_rope(e)) return reach;
   double farthest = reach;
@@ -207,6 +207,7 @@ bool SelfContacts::is_borne_otherwise(const Meeting& edges) const {
   return false;
 }
 
+// Fills found_.
 void SelfContacts::find_near_ones(const StepMotion& step, double thickest, bool edges) {
   found_ = near_ones(step, *encounters_, thickest, reach_, edges);
   // Other methods look at a contact within the step, when the body is not yet where its end takes it.

@@ -101,7 +101,7 @@ class Pcg final : public LinearSolver {
         rho = rho_new;
         const double curvature = next_direction(A, filter, beta, multiplied);
         if (!(curvature > 0)) {
-          if (multiplied) break;  // A itself decides
+          if (multiplied) break;  // the product may be at fault: goes on with A itself
           report.reason = std::isfinite(curvature) ? StopReason::indefinite : StopReason::not_finite;
           break;
         }
