@@ -22,12 +22,14 @@ constexpr double rope_sinks = 5e-5;  // m, under a load: a rope is thick, and is
 // How much stiffer a contact becomes so, at most: with steps of 10 ms and r = 1 mm it then bears 3000 times the weight of
 // its lighter side.
 constexpr double stiffest = 1000;
-// A contact is eased while it bears less than this share of what it is stiff for.
-constexpr double eased_below = 0.8;
-// It becomes softer only when it was eased for this time [s], which is longer than a pile swings up and down: springs that
-// become stiff while they are pressed, and soft before they are pressed again, make energy. While the contact bears its load
-// that time runs back, this many times as fast. It begins full, so that what took an impact becomes softer at once.
-constexpr double eased_for = 0.25, runs_back = 2.5;
+// A contact is eased while it bears less than this share of what it is stiff for. Springs that become stiff while they are
+// pressed, and soft before they are pressed again, make energy. And a contact that becomes softer bears less, so that those
+// beside it bear more and become stiffer. So loads that swing by less than this share change no stiffness.
+constexpr double eased_below = 0.4;
+// It becomes softer only when it was eased for this time [s], and then goes on to where it bears this share. While the contact
+// bears its load that time runs back, this many times as fast. It begins full, so that what took an impact becomes softer
+// at once.
+constexpr double eased_for = 0.25, softens_to = 0.8, runs_back = 2.5;
 // What is then left of its stiffness after 10 ms, at least.
 constexpr double slowest_fall = 0.9;
 
@@ -139,7 +141,7 @@ void SelfContacts::stiffen(SelfContact& contact, const StepMotion& step) const {
       contact.load / (ropes_->is_rope(contact.who) ? std::min(under_load, rope_sinks) : under_load);
   if (step.last_h > 0) contact.stiff *= step.last_h * step.last_h / (step.h * step.h);
   if (contact.stiff > 0) {
-    const bool eases = bears < eased_below * contact.stiff;
+    const bool eases = bears < (contact.eased > eased_for ? softens_to : eased_below) * contact.stiff;
     contact.eased = std::clamp(contact.eased + (eases ? step.h : -runs_back * step.h), 0.0, 2 * eased_for);
     const double least = contact.eased > eased_for ? std::pow(slowest_fall, step.h / 0.01) : 1;
     bears = std::max(std::sqrt(bears * contact.stiff), least * contact.stiff);

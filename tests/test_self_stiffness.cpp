@@ -1,0 +1,102 @@
+// How stiff the springs between layers of cloth are: as their load asks for, whatever the load does.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <vector>
+
+#include "solver/assembly/assembly.h"
+#include "tests/integrators.h"
+#include "tests/sheets.h"
+
+using namespace drape;
+using namespace drape::test;
+
+namespace {
+
+constexpr double thickness = 1e-3;  // m
+
+Assembly pile_on(const Obstacle& floor, int layers, int n, Kind kind) {
+  Assembly pile{Vec3(0, -9.81, 0)};
+  for (int k = 0; k < layers; ++k) {
+    const TriangleMesh mesh =
+        bent(n + k % 3, kind, 0.1, [&](double, double) { return 2e-3 + thickness * k; });
+    pile.add({.mesh = mesh,
+              .fabric = {.area_density = 0.2, .stretch = 200, .bend = 1e-5, .damping = 0.002},
+              .imperfection = 0,
+              .self_contact = SelfContactOptions{.thickness = thickness, .friction = 0.3}});
+  }
+  pile.constraints->add(floor);
+  pile.use("implicit-euler", "auto", {.tolerance = 1e-4});
+  return pile;
+}
+
+Obstacle floor_along(const std::vector<Keyframe>& path) {
+  return {.shape = Plane{}, .friction = 0.5, .margin = 2e-3, .motion = Motion::keyframes(path, Vec3::Zero())};
+}
+
+// The stiffness of the contacts that bear something [N/m].
+std::map<Encounter, double> stiffnesses(const Assembly& pile) {
+  std::map<Encounter, double> found;
+  for (const SelfContact& c : pile.constraints->self().pushed())
+    if (c.before > 0) found[c.who] = c.stiff;
+  return found;
+}
+
+double sum_of_stiffnesses(const Assembly& pile) {
+  double sum = 0;
+  for (const auto& [who, stiff] : stiffnesses(pile)) sum += stiff;
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("contacts whose load swings stay as stiff as the load asked for", "[self-contact]") {
+  constexpr double swings_by = 3, omega = 2 * std::numbers::pi;  // m/s^2, rad/s
+  std::vector<Keyframe> path;
+  for (double t = 0; t < 4; t += 0.02)
+    path.push_back({.time = t, .translate = {0, swings_by / (omega * omega) * (1 - std::cos(omega * t)), 0}});
+  for (Kind kind : kinds)
+    for (int n : {4, 6, 8}) {
+      INFO(n << " vertices along an edge, kind " << static_cast<int>(kind));
+      Assembly pile = pile_on(floor_along(path), 8, n, kind);
+      while (pile.state.time < 2) REQUIRE(pile.advance(0.01).done);
+      std::map<Encounter, double> before = stiffnesses(pile);
+      int bearing = 0, changed = 0;
+      while (pile.state.time < 3) {
+        REQUIRE(pile.advance(0.01).done);
+        std::map<Encounter, double> now = stiffnesses(pile);
+        for (const auto& [who, stiff] : now) {
+          const auto was = before.find(who);
+          if (was == before.end()) continue;
+          ++bearing;
+          changed += std::abs(stiff - was->second) > 1e-3 * was->second;
+        }
+        before = std::move(now);
+      }
+      CHECK(changed < 0.01 * bearing);  // that of a few contacts swings by more
+    }
+}
+
+TEST_CASE("contacts become softer again when their load is gone", "[self-contact]") {
+  // The floor rises ever faster, so that the layers weigh three times as much, and then as fast as it is.
+  constexpr double rests = 1.5, rises = 0.5, more = 20;  // s, s, m/s^2
+  std::vector<Keyframe> path;
+  for (double t = 0; t < 4; t += 0.02) {
+    const double since = std::max(0.0, t - rests), up = std::min(since, rises);
+    path.push_back({.time = t, .translate = {0, 0.5 * more * up * up + more * up * (since - up), 0}});
+  }
+  for (Kind kind : kinds)
+    for (int n : {4, 6, 8}) {
+      INFO(n << " vertices along an edge, kind " << static_cast<int>(kind));
+      Assembly pile = pile_on(floor_along(path), 8, n, kind);
+      const auto until = [&](double time) {
+        while (pile.state.time < time) REQUIRE(pile.advance(0.01).done);
+        return sum_of_stiffnesses(pile);
+      };
+      const double at_rest = until(rests), heavy = until(rests + rises), later = until(rests + rises + 1.5);
+      CHECK(heavy > 2.3 * at_rest);
+      CHECK(later < 1.05 * at_rest);
+    }
+}
