@@ -38,8 +38,9 @@ struct Cost {
   int solves = 0, by_multigrid = 0, iterations = 0, most_iterations = 0;  // the most of a solve
   int given_up = 0;                                                       // solves that another method began
 
-  void add(const LinearReport& report, bool multigrid) {
-    total += multigrid ? 2.4 * report.iterations + 6 + 19 * report.analyses : report.iterations + 8;
+  void add(const LinearReport& report, bool multigrid, double blocks_of_row) {
+    total += multigrid ? (0.7 + 10 / blocks_of_row) * report.iterations + 6 + 19 * report.analyses
+                       : report.iterations + 8;
     ++solves;
     iterations += report.iterations;
     most_iterations = std::max(most_iterations, report.iterations);
@@ -67,7 +68,8 @@ class CountingSolver final : public LinearSolver {
       cost_.given_up += alone < report.iterations;
       CHECK(same == dv);
     }
-    cost_.add(report, (name() == "auto" ? report.method : name()) == "ppcg+multigrid");
+    cost_.add(report, (name() == "auto" ? report.method : name()) == "ppcg+multigrid",
+              static_cast<double>(A.pattern().blocks()) / A.rows());
     return report;
   }
 

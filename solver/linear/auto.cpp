@@ -1,6 +1,7 @@
 // Takes incomplete Cholesky or multigrid, whichever costs less in the run as it goes.
 //   Costs are counted, never timed, so that the same input gives the same bits. Their unit is one iteration with
-// block-ic0; the prices were measured on sheets of 10 k vertices. A factor that breaks down is counted once.
+// block-ic0; the prices were measured on sheets of 4 k and 10 k vertices and on a skirt of 4.7 k. A factor that breaks
+// down is counted once.
 // What is compared is the cost of all systems of one assembled matrix, because contacts ask for several short
 // solves with it, for which the levels of multigrid do not pay.
 // A run begins with block-ic0. Multigrid has the next matrix on trial where a solve costs more than one with
@@ -27,9 +28,13 @@ namespace {
 struct Price {  // in iterations with block-ic0
   double iteration, system, levels;
 };
-constexpr Price ic0_price = {1, 8, 0}, multigrid_price = {2.4, 6, 19};
-// A solve with multigrid usually takes 16 iterations.
-constexpr double usual_multigrid = 16 * 2.4 + 6 + 19;
+constexpr Price ic0_price = {1, 8, 0};
+
+// An iteration with block-ic0 takes as long as the matrix has blocks. One with multigrid depends less on them.
+Price multigrid_price(const BlockMatrix& A) {
+  const double blocks_of_row = static_cast<double>(A.pattern().blocks()) / A.rows();
+  return {0.7 + 10 / blocks_of_row, 6, 19};
+}
 
 class Auto final : public LinearSolver {
  public:
@@ -39,6 +44,7 @@ class Auto final : public LinearSolver {
                      VecX& dv) override {
     if (fill_ != A.fill()) begin_matrix();
     fill_ = A.fill();
+    multigrid_price_ = multigrid_price(A);
     LinearReport report;
     if (now_ == ic0) {
       guess_ = dv;
@@ -58,7 +64,7 @@ class Auto final : public LinearSolver {
   LinearReport solve_by(Method method, const BlockMatrix& A, const VecX& b, const Filter& filter,
                         const LinearOptions& options, VecX& dv) {
     LinearReport report = solver_[method]->solve(A, b, filter, options, dv);
-    const Price& price = method == ic0 ? ic0_price : multigrid_price;
+    const Price& price = method == ic0 ? ic0_price : multigrid_price_;
     cost_ += price.iteration * report.iterations + price.system + price.levels * report.analyses;
     report.method = names[method];
     return report;
@@ -84,7 +90,7 @@ class Auto final : public LinearSolver {
   LinearOptions within_budget(LinearOptions options) const {
     if (std::isinf(usual_[multigrid])) return options;  // it failed
     const double enough = 1.25 * usual_[multigrid];     // for a trial to be lost
-    const double most = on_trial_ ? enough : std::max(1.5 * usual_[multigrid], 4 * usual_multigrid);
+    const double most = on_trial_ ? enough : std::max(1.5 * usual_[multigrid], 4 * usual_multigrid(1));
     const int budget = std::max(fewest_iterations, static_cast<int>(std::min(most - cost_, 1e6)));
     if (options.max_iterations == 0 || budget < options.max_iterations) options.max_iterations = budget;
     return options;
@@ -126,12 +132,17 @@ class Auto final : public LinearSolver {
     if (failed_ || idle_) return;  // what it cost says nothing
     own = own > 0 ? 0.7 * own + 0.3 * cost_ : cost_;
     ++waited_;
-    const double usual = usual_multigrid * solves_;
+    const double usual = usual_multigrid(solves_);
     if (now_ == ic0 && cost_ <= usual) return;
     const bool dear = others > 0 ? own > 1.25 * others && waited_ >= 2 : own > 2 * usual;
     if (!dear && waited_ < wait_) return;
     on_trial_ = true;
     now_ = other();
+  }
+
+  // What one matrix usually costs with multigrid: 16 iterations a solve.
+  double usual_multigrid(int solves) const {
+    return solves * (16 * multigrid_price_.iteration + multigrid_price_.system) + multigrid_price_.levels;
   }
 
   Method other() const { return now_ == ic0 ? multigrid : ic0; }
@@ -140,6 +151,7 @@ class Auto final : public LinearSolver {
   std::array<std::unique_ptr<LinearSolver>, 2> solver_ = {
       make_pcg(std::string(names[ic0]), false, make_block_ic0()),
       make_pcg(std::string(names[multigrid]), true, make_multigrid())};
+  Price multigrid_price_ = {};  // with this matrix
   Method now_ = ic0;
   bool on_trial_ = false;
   int wait_ = 0, waited_ = 0;  // matrices until the next trial, and since the last
