@@ -13,9 +13,7 @@ constexpr double slow = 1e-3;  // m/s
 // A contact that has changed this often within a step changes again only when no other does, and alone.
 constexpr int most_changes = 3;
 constexpr int most_steps = 24;  // steps of the search for the lowest point
-// Where the search ends, as a share of the size of the triangle. A point that is found more coarsely jumps between two steps,
-// and makes energy: cloth that rests then jitters for ever.
-constexpr double fine = 1e-3;
+constexpr double fine = 0.01;   // where the search ends, as a share of the size of the triangle
 const Vec3 middle = Vec3::Constant(1.0 / 3);
 
 struct Corners {

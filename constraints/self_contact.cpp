@@ -24,7 +24,7 @@ constexpr double rope_sinks = 5e-5;  // m, under a load: a rope is thick, and is
 constexpr double stiffest = 1000;
 // A contact is eased while it bears less than this share of what it is stiff for. Springs that become stiff while they are
 // pressed, and soft before they are pressed again, make energy. And a contact that becomes softer bears less, so that those
-// beside it bear more and become stiffer. So loads that swing by less than this share change no stiffness.
+// beside it bear more and become stiffer. A load whose least is more than this share of its most changes no stiffness.
 constexpr double eased_below = 0.4;
 // It becomes softer only when it was eased for this time [s], and then goes on to where it bears this share. While the contact
 // bears its load that time runs back, this many times as fast. It begins full, so that what took an impact becomes softer

@@ -2,7 +2,6 @@
 // sharp comes through between the vertices.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
-#include <random>
 
 #include "mesh/triangles/generate.h"
 #include "solver/forces/face_contact_force.h"
@@ -194,41 +193,4 @@ TEST_CASE("faces give the same bits with 1, 2 and 7 threads", "[faces]") {
     REQUIRE_FALSE(cloth.constraints.faces().touching().empty());
     return cloth.state;
   });
-}
-
-TEST_CASE("where a triangle touches a body does not depend on where it touched before", "[faces]") {
-  constexpr double above = 1e-3;  // m: nearer than half the margin
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> number(-1, 1);
-  const auto some = [&](double size) {
-    return Vec3(size * Vec3(number(random), number(random), number(random)));
-  };
-  for (const double radius : {0.0, 0.03, 0.1, 0.3})  // m, of a ball; 0: the corner of a cube
-    for (int n = 0; n < 20; ++n) {
-      INFO("ball of " << radius << " m, triangle " << n);
-      VecX x = stacked({Vec3(-0.1, 0, -0.08), Vec3(0.12, 0, -0.07), Vec3(0.01, 0, 0.13)}) +
-               stacked({some(0.01), some(0.01), some(0.01)});
-      const Vec3 weights = (Vec3(1.2, 1.2, 1.2) + some(1)).normalized();
-      Constraints constraints;
-      constraints.add_faces({{{0, 2, 1}, 500}});
-      const Vec3 a = x.segment<3>(0), b = x.segment<3>(3), c = x.segment<3>(6);
-      const Vec3 upright = -(b - a).cross(c - a).normalized();
-      const Vec3 wanted = (weights[0] * a + weights[1] * b + weights[2] * c) / weights.sum();
-      const Vec3 tip = wanted - above * upright;
-      if (radius > 0)
-        constraints.add(Obstacle{.shape = Sphere{tip - radius * upright, radius}, .margin = margin});
-      else
-        constraints.add(Obstacle{
-            .shape = Box{tip - on_its_corner() * Vec3::Constant(0.05), Vec3::Constant(0.1), on_its_corner()},
-            .margin = margin});
-      const VecX still = VecX::Zero(9);
-      for (int before = 0; before < 5; ++before) {
-        const Vec3 shift = some(0.03);
-        for (const VecX& at : {VecX(x + stacked({shift, shift, shift})), x})
-          (void)constraints.begin_step(at, still, std::vector<double>(3, 0.01), 0, 0.01);
-        REQUIRE(constraints.faces().touching().size() == 1);
-        const FaceContact& contact = constraints.faces().touching()[0];
-        CHECK((contact.place - wanted).norm() < 0.003 * 0.15);  // m: of a triangle of that size
-      }
-    }
 }

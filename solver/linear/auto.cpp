@@ -30,7 +30,7 @@ struct Price {  // in iterations with block-ic0
 };
 constexpr Price ic0_price = {1, 8, 0};
 
-// An iteration with block-ic0 takes as long as the matrix has blocks. One with multigrid depends less on them.
+// The time of an iteration with block-ic0 grows with the number of blocks, that of one with multigrid grows less.
 Price multigrid_price(const BlockMatrix& A) {
   const double blocks_of_row = static_cast<double>(A.pattern().blocks()) / A.rows();
   return {0.7 + 10 / blocks_of_row, 6, 19};
