@@ -10,7 +10,7 @@
 //     k = kappa m / h^2,  1/m = sum w_k^2 / m_k     as stiff as the time step allows, whatever the mesh: a layer sinks
 //                                                   into the thickness by g h^2 / kappa, 33 um with h = 10 ms
 //   kappa is larger, up to a limit, where the load, or what arrives, would sink in by more than a share of r. It goes half
-//   of the way to what the load asks for in a step, in ratios, and falls only after a while in which less was asked for:
+//   of the way to what the load asks for in a step, in ratios, and falls only after a while in which much less was asked for:
 //   what shares a load would else take it by turns, and a pile would swing up and down for ever.
 //   Within a solve a contact is linear: it acts or not, and friction is a spring weakened to share (t_0 - k s). With such
 //   springs no solve goes too far, but where many contacts slide, each solve takes away only an eighth of the error. So what
@@ -98,7 +98,7 @@ struct SelfContact {
   double before = 0;              // f at the end of the last step [N]
   double load = 0;   // f there, or in the last solve of the step where the guard then stopped it [N]
   double stiff = 0;  // k of the last step [N/m]; 0: there was no contact
-  // For how long the load has asked for less [s]; of a new contact, for ever.
+  // For how long the load has asked for much less [s]; of a new contact, for ever.
   double eased = std::numeric_limits<double>::infinity();
   Vec3 hold = Vec3::Zero();    // t_0 [N]
   bool active = false;         // whether it acts in the next solve

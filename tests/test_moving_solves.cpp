@@ -6,6 +6,7 @@
 #include "solver/forces/woven.h"
 #include "tests/integrators.h"
 #include "tests/shapes.h"
+#include "tests/sheets.h"
 
 using namespace drape;
 using namespace drape::test;
@@ -20,7 +21,9 @@ struct MovingSheet {
   State state;
 
   MovingSheet(int side, bool on_ball, bool as_woven)
-      : mesh(grid(side, side, 1, 1)), system(lumped_mass(mesh, 0.2)), state(at_rest(mesh)) {
+      : MovingSheet(grid(side, side, 1, 1), side, on_ball, as_woven) {}
+  MovingSheet(TriangleMesh sheet, int side, bool on_ball, bool as_woven)
+      : mesh(std::move(sheet)), system(lumped_mass(mesh, 0.2)), state(at_rest(mesh)) {
     const Fabric fabric{.area_density = 0.2, .stretch = 1000, .bend = 1e-5};
     system.add(as_woven ? woven(mesh, mesh, fabric) : noh_jung(mesh, fabric));
     system.add(Gravity{});
@@ -125,6 +128,48 @@ TEST_CASE("auto costs little more than the better of its methods, and tells whic
       if (scene.side != 60) CHECK(by_auto.by_multigrid == 0);
     }
   CHECK(lost_trials > 0);
+}
+
+namespace {
+
+// Solves every system several times, as the rounds of contact do.
+class RepeatedSolver final : public LinearSolver {
+ public:
+  RepeatedSolver(int times, Cost& cost) : times_(times), solver_("auto", cost) {}
+  std::string_view name() const override { return solver_.name(); }
+  LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
+                     VecX& dv) override {
+    const VecX guess = dv;
+    LinearReport report;
+    for (int k = 0; k < times_; ++k) report = solver_.solve(A, b, filter, options, dv = guess);
+    return report;
+  }
+
+ private:
+  int times_;
+  CountingSolver solver_;
+};
+
+}  // namespace
+
+// Woven cloth has 14 blocks in a row of the upper triangle on an irregular mesh, and 9 on a grid.
+TEST_CASE("auto takes multigrid earlier where a matrix has many blocks or several solves", "[solvers]") {
+  const auto solves_by_multigrid = [](bool irregular, int times, int side) {
+    const auto flat = [](double, double) { return 0.0; };
+    MovingSheet sheet(irregular ? bent(side, Kind::irregular, 1, flat) : grid(side, side, 1, 1), side, false,
+                      true);
+    Cost cost;
+    ImplicitEuler stepper(sheet.system, sheet.constraints, std::make_unique<RepeatedSolver>(times, cost),
+                          {.tolerance = 1e-4});
+    for (int k = 0; k < 20; ++k) REQUIRE(stepper.advance(sheet.state, 0.01).done);
+    return cost.by_multigrid;
+  };
+  for (const bool irregular : {false, true}) {
+    INFO("irregular " << irregular);
+    CHECK(solves_by_multigrid(irregular, 4, 20) == 0);
+    for (const int side : {32, 36, 40}) CHECK(solves_by_multigrid(irregular, 4, side) > 40);
+  }
+  for (const int side : {44, 52}) CHECK(solves_by_multigrid(true, 1, side) > 8);
 }
 
 TEST_CASE("multigrid takes few iterations in every step of a moving sheet, whatever its size", "[solvers]") {

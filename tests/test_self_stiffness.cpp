@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "solver/assembly/assembly.h"
-#include "tests/integrators.h"
 #include "tests/sheets.h"
 
 using namespace drape;
