@@ -1,13 +1,15 @@
-// Incomplete Cholesky on 3x3 blocks without fill: P^-1 = L D L^T, where L has the pattern of A and is kept in
-// float.
+// Incomplete Cholesky on 3x3 blocks without fill: P^-1 = L D L^T, where L has the blocks of A, those of the overlay
+// among them, and is kept in float.
 //   A_jk <- A_jk - A_ij^T D_i^-1 A_ik for every i < j <= k whose block (j, k) is in the pattern, D_i = A_ii;
 //   L_ji = A_ij^T D_i^-1.                                                    [Meijerink & van der Vorst 1977]
 // Rows are eliminated in chunks of which several go at the same time (elimination_order.h); the number of threads
 // does not change a bit.
-// Where a pivot is not positive, the matrix is shifted to A + a diag(A), and a grows until the factor exists
-// [Manteuffel 1980]; the report says so.
+// Blocks of the overlay are stiff springs between far parts of the cloth, and what the factor leaves out of the fill
+// between them would make it indefinite. So the diagonal block of a row gets a tenth of |A_jk|, summed over the overlay's
+// blocks of the row; these are a sign times a positive semidefinite block.
+// Where a pivot is not positive all the same, the matrix is shifted to A + a diag(A), and a grows until the factor
+// exists [Manteuffel 1980]; the report says so.
 #include <atomic>
-#include <optional>
 #include <vector>
 
 #include "solver/linear/elimination_order.h"
@@ -48,14 +50,16 @@ class BlockIc0 final : public Preconditioner {
   std::string_view name() const override { return "block-ic0"; }
 
   bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) override {
-    if (serial_ != A.pattern().serial()) {
-      shift_ = 0;
-      order_.emplace(A.pattern());
+    if (pattern_ != A.pattern().serial()) shift_ = 0;
+    pattern_ = A.pattern().serial();
+    if (serial_ != A.serial()) {
+      order_.build(A);
       ++report.analyses;
     }
-    serial_ = A.pattern().serial();
-    // A new matrix may need less than the last one; what is held or rubbed changes little.
-    if (fill_ != A.fill()) shift_ = shift_ > first_shift ? shift_ / 4 : 0;
+    serial_ = A.serial();
+    // A new matrix may need less than those before, but to try that with each would make many factors for nothing.
+    // What is held or rubbed changes little.
+    if (fill_ != A.fill() && ++shifted_ >= 8) lower_shift();
     fill_ = A.fill();
     return build(A, filter, report);
   }
@@ -70,39 +74,46 @@ class BlockIc0 final : public Preconditioner {
   void apply(const VecX& r, VecX& s) override {
     const double size = r.cwiseAbs().maxCoeff();  // scales r so that floats neither vanish nor overflow
     if (size == 0) return s.setZero(), void();
-    order_->for_chunks(false, [&](int begin, int end) {  // L y = r
+    order_.for_chunks(false, [&](int begin, int end) {  // L y = r
       for (int j = begin; j < end; ++j) {
-        const double* rj = r.data() + 3 * static_cast<std::ptrdiff_t>(order_->row(j));
+        const double* rj = r.data() + 3 * static_cast<std::ptrdiff_t>(order_.row(j));
         FourFloats sum = __builtin_convertvector((Four{rj[0], rj[1], rj[2], 0} / size), FourFloats);
-        order_->below().in_column(j, [&](int i, int k) { sum -= times(lower(k), floats(y(i))); });
+        order_.below().in_column(j, [&](int i, int k) { sum -= times(lower(k), floats(y(i))); });
         set_y(j, sum);
       }
     });
-    order_->for_chunks(true, [&](int begin, int end) {  // L^T s = D^-1 y
+    order_.for_chunks(true, [&](int begin, int end) {  // L^T s = D^-1 y
       for (int i = end - 1; i >= begin; --i) {
-        const int first = order_->start(i);
+        const int first = order_.start(i);
         FourFloats p = {0, 0, 0, 0}, q = p, t = p;
-        for (int k = order_->start(i + 1) - 1; k > first; --k) {  // the one that was solved last comes last
-          const FourFloats yj = floats(y(order_->blocks()[k].column));
+        for (int k = order_.start(i + 1) - 1; k > first; --k) {  // the one that was solved last comes last
+          const FourFloats yj = floats(y(order_.blocks()[k].column));
           p += floats(lower(k)) * yj;
           q += floats(lower(k) + 3) * yj;
           t += floats(lower(k) + 6) * yj;
         }
         set_y(i, times(lower(first), floats(y(i))) - sums(p, q, t));
-        double* si = s.data() + 3 * static_cast<std::ptrdiff_t>(order_->row(i));
+        double* si = s.data() + 3 * static_cast<std::ptrdiff_t>(order_.row(i));
         for (int k = 0; k < 3; ++k) si[k] = size * static_cast<double>(y(i)[k]);
       }
     });
   }
 
  private:
-  static constexpr double first_shift = 1e-3, largest_shift = 10;
+  static constexpr double first_shift = 1e-3, largest_shift = 10, far_share = 0.1;
 
-  void raise_shift() { shift_ = shift_ == 0 ? first_shift : 4 * shift_; }
+  void raise_shift() {
+    shift_ = shift_ == 0 ? first_shift : 4 * shift_;
+    shifted_ = 0;
+  }
+  void lower_shift() {
+    shift_ = shift_ > first_shift ? shift_ / 4 : 0;
+    shifted_ = 0;
+  }
 
   bool build(const BlockMatrix& A, const Filter& filter, LinearReport& report) {
     const ProjectedBlocks projected(A, filter, entry_of_row_);
-    const std::size_t blocks = order_->blocks().size();
+    const std::size_t blocks = order_.blocks().size();
     values_.resize(blocks);
     factors_.resize(blocks);
     lower_.resize(9 * blocks + 1);  // one more, so that the last column can be read four wide
@@ -128,7 +139,7 @@ class BlockIc0 final : public Preconditioner {
   // False when a pivot is not positive.
   bool factorise(const BlockMatrix& A, const ProjectedBlocks& projected) {
     std::atomic<bool> sound = true;
-    order_->for_chunks(false, [&](int begin, int end) {
+    order_.for_chunks(false, [&](int begin, int end) {
       for (int j = begin; j < end && sound; ++j)
         if (!factorise_row(j, A, projected)) sound = false;
     });
@@ -136,10 +147,10 @@ class BlockIc0 final : public Preconditioner {
   }
 
   bool factorise_row(int j, const BlockMatrix& A, const ProjectedBlocks& projected) {
-    const int first = order_->start(j), end = order_->start(j + 1);
+    const int first = order_.start(j), end = order_.start(j + 1);
     for (int k = first; k < end; ++k) {
-      const EliminationOrder::Block& block = order_->blocks()[k];
-      const int row = order_->row(j), column = order_->row(block.column);
+      const EliminationOrder::Block& block = order_.blocks()[k];
+      const int row = order_.row(j), column = order_.row(block.column);
       Mat3 held;
       const double* b = A.block(block.slot);
       if (!projected.free(row) || !projected.free(column)) {
@@ -151,9 +162,10 @@ class BlockIc0 final : public Preconditioner {
     }
     const Mat3 original = narrow(values_[first]);
     for (int e = 0; e < 3; ++e) values_[first].column[e][e] *= 1 + shift_;
+    if (!A.overlay().empty()) add_far(j, A);
     for (int k = first; k < end; ++k) {
       Four c0 = values_[k].column[0], c1 = values_[k].column[1], c2 = values_[k].column[2];
-      for (const EliminationOrder::Update& u : order_->updates(k)) {
+      for (const EliminationOrder::Update& u : order_.updates(k)) {
         const Four *factor = factors_[u.factor].column, *from = values_[u.from].column;
         const Four f0 = factor[0], f1 = factor[1], f2 = factor[2];
         c0 -= f0 * from[0][0] + f1 * from[0][1] + f2 * from[0][2];
@@ -177,13 +189,26 @@ class BlockIc0 final : public Preconditioner {
     return true;
   }
 
+  // Adds the share of the overlay's blocks to the diagonal of row j.
+  void add_far(int j, const BlockMatrix& A) {
+    Mat3 sum = Mat3::Zero();
+    order_.far().in_column(j, [&](int, int k) {
+      const auto block = A.at(order_.blocks()[k].slot);
+      sum += block.trace() < 0 ? Mat3(-block) : Mat3(block);
+    });
+    sum = 0.5 * far_share * (sum + sum.transpose()).eval();
+    WideBlock& diagonal = values_[order_.start(j)];
+    for (int c = 0; c < 3; ++c) diagonal.column[c] += Four{sum(0, c), sum(1, c), sum(2, c), 0};
+  }
+
   void store(int k, const Mat3& b) {
     Eigen::Map<Eigen::Matrix3f>(lower_.data() + 9 * static_cast<std::ptrdiff_t>(k)) = b.cast<float>();
   }
 
-  std::uint64_t serial_ = 0, fill_ = 0;
-  std::optional<EliminationOrder> order_;  // of the pattern
+  std::uint64_t pattern_ = 0, serial_ = 0, fill_ = 0;  // of the base, of the whole matrix, and of its numbers
+  EliminationOrder order_;
   double shift_ = 0;
+  int shifted_ = 0;                // for how many matrices the shift has stood
   std::vector<int> entry_of_row_;  // scratch of ProjectedBlocks
   std::vector<WideBlock> values_,
       factors_;               // scratch of the factorisation: A_jk, and L_kj beside the diagonal

@@ -16,18 +16,19 @@ struct Mirror {
   // each(row, f(column, place)) calls f for every entry of the row.
   template <class Each>
   void build(int rows, int columns, const Each& each) {
-    start.assign(static_cast<std::size_t>(columns) + 1, 0);
-    for (int r = 0; r < rows; ++r) each(r, [&](int c, int) { ++start[c + 1]; });
-    for (std::size_t c = 0; c < static_cast<std::size_t>(columns); ++c) start[c + 1] += start[c];
+    start.assign(static_cast<std::size_t>(columns) + 2, 0);
+    for (int r = 0; r < rows; ++r) each(r, [&](int c, int) { ++start[c + 2]; });
+    for (std::size_t c = 1; c < start.size(); ++c) start[c] += start[c - 1];
     row.resize(static_cast<std::size_t>(start.back()));
     place.resize(row.size());
-    std::vector<int> next(start.begin(), start.end() - 1);
     for (int r = 0; r < rows; ++r)
       each(r, [&](int c, int p) {
-        const auto to = static_cast<std::size_t>(next[c]++);
+        const auto to =
+            static_cast<std::size_t>(start[c + 1]++);  // where column c goes on, in the end its end
         row[to] = r;
         place[to] = p;
       });
+    start.pop_back();
   }
 
   template <class F>  // f(row, place)

@@ -91,7 +91,7 @@ class Petsc final : public LinearSolver {
         report.reason = StopReason::indefinite;
     if (report.reason != StopReason::converged) return;
     const bool same = serial_ == A.serial();
-    if (!same) below_ = below_diagonal(A);
+    if (!same) find_below_diagonal(A, below_);
     start_.assign(1, 0);
     column_.clear();
     block_.clear();

@@ -53,15 +53,13 @@ inline Mirror below_diagonal(const BlockPattern& pattern) {
   return below;
 }
 
-// The same for the whole matrix, with the overlay.
-inline Mirror below_diagonal(const BlockMatrix& A) {
-  Mirror below;
+// The same for the whole matrix, with the overlay; memory of `below` is used again.
+inline void find_below_diagonal(const BlockMatrix& A, Mirror& below) {
   below.build(A.rows(), A.rows(), [&](int r, const auto& f) {
     A.each(r, [&](int c, int slot) {
       if (c != r) f(c, slot);
     });
   });
-  return below;
 }
 
 // The projected base of the matrix with both its halves, row by row, from which a preconditioner is made.
