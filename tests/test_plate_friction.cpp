@@ -296,7 +296,8 @@ TEST_CASE("a sheet whose threads rub makes no energy, and comes to rest", "[wove
 
 namespace {
 
-// Fails the first `failures` solves. Its solver remembers nothing of them: block-ic0 would keep a shift.
+// Fails the first `failures` solves. Its solver remembers nothing of them; block-ic0 counts for how many
+// matrices its shift has stood.
 class Failing final : public LinearSolver {
  public:
   explicit Failing(int failures) : left_(failures) {}

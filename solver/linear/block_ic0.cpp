@@ -6,7 +6,8 @@
 // does not change a bit.
 // Blocks of the overlay are stiff springs between far parts of the cloth, and what the factor leaves out of the fill
 // between them would make it indefinite. So the diagonal block of a row gets a tenth of |A_jk|, summed over the overlay's
-// blocks of the row; these are a sign times a positive semidefinite block.
+// blocks of the row. A contact gives a sign times a positive semidefinite block; where several contacts share a block, the
+// sign of its trace is taken, and what that misses is left to the shift. What is held does not count here.
 // Where a pivot is not positive all the same, the matrix is shifted to A + a diag(A), and a grows until the factor
 // exists [Manteuffel 1980]; the report says so.
 #include <atomic>

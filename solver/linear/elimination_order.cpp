@@ -13,8 +13,8 @@ void EliminationOrder::build(const BlockMatrix& A) {
 void EliminationOrder::order_rows(const BlockMatrix& A) {
   const int chunk_rows = std::max(A.pattern().chunk_rows(), (A.rows() + most_chunks - 1) / most_chunks);
   const int chunks = (A.rows() + chunk_rows - 1) / chunk_rows;
-  std::array<unsigned, most_chunks> coupled =
-      {};  // bit k of coupled[l]: chunks k <= l have a block in common
+  // Bit k of coupled[l], k <= l, says whether a block couples the chunks k and l.
+  std::array<unsigned, most_chunks> coupled = {};
   for (int r = 0; r < A.rows(); ++r)
     A.each(r, [&](int c, int) { coupled[c / chunk_rows] |= 1u << (r / chunk_rows); });
   std::array<int, most_chunks> colour_of = {};
@@ -47,6 +47,7 @@ void EliminationOrder::order_rows(const BlockMatrix& A) {
 void EliminationOrder::list_blocks(const BlockMatrix& A) {
   find_below_diagonal(A, left_);
   block_.clear();
+  block_.reserve(static_cast<std::size_t>(A.pattern().blocks() + A.overlay().blocks()));
   start_.assign(1, 0);
   for (int i = 0; i < rows(); ++i) {
     const auto first = static_cast<std::ptrdiff_t>(block_.size());

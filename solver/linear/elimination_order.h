@@ -3,7 +3,7 @@
 //   Rows are cut into at most eight chunks, at least as long as the bandwidth of the base. Each chunk gets the first
 //   colour that no earlier chunk has to which a block couples it, and rows come in the order of their chunks' colours.
 //   Two chunks of one colour have no coupling, so they are eliminated at the same time. The base alone takes two
-//   colours, those of the even and of the odd chunks; where far parts of a cloth touch each other it may take more.
+//   colours at most, those of the even and of the odd chunks; where far parts of a cloth touch each other it may take more.
 //   (Every cut costs iterations: a hung sheet of 10 k vertices took 120 with one chunk, 125 with 8, 153 with 40.)
 #pragma once
 

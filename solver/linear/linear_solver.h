@@ -38,7 +38,7 @@ struct LinearReport {
   StopReason reason = StopReason::converged;
   double setup_ms = 0;  // time of projection, preconditioner or factor [ms]; what is reused takes none
   double solve_ms = 0;  // time of everything else [ms]
-  int analyses = 0;     // how often the pattern was analysed; 0 while it does not change
+  int analyses = 0;     // how often the blocks were analysed; 0 while they do not change
   double shift = 0;  // incomplete Cholesky was built for A + shift diag(A), because it breaks down for less
   std::string
       note;  // what else the user should know: slow kernels of a library, a preconditioner that failed

@@ -38,7 +38,7 @@ class Preconditioner {
 
 // The inverses of the 3x3 diagonal blocks.                                    [Baraff & Witkin 1998, 5.3]
 std::unique_ptr<Preconditioner> make_block_jacobi();
-// Incomplete Cholesky on the blocks of the pattern, without fill.         [Meijerink & van der Vorst 1977]
+// Incomplete Cholesky on the blocks of base and overlay, without fill.        [Meijerink & van der Vorst 1977]
 std::unique_ptr<Preconditioner> make_block_ic0();
 // A V-cycle of smoothed aggregation.            [Vanek, Mandel & Brezina 1996; Tamstorf et al. 2015]
 std::unique_ptr<Preconditioner> make_multigrid();
