@@ -249,7 +249,7 @@ TEST_CASE("a factor is the same whatever contacts there were before", "[solvers]
     REQUIRE(fresh->prepare(pile.A, Filter(), report));
     REQUIRE(kept->prepare(pile.A, Filter(), report));
     CHECK(report.analyses == 2);  // one of each, and none for what is as it was
-    CHECK(report.shift == 0);  // would be kept for a while
+    CHECK(report.shift == 0);     // would be kept for a while
     kept->apply(r, s);
     fresh->apply(r, expected);
     CHECK(s == expected);
