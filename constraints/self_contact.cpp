@@ -55,6 +55,7 @@ SelfContacts::SelfContacts(const SelfContacts& other) : SelfContacts() {
   add(other.faces_);
   add(other.segments_);
   pairs_ = other.pairs_;
+  sewn_ = other.sewn_;
   pass_ = other.pass_;
 }
 SelfContacts& SelfContacts::operator=(const SelfContacts& other) { return *this = SelfContacts(other); }
@@ -64,6 +65,7 @@ SelfContacts::~SelfContacts() = default;
 
 void SelfContacts::prepare(const StepMotion& step, const std::vector<MovingBody>& bodies) {
   if (stale_) set_particles(step);
+  sewn_.resize(thickness_.size(), 0);
   pass_.resize(thickness_.size(), 0);
   look_again_ = look_again_ || stale_;
   stale_ = false;
@@ -111,9 +113,17 @@ bool SelfContacts::is_on_body(const Encounter& e) const {
   return e.v[0] >= cloth_particles() || e.v[3] >= cloth_particles();
 }
 
-// Whether both sides are let pass each other: they are of one tangle, or let_pass() names a vertex of each. A body may
+bool SelfContacts::have_on_both_sides(const std::vector<char>& mark, const Encounter& e) {
+  const auto has = [&](std::size_t from, std::size_t to) {
+    return std::any_of(e.v.begin() + from, e.v.begin() + to, [&](int v) { return mark[v] != 0; });
+  };
+  const std::size_t cut = e.edges ? 2 : 1;
+  return has(0, cut) && has(cut, 4);
+}
+
+// Whether both sides are let pass each other: they are of one tangle, or sew() lets a vertex of each pass. A body may
 // pass where it pinches the cloth, or where the cloth is held.
-bool SelfContacts::exempt(const Encounter& e) const {
+bool SelfContacts::may_pass(const Encounter& e) const {
   if (is_on_body(e))
     return std::any_of(e.v.begin(), e.v.end(), [&](int v) {
       return v < cloth_particles() && (surfaces_->is_pinched(v) || surfaces_->step().is_held(v));
@@ -122,11 +132,7 @@ bool SelfContacts::exempt(const Encounter& e) const {
   if (tangle >= 0 &&
       std::all_of(e.v.begin(), e.v.end(), [&](int v) { return tangles_->tangle(v) == tangle; }))
     return true;
-  const auto passes = [&](std::size_t from, std::size_t to) {
-    return std::any_of(e.v.begin() + from, e.v.begin() + to, [&](int v) { return pass_[v] != 0; });
-  };
-  const std::size_t cut = e.edges ? 2 : 1;
-  return passes(0, cut) && passes(cut, 4);
+  return have_on_both_sides(pass_, e);
 }
 
 // So that neither what the contact bears nor what arrives sinks in by more than a share of the thickness. What cannot give

@@ -168,8 +168,10 @@ class SelfContacts {
   void renumber(const std::vector<int>& particle_of);
   // The two sides of a cut begin at the same place: they touch, and do not push each other before they are apart.
   void part(const Parting& parting);
-  // These particles may pass each other and what is beside them, such as those that are being sewn together.
-  void let_pass(const std::vector<int>& particles);
+  // The particles of each of these pairs are being sewn together, in place of those named before; they are at x now. What is
+  // beside such particles is not pushed apart, so that they can meet. Where both of a pair are at one place already, so that
+  // no side can be told, what is beside them may pass, too.
+  void sew(const std::vector<std::pair<int, int>>& pairs, const VecX& x);
   bool any() const { return !faces_.empty() || !segments_.empty(); }
   bool touches_bodies() const {
     return std::any_of(touching_.begin(), touching_.end(), [](const SelfContact& c) { return c.body >= 0; });
@@ -238,7 +240,9 @@ class SelfContacts {
   void shorten(const StepMotion& step, const VecX& x_new, bool in_common);
   double share_of_way(double slope, double curvature, const VecX& x_new) const;
   bool is_on_body(const Encounter& e) const;
-  bool exempt(const Encounter& e) const;
+  bool may_pass(const Encounter& e) const;
+  bool is_sewn(const Encounter& e) const { return have_on_both_sides(sewn_, e); }
+  static bool have_on_both_sides(const std::vector<char>& mark, const Encounter& e);
   bool has_contact(const Encounter& e) const;
   // The pairs that are not surely apart all the way from x to x_new, in order.
   std::vector<internal::Meeting>& meetings(const VecX& x, const VecX& x_new);
@@ -284,7 +288,7 @@ class SelfContacts {
   std::vector<int> piece_, sheet_;               // the connected piece, and the sheet, that it belongs to
   std::vector<char> stopped_;                    // is_stopped(), by particle of the cloth
   std::vector<int> stops_;                       // how often its way was shortened in this step
-  std::vector<char> pass_;                       // let_pass()
+  std::vector<char> sewn_, pass_;                // sew(): all of its particles, and those that may pass
   VecX rest_;                                    // places of the cloth when the faces were added [m]
   std::vector<char> tangled_;                    // whether it was in a tangle there, or is beside a cut
   std::vector<SelfContact> touching_, last_;     // of this step and of the last one, sorted

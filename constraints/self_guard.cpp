@@ -32,7 +32,7 @@ std::vector<Meeting>& SelfContacts::meetings(const VecX& x, const VecX& x_new) {
   const double floor = floor_of(x, x_new);
   const auto look = [&](const Encounter& e, const FourPoints& start, const FourPoints& end,
                         const Vec3& likely) {
-    if (exempt(e)) return Approach{};
+    if (may_pass(e)) return Approach{};
     const Approach found = approach_from_within(e.edges, start, end, floor, likely);
     if (found.touching)
       std::atomic_ref(is_on_body(e) ? touched_body_ : touched_).store(1, std::memory_order_relaxed);

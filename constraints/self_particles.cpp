@@ -92,12 +92,16 @@ void SelfContacts::part(const Parting& parting) {
   stale_ = true;
 }
 
-void SelfContacts::let_pass(const std::vector<int>& particles) {
-  pass_.clear();
-  for (int particle : particles) {
-    if (static_cast<std::size_t>(particle) >= pass_.size())
-      pass_.resize(static_cast<std::size_t>(particle) + 1, 0);
-    pass_[particle] = 1;
+void SelfContacts::sew(const std::vector<std::pair<int, int>>& pairs, const VecX& x) {
+  constexpr double at_one_place = 1e-6;  // m
+  sewn_.assign(static_cast<std::size_t>(x.size() / 3), 0);
+  pass_ = sewn_;
+  for (const auto& [a, b] : pairs) {
+    const bool meet = (x.segment<3>(3 * a) - x.segment<3>(3 * b)).norm() < at_one_place;
+    for (int particle : {a, b}) {
+      sewn_[particle] = 1;
+      if (meet) pass_[particle] = 1;
+    }
   }
 }
 

@@ -163,7 +163,8 @@ std::vector<Meeting>& SelfContacts::near_ones(const StepMotion& step, Encounters
       edges ? Encounters::Kind::edges : Encounters::Kind::vertices, step.x, ahead_, reach_of_all,
       [&](const Encounter& e) { return edges ? farthest_of_edges(e, reach_of_all) : reach_of_all; },
       [&](const Encounter& e, const FourPoints& start, const FourPoints& end, const Vec3& likely) {
-        if (exempt(e) || std::all_of(e.v.begin(), e.v.end(), [&](int v) { return step.is_held(v); }))
+        if (may_pass(e) || is_sewn(e) ||
+            std::all_of(e.v.begin(), e.v.end(), [&](int v) { return step.is_held(v); }))
           return Approach{};
         const double most = ropes_->is_rope(e) ? thickness_of(e) : thickest;
         const double reach = reach_about(most), more = reach - most;

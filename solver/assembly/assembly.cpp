@@ -298,19 +298,19 @@ void Assembly::make_system(std::vector<double> masses, Forces forces) {
   system->add(std::move(forces));
   if (!constraints->faces().all().empty()) system->add(face_contact_force(*constraints));
   if (constraints->self().any()) {
-    let_stitches_pass();
+    sew();
     system->add(self_contact_force(*constraints));
   }
 }
 
-// What is being sewn together has to come together.
-void Assembly::let_stitches_pass() {
-  std::vector<int> stitched;
+// Tells the constraints what is being sewn together.
+void Assembly::sew() {
+  std::vector<std::pair<int, int>> stitched;
   for (const Cloth& cloth : cloths)
     for (const Cloth::Stitched& open : cloth.seams)
       for (const auto& [a, b] : open.seam.pairs)
-        for (int vertex : {a, b}) stitched.push_back(cloth.embedding.particle(vertex));
-  constraints->let_pass(stitched);
+        stitched.emplace_back(cloth.embedding.particle(a), cloth.embedding.particle(b));
+  constraints->sew(stitched, state.x);
 }
 
 void Assembly::use(MakeIntegrator make) {

@@ -82,7 +82,7 @@ struct Assembly {
   void connect(Cloth& cloth, Forces& forces) const;
   void make_system(std::vector<double> masses, Forces forces);
   bool merge_closed_seams();
-  void let_stitches_pass();
+  void sew();
   int tear_cloths();  // returns how many edges it has cut
   void part_particles(const std::vector<std::vector<std::pair<int, int>>>& cuts);  // edges to cut, by cloth
   State merged_state(const std::vector<double>& masses, const std::vector<int>& number) const;

@@ -37,14 +37,15 @@ bool Assembly::merge_closed_seams() {
   std::iota(number.begin(), number.end(), 0);
   bool any = false;
   for (Cloth& cloth : cloths) {
-    std::vector<const OpenSeam*> closed;
-    for (const Cloth::Stitched& open : cloth.seams)
-      if (open.seam.closed(cloth.embedding, state)) closed.push_back(&open.seam);
+    std::vector<std::pair<int, int>> closed;
+    for (Cloth::Stitched& open : cloth.seams) {
+      const auto pairs = open.seam.take_closed(cloth.embedding, state);
+      closed.insert(closed.end(), pairs.begin(), pairs.end());
+    }
+    std::erase_if(cloth.seams, [](const Cloth::Stitched& open) { return open.seam.pairs.empty(); });
     if (closed.empty()) continue;
     any = true;
     number = merged(number, closed, cloth.embedding);
-    std::erase_if(cloth.seams,
-                  [&](const Cloth::Stitched& open) { return open.seam.closed(cloth.embedding, state); });
   }
   if (!any) return false;
   std::vector<double> masses(1 + static_cast<std::size_t>(*std::max_element(number.begin(), number.end())),

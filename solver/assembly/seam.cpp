@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "mesh/base/errors.h"
 #include "mesh/pattern/panels.h"
@@ -68,6 +69,11 @@ OpenSeam open_seam(const SeamPlan& plan, const Fabric& fabric, const TriangleMes
   return seam;
 }
 
+double distance_of(const std::pair<int, int>& pair, const Embedding& embedding, const VecX& x) {
+  const int i = embedding.particle(pair.first), j = embedding.particle(pair.second);
+  return (x.segment<3>(3 * i) - x.segment<3>(3 * j)).norm();
+}
+
 }  // namespace
 
 std::vector<SeamPlan> declared_seam_plans(const TriangleMesh& mesh, double close) {
@@ -80,16 +86,30 @@ std::vector<SeamPlan> declared_seam_plans(const TriangleMesh& mesh, double close
 
 double OpenSeam::gap(const Embedding& embedding, const VecX& x) const {
   double widest = 0;
-  for (const auto& [a, b] : pairs) {
-    const double wide =
-        (x.segment<3>(3 * embedding.particle(a)) - x.segment<3>(3 * embedding.particle(b))).norm();
+  for (const auto& pair : pairs) {
+    const double wide = distance_of(pair, embedding, x);
     if (!(wide <= widest)) widest = wide;  // a gap that is not a number does not count as closed
   }
   return widest;
 }
 
-bool OpenSeam::closed(const Embedding& embedding, const State& state) const {
-  return merge && state.time >= close * (1 - 1e-9) && gap(embedding, state.x) <= near_enough * edge;
+std::vector<std::pair<int, int>> OpenSeam::take_closed(const Embedding& embedding, const State& state) {
+  const double near = near_enough * edge;
+  if (!merge) return {};
+  if (state.time >= close * (1 - 1e-9) && gap(embedding, state.x) <= near) return std::exchange(pairs, {});
+  std::vector<std::pair<int, int>> closed;
+  std::size_t open = 0;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (apart[k] < closed_already * edge && distance_of(pairs[k], embedding, state.x) <= near) {
+      closed.push_back(pairs[k]);
+      continue;
+    }
+    pairs[open] = pairs[k];
+    apart[open++] = apart[k];
+  }
+  pairs.resize(open);
+  apart.resize(open);
+  return closed;
 }
 
 std::vector<OpenSeam> open_seams(const std::vector<SeamPlan>& plans, const Fabric& fabric,
@@ -121,7 +141,7 @@ void close_until(Force& force, const OpenSeam& seam, double t) {
   static_cast<SeamForce&>(force).change_rest([&](SeamSpring::Rest& r) { r.L = open * r.L_0; });
 }
 
-std::vector<int> merged(const std::vector<int>& number, const std::vector<const OpenSeam*>& seams,
+std::vector<int> merged(const std::vector<int>& number, const std::vector<std::pair<int, int>>& pairs,
                         const Embedding& embedding) {
   std::vector<int> lower(number.size());  // union-find among the numbers, towards the lowest
   std::iota(lower.begin(), lower.end(), 0);
@@ -130,11 +150,10 @@ std::vector<int> merged(const std::vector<int>& number, const std::vector<const 
     return i;
   };
   const auto root_of = [&](int vertex) { return root(number[embedding.particle(vertex)]); };
-  for (const OpenSeam* seam : seams)
-    for (const auto& [a, b] : seam->pairs) {
-      const auto [low, high] = std::minmax({root_of(a), root_of(b)});
-      lower[high] = low;
-    }
+  for (const auto& [a, b] : pairs) {
+    const auto [low, high] = std::minmax({root_of(a), root_of(b)});
+    lower[high] = low;
+  }
   const int before = number.empty() ? 0 : 1 + *std::max_element(number.begin(), number.end());
   std::vector<int> again(lower.size()), result = number;
   int count = 0;

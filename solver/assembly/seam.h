@@ -2,7 +2,8 @@
 //   An open seam pulls the two vertices of each of its pairs together (solver/forces/seam_spring.h). Once its
 //   time is over and no pair is farther apart than `near_enough` of the length of the edges there, the two
 //   particles of each pair become one: mass and momentum are added, and the forces of the cloth are made
-//   anew, across the seam as well. The Assembly merges the particles (solver/assembly/assembly.h).
+//   anew, across the seam as well. The Assembly merges the particles (solver/assembly/assembly.h). A pair that
+//   begins nearer than `closed_already` of these edges has nothing to close, and becomes one in the first step.
 #pragma once
 
 #include <memory>
@@ -44,11 +45,12 @@ struct OpenSeam {
   bool merge = true;
 
   double gap(const Embedding& embedding, const VecX& x) const;  // of the pair that is farthest apart [m]
-  // True when the seam may be merged: its time is over, and its pairs have met.
-  bool closed(const Embedding& embedding, const State& state) const;
+  // Takes out the pairs that may become one: all of them when its time is over and they have met, else those that began
+  // closed.
+  std::vector<std::pair<int, int>> take_closed(const Embedding& embedding, const State& state);
 };
 
-inline constexpr double near_enough = 0.1;
+inline constexpr double near_enough = 0.1, closed_already = 0.01;
 
 // Opens the seams of a mesh that stands where it starts; `rest` is as in solver/forces/noh_jung.h. Throws
 // InputError when a pair names a vertex that is not there, or when a time or a stiffness makes no sense.
@@ -60,9 +62,9 @@ std::unique_ptr<Force> stitches(const OpenSeam& seam, const Embedding& embedding
 // Moves a force that stitches() made on to the time t [s].
 void close_until(Force& force, const OpenSeam& seam, double t);
 
-// number[i] is what particle i has become already. Returns what it becomes when the pairs of these seams
+// number[i] is what particle i has become already. Returns what it becomes when these pairs of vertices
 // become one, too, numbered anew in the same order.
-std::vector<int> merged(const std::vector<int>& number, const std::vector<const OpenSeam*>& seams,
+std::vector<int> merged(const std::vector<int>& number, const std::vector<std::pair<int, int>>& pairs,
                         const Embedding& embedding);
 
 }  // namespace drape
