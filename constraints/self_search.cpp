@@ -172,9 +172,10 @@ std::vector<Meeting>& SelfContacts::near_ones(const StepMotion& step, Encounters
         if (near.apart) return near;
         const double own = thickness_of(e);
         if (own < most) near = approach(e.edges, start, end, own + more);
-        near.until = approach_from_within(e.edges, start, end, 0.1 * own).until;  // below 1: they meet
         const auto& w = near.last.weights;
         near.apart = near.apart || (e.edges && !(inside(w[0]) && inside(w[2])));
+        if (!near.apart)  // below 1: they meet
+          near.until = approach_from_within(e.edges, start, end, 0.1 * own, near.last.normal).until;
         return near;
       });
 }
