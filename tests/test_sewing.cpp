@@ -5,8 +5,10 @@
 #include <numeric>
 
 #include "mesh/triangles/topology.h"
+#include "solver/assembly/assembly.h"
 #include "tests/garment.h"
 #include "tests/same_bits.h"
+#include "tests/tearing.h"
 
 using namespace drape;
 using namespace drape::app;
@@ -197,6 +199,23 @@ TEST_CASE("a seam that is held apart is not merged by force", "[sewing]") {
   advance(s, 0.5);
   CHECK(s.cloths[0].seams.size() == 2);
   CHECK(tailor.gap(s) > 0.03);
+}
+
+TEST_CASE("a single pair of vertices is sewn and becomes one", "[sewing]") {
+  for (const ClothModel model : {ClothModel::noh_jung, ClothModel::woven})
+    for (const int n : {3, 5, 9}) {
+      INFO(n);
+      ClothPart cloth{.mesh = parse_obj(two_sheets(n, n, 0.02, 0.005), "two.obj"),
+                      .fabric = {.area_density = 0.15, .stretch = 200, .bend = 1e-6},
+                      .model = model};
+      cloth.seams = {{.name = "button", .pairs = {{n * n - 2, n * n + 1}}, .close = 0.1}};
+      Assembly all(Vec3::Zero());
+      all.add(std::move(cloth));
+      all.use("implicit-euler", "cholmod");
+      while (all.state.time < 0.3) REQUIRE(all.advance(0.005).done);
+      CHECK(all.cloths[0].seams.empty());
+      CHECK(all.state.particles() == 2 * n * n - 1);
+    }
 }
 
 TEST_CASE("an explicit method does not take the work of a seam for an explosion", "[sewing]") {

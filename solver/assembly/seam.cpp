@@ -41,6 +41,21 @@ void check(const SeamPlan& plan, int vertices) {
                      " N/m; a stiffness is a finite number greater than zero");
 }
 
+// The mean length at rest of the edges at both vertices [m].
+double mean_edge_at(const std::pair<int, int>& pair, const TriangleMesh& mesh,
+                    const std::vector<Vec3>& places) {
+  double sum = 0;
+  int count = 0;
+  for (const Triangle& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = t[k], b = t[(k + 1) % 3];
+      if (a != pair.first && a != pair.second && b != pair.first && b != pair.second) continue;
+      sum += (at(places, a) - at(places, b)).norm();
+      ++count;
+    }
+  return count > 0 ? sum / count : 0;
+}
+
 OpenSeam open_seam(const SeamPlan& plan, const Fabric& fabric, const TriangleMesh& mesh,
                    const std::vector<Vec3>& places) {
   check(plan, mesh.vertex_count());
@@ -57,8 +72,9 @@ OpenSeam open_seam(const SeamPlan& plan, const Fabric& fabric, const TriangleMes
     seam.pairs.emplace_back(a, b);
     seam.apart.push_back((at(mesh.positions, a) - at(mesh.positions, b)).norm());
   }
-  const std::size_t edges = std::max<std::size_t>(plan.pairs.size(), 2) - 1;
-  seam.edge = 0.5 * (seam.length_one + seam.length_two) / static_cast<double>(edges);
+  const std::size_t edges = plan.pairs.size() - 1;
+  seam.edge = edges == 0 ? mean_edge_at(plan.pairs.front(), mesh, places)
+                         : 0.5 * (seam.length_one + seam.length_two) / static_cast<double>(edges);
   seam.close = plan.close;
   seam.merge = plan.merge;
   // A seam that will be merged is as stiff as the cloth while it closes; one that is kept for good is held
