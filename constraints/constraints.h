@@ -58,8 +58,8 @@ class Constraints {
   void add_self_faces(const std::vector<SelfFace>& faces) { self_.add(faces); }
   void add_self_segments(const std::vector<SelfSegment>& segments) { self_.add(segments); }  // of ropes
   void set_self_friction(const SelfFriction& pair) { self_.set_friction(pair); }
-  // The particles of each of these pairs are being sewn together, in place of those named before; they are at x now.
-  void sew(const std::vector<std::pair<int, int>>& pairs, const VecX& x) { self_.sew(pairs, x); }
+  // These pairs are being sewn together, in place of those named before.
+  void sew(const std::vector<SewnPair>& pairs) { self_.sew(pairs); }
   const SelfContacts& self() const { return self_; }
 
   const std::vector<MovingBody>& bodies() const { return bodies_; }

@@ -82,6 +82,12 @@ struct SelfFriction {
   double friction;    // mu
 };
 
+// Two particles that are being sewn together.
+struct SewnPair {
+  int a, b;
+  bool may_pass;  // whether what is beside them may pass
+};
+
 struct SelfContact {
   Encounter who;
   int body = -1;  // the body that one side is of, whose particles have numbers beyond those of the cloth
@@ -168,10 +174,9 @@ class SelfContacts {
   void renumber(const std::vector<int>& particle_of);
   // The two sides of a cut begin at the same place: they touch, and do not push each other before they are apart.
   void part(const Parting& parting);
-  // The particles of each of these pairs are being sewn together, in place of those named before; they are at x now. What is
-  // beside such particles is not pushed apart, so that they can meet. Where both of a pair are at one place already, so that
-  // no side can be told, what is beside them may pass, too.
-  void sew(const std::vector<std::pair<int, int>>& pairs, const VecX& x);
+  // These pairs are being sewn together, in place of those named before. What is beside sewn particles is pushed apart only
+  // where it would pass on its way, so that they can meet.
+  void sew(const std::vector<SewnPair>& pairs);
   bool any() const { return !faces_.empty() || !segments_.empty(); }
   bool touches_bodies() const {
     return std::any_of(touching_.begin(), touching_.end(), [](const SelfContact& c) { return c.body >= 0; });

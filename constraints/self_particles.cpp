@@ -92,17 +92,19 @@ void SelfContacts::part(const Parting& parting) {
   stale_ = true;
 }
 
-void SelfContacts::sew(const std::vector<std::pair<int, int>>& pairs, const VecX& x) {
-  constexpr double at_one_place = 1e-6;  // m
-  sewn_.assign(static_cast<std::size_t>(x.size() / 3), 0);
-  pass_ = sewn_;
-  for (const auto& [a, b] : pairs) {
-    const bool meet = (x.segment<3>(3 * a) - x.segment<3>(3 * b)).norm() < at_one_place;
-    for (int particle : {a, b}) {
-      sewn_[particle] = 1;
-      if (meet) pass_[particle] = 1;
+void SelfContacts::sew(const std::vector<SewnPair>& pairs) {
+  sewn_.clear();
+  pass_.clear();
+  const auto mark = [](int particle, std::vector<char>& marks) {
+    if (static_cast<std::size_t>(particle) >= marks.size())
+      marks.resize(static_cast<std::size_t>(particle) + 1, 0);
+    marks[particle] = 1;
+  };
+  for (const SewnPair& pair : pairs)
+    for (int particle : {pair.a, pair.b}) {
+      mark(particle, sewn_);
+      if (pair.may_pass) mark(particle, pass_);
     }
-  }
 }
 
 void SelfContacts::set_particles(const StepMotion& step) {

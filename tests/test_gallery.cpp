@@ -135,10 +135,8 @@ void check_part(const Part& part, const Scene& scene) {
   std::vector<Depths> depths(bodies.size());
   const double h = scene.simulation.time_step;
   const long steps = std::lround(part.until / h);
-  // What is being sewn passes through itself at its seams.
-  const bool layers = std::any_of(scene.cloths.begin(), scene.cloths.end(), [](const ClothEntry& cloth) {
-    return cloth.self_contact && cloth.seams.empty();
-  });
+  const bool layers = std::any_of(scene.cloths.begin(), scene.cloths.end(),
+                                  [](const ClothEntry& cloth) { return cloth.self_contact; });
   const auto crossings = [&] { return Sheets(simulation.cloths, simulation.state.x).crossings(); };
   const int at_start = layers ? crossings() : 0;
   for (long n = 1; n <= steps; ++n) {

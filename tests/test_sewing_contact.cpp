@@ -31,7 +31,8 @@ int most_crossings(Simulation& s, double until, double h) {
 
 // Both panels lie side by side, this far apart [m] at one end of the seam, and turned away from each other by this angle [deg].
 // One is held at its top, and swings down while the seam closes.
-Simulation side_by_side(const TwoPanels& panels, const std::string& model, double apart, double angle = 0) {
+Simulation side_by_side(const TwoPanels& panels, const std::string& model, double apart, double angle = 0,
+                        const std::string& then = "merge") {
   const Folder folder;
   folder.write("panels.obj", panels.obj());
   const double turn = angle * std::numbers::pi / 180;  // a panel turns about its middle
@@ -47,7 +48,8 @@ Simulation side_by_side(const TwoPanels& panels, const std::string& model, doubl
               "\"\npanels = [{ group = \"front\" }, { group = \"back\", rotate = { axis = [0, 0, 1], angle = "
               "\"-" +
               text(angle) + " deg\" }, translate = " + place + " }]\n" + pinned +
-              "seams = [{ curves = [\"front.right\", \"back.left\"], close = 0.2 }]\n" + light,
+              "seams = [{ curves = [\"front.right\", \"back.left\"], close = 0.2, then = \"" + then +
+              "\" }]\n" + light,
           "scene.toml"),
       {}, folder.path, "scene.toml"));
 }
@@ -57,13 +59,29 @@ Simulation side_by_side(const TwoPanels& panels, const std::string& model, doubl
 TEST_CASE("nothing passes through anything while a seam closes", "[sewing][self-contact]") {
   for (const char* model : {"noh-jung", "woven"})
     for (const int n : {7, 11, 17})
-      for (const double angle : {0.0, 5.0})
-        for (const double apart : {0.003, 0.01, 0.04}) {
-          INFO(model << ", " << n << " vertices, " << apart << " m apart, turned by " << angle << " deg");
-          Simulation s = side_by_side({.nx = n, .ny = n - 2}, model, apart, angle);
-          CHECK(most_crossings(s, 0.4, 0.005) == 0);
-          CHECK(s.cloths[0].seams.empty());
-        }
+      for (const double size : {1.0, 0.1})  // with edges of down to 3 mm
+        for (const double angle : {0.0, 5.0})
+          for (const double apart : {0.003, 0.01, 0.04}) {
+            INFO(model << ", " << n << " vertices, " << apart << " m apart, turned by " << angle
+                       << " deg, scaled by " << size);
+            const TwoPanels panels{
+                .nx = n, .ny = n - 2, .width = 0.5 * size, .height = 0.4 * size, .back_width = 0.5 * size};
+            Simulation s = side_by_side(panels, model, size * apart, angle);
+            CHECK(most_crossings(s, 0.4, 0.005) == 0);
+            CHECK(s.cloths[0].seams.empty());
+          }
+}
+
+TEST_CASE("a seam that is kept holds where cloth meets itself", "[sewing][self-contact]") {
+  for (const char* model : {"noh-jung", "woven"})
+    for (const int n : {7, 11, 17})
+      for (const double apart : {0.0, 0.01}) {
+        INFO(model << ", " << n << " vertices, " << apart << " m apart");
+        Simulation s = side_by_side({.nx = n, .ny = n - 2}, model, apart, 0, "keep");
+        most_crossings(s, 0.5, 0.005);
+        REQUIRE(s.cloths[0].seams.size() == 1);
+        CHECK(s.cloths[0].seams[0].seam.gap(s.cloths[0].embedding, s.state.x) < 2e-6);
+      }
 }
 
 TEST_CASE("a seam that begins closed is merged in the first step", "[sewing][self-contact]") {

@@ -2,8 +2,8 @@
 //   An open seam pulls the two vertices of each of its pairs together (solver/forces/seam_spring.h). Once its
 //   time is over and no pair is farther apart than `near_enough` of the length of the edges there, the two
 //   particles of each pair become one: mass and momentum are added, and the forces of the cloth are made
-//   anew, across the seam as well. The Assembly merges the particles (solver/assembly/assembly.h). A pair that
-//   begins nearer than `closed_already` of these edges has nothing to close, and becomes one in the first step.
+//   anew, across the seam as well. The Assembly merges the particles (solver/assembly/assembly.h). A pair of a
+//   seam to be merged that begins nearer than `closed_already` of these edges becomes one in the first step.
 #pragma once
 
 #include <memory>
