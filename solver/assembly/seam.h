@@ -38,10 +38,10 @@ struct OpenSeam {
   std::string name;
   std::vector<std::pair<int, int>> pairs;  // of different vertices
   std::vector<double> apart;               // distance of each pair at the start [m]
-  double edge = 0;                         // mean length at rest of the curves' edges, or of those at a single pair [m]
-  double length_one = 0, length_two = 0;   // lengths of the two curves at rest [m]
-  double close = 1;                        // s
-  double stiffness = 0;                    // N/m
+  double edge = 0;  // mean length at rest of the curves' edges, or of those at a single pair [m]
+  double length_one = 0, length_two = 0;  // lengths of the two curves at rest [m]
+  double close = 1;                       // s
+  double stiffness = 0;                   // N/m
   bool merge = true;
 
   double gap(const Embedding& embedding, const VecX& x) const;  // of the pair that is farthest apart [m]
