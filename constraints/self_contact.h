@@ -85,7 +85,7 @@ struct SelfFriction {
 // Two particles that are being sewn together.
 struct SewnPair {
   int a, b;
-  bool may_pass;  // whether what is beside them may pass
+  bool may_pass;  // whether what is beside one of them may pass what is beside the other
 };
 
 struct SelfContact {
@@ -247,7 +247,7 @@ class SelfContacts {
   bool is_on_body(const Encounter& e) const;
   bool may_pass(const Encounter& e) const;
   bool is_sewn(const Encounter& e) const { return have_on_both_sides(sewn_, e); }
-  static bool have_on_both_sides(const std::vector<char>& mark, const Encounter& e);
+  static bool have_on_both_sides(const std::vector<char>& mark, const Encounter& e);  // a marked particle
   bool has_contact(const Encounter& e) const;
   // The pairs that are not surely apart all the way from x to x_new, in order.
   std::vector<internal::Meeting>& meetings(const VecX& x, const VecX& x_new);

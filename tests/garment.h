@@ -18,6 +18,7 @@ struct TwoPanels {
   int nx = 11, ny = 9;
   double width = 0.5, height = 0.4, back_width = 0.5;
   bool quads = false;
+  bool one_way = false;  // all diagonals of triangles run the same way
 
   int vertex(int panel, int i, int j) const { return panel * nx * ny + j * nx + i; }
 
@@ -37,7 +38,7 @@ struct TwoPanels {
           const int a = vertex(p, i, j), b = a + 1, c = b + nx, d = a + nx;
           if (quads)
             faces += face({a, b, c, d});
-          else if ((i + j) % 2 == 0)
+          else if (one_way || (i + j) % 2 == 0)
             faces += face({a, b, c}) + face({a, c, d});
           else
             faces += face({a, b, d}) + face({b, c, d});

@@ -303,18 +303,15 @@ void Assembly::make_system(std::vector<double> masses, Forces forces) {
   }
 }
 
-// Tells the constraints what is being sewn together. Beside stitches that are kept, which hold to a micrometre, and beside
-// vertices that begin at one place, where no side can be told, everything may pass.
+// Tells the constraints what is being sewn together. Beside stitches that are kept, which hold to a micrometre, everything
+// may pass.
 void Assembly::sew() {
-  constexpr double at_one_place = 1e-6;  // m
   std::vector<SewnPair> sewn;
   for (const Cloth& cloth : cloths)
     for (const Cloth::Stitched& open : cloth.seams)
-      for (std::size_t k = 0; k < open.seam.pairs.size(); ++k) {
-        const int a = cloth.embedding.particle(open.seam.pairs[k].first),
-                  b = cloth.embedding.particle(open.seam.pairs[k].second);
-        const bool may_pass = !open.seam.merge || open.seam.apart[k] < at_one_place;
-        sewn.push_back({a, b, a != b && may_pass});
+      for (const auto& [first, second] : open.seam.pairs) {
+        const int a = cloth.embedding.particle(first), b = cloth.embedding.particle(second);
+        sewn.push_back({a, b, a != b && !open.seam.merge});
       }
   constraints->sew(sewn);
 }
