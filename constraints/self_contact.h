@@ -18,9 +18,11 @@
 //   [Newton's method: Alart & Curnier 1991]. Along d the spring goes in steps of a tenth, and comes back where a solve went
 //   too far. react() corrects all until they agree with the solve.
 //   The guard: every vertex goes all of its way d_i at first. The pairs that would come nearer than `floor` on the way are
-//   found [mesh/distance/approach.h]. Their vertices become a zone, which keeps the motion D that it has on the whole, or
-//   that of pins or of a body in it, so that cloth in motion is not held up: x_i + D + t_i (d_i - D). t_i is made less
-//   until no pair fails, and after a fixed number of rounds all stands still. It holds for every integrator.
+//   found [mesh/distance/approach.h]. First they are pushed apart along their normals, by impulses, as far as no vertex has to
+//   go farther than the cloth is thick. Where that does not help, their vertices become a zone, which keeps the motion D that
+//   it has on the whole, or that of pins or of a body in it, so that cloth in motion is not held up:
+//     x_i + D + t_i (d_i - D)
+//   t_i is made less until no pair fails, and after a fixed number of rounds all stands still. It holds for every integrator.
 //   Ropes take part with their segments, as thick as twice their radius: a segment is met by the vertices that come near it
 // and by its edge, and its ends meet triangles. What hangs together with a rope is kept apart from it by no more than half of
 // the way between both at rest [rope_rest.h]. Bodies meet ropes otherwise, by their particles.
@@ -238,6 +240,8 @@ class SelfContacts {
   void go_shares(const StepMotion& step, const VecX& x_new, bool in_common);
   void stop(const std::vector<internal::Meeting>& failing, const StepMotion& step, const VecX& x_new,
             bool in_common);
+  bool may_leave(int particle, const Vec3& push) const;
+  bool push_apart(const std::vector<internal::Meeting>& failing, const StepMotion& step);
   bool let_bodies_yield(const std::vector<internal::Meeting>& failing);
   void stop_tangles(const std::vector<int>& tangles);
   void find_relief(const StepMotion& step, const std::vector<Contact>& on_bodies);
@@ -310,8 +314,10 @@ class SelfContacts {
   static constexpr int no_body = -1, several = -2;
   const std::vector<MovingBody>* bodies_ = nullptr;  // of the guard under way
   enum class Held : char { no, by_body, yes };
-  std::vector<Held> hold_, zone_hold_;  // of each particle; the firmest of its zone
-  std::vector<char> still_;             // of a tangle that moves as a whole, but for its relief
+  std::vector<Held> hold_, zone_hold_;   // of each particle; the firmest of its zone
+  std::vector<const Contact*> touches_;  // the active contact of each particle with bodies; null: none
+  std::vector<char> pushed_;             // whether the guard pushed it
+  std::vector<char> still_;              // of a tangle that moves as a whole, but for its relief
   double share_of(int particle) const { return still_[particle] != 0 ? 0 : way_[particle]; }
   VecX relief_, given_;  // m, see Tangles; what the first guard of the step gave of it
   VecX ahead_, wanted_, v_at_, proven_;

@@ -15,9 +15,9 @@ using namespace internal;
 
 namespace {
 
-// So often the way of a particle is shortened by shares, and then given up. What still fails after so many rounds stands still,
-// and after the last round everything does.
-constexpr int stops_by_shares = 8, rounds_in_common = 40, most_rounds = 64;
+// What fails is pushed apart in so many rounds. What still fails is stopped: so often the way of a particle is shortened by
+// shares, and then given up. After so many rounds it stands still, and after the last round everything does.
+constexpr int rounds_of_pushes = 40, stops_by_shares = 8, rounds_in_common = 80, most_rounds = 104;
 
 // No two things end a step nearer than this, or come nearer than half of it on the way [m]: places that are written as
 // floats then do not cross, either.
@@ -184,6 +184,53 @@ void SelfContacts::stop(const std::vector<Meeting>& failing, const StepMotion& s
   go_shares(step, x_new, in_common);
 }
 
+// Whether a push this way leads the particle into no body that it touches.
+bool SelfContacts::may_leave(int particle, const Vec3& push) const {
+  if (hold_[particle] == Held::no) return true;
+  const Contact& contact = *touches_[particle];
+  return std::all_of(contact.plane.begin(), contact.plane.begin() + contact.planes,
+                     [&](const ContactPlane& plane) { return plane.normal.dot(push) >= 0; });
+}
+
+// Pushes the sides of these pairs apart along their normals, by impulses, which keep the momentum: to a tenth of what was
+// between them at the start. Those that are farther apart at the end and met on their way go half as far again. False when it
+// pushes none: a pair would have to go farther than it is thick, or neither side of it can move, or one was stopped.
+bool SelfContacts::push_apart(const std::vector<Meeting>& failing, const StepMotion& step) {
+  constexpr double share = 0.1;
+  const double floor = floor_of(step.x, ahead_);
+  bool any = false;
+  for (const Meeting& meeting : failing) {
+    const Encounter& e = meeting.who;
+    const FourPoints end = corners(ahead_, e);
+    const Approach now = approach_from_within(e.edges, corners(step.x, e), end, floor);
+    if (now.apart) continue;  // since a pair before it was pushed
+    const Vec3& n = now.last.normal;
+    const std::array<double, 4>& w = now.last.weights;
+    std::array<double, 4> moves{};  // w_k / m_k
+    double gap = 0, inverse = 0;    // 1/m
+    bool stopped = false;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const int v = e.v[k];
+      gap += w[k] * n.dot(end[k]);
+      stopped = stopped || way_[v] < 1 || still_[v] != 0;
+      if (step.is_held(v) || !(step.mass(v) > 0) || !may_leave(v, w[k] * n)) continue;
+      moves[k] = w[k] / step.mass(v);
+      inverse += w[k] * moves[k];
+    }
+    const double most = both_thicknesses(e), asked = share * std::min(now.start, most);
+    const double impulse = std::max({asked - gap, 0.5 * asked, 0.5 * gap}) / inverse;  // kg m
+    const auto too_far = [&](double move) { return !(std::abs(impulse * move) < most); };
+    if (stopped || !(inverse > 0) || std::any_of(moves.begin(), moves.end(), too_far)) continue;
+    for (std::size_t k = 0; k < 4; ++k) {
+      wanted_.segment<3>(3 * e.v[k]) += impulse * moves[k] * n;
+      ahead_.segment<3>(3 * e.v[k]) += impulse * moves[k] * n;
+      pushed_[e.v[k]] = pushed_[e.v[k]] != 0 || moves[k] != 0;
+    }
+    any = true;
+  }
+  return any;
+}
+
 // Lets the cloth pass the bodies where it fails; false when all that fails is between cloth and cloth.
 bool SelfContacts::let_bodies_yield(const std::vector<Meeting>& failing) {
   bool yielded = false;
@@ -226,6 +273,7 @@ void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_co
     const bool together = in_common && round < rounds_in_common;
     const std::vector<Meeting>& failing = meetings(step.x, ahead_);
     if (!failing.empty()) {
+      if (in_common && round < rounds_of_pushes && push_apart(failing, step)) continue;
       if (round >= rounds_in_common && let_bodies_yield(failing)) {
         --round;  // fewer particles can be pinched every time
         continue;
@@ -252,7 +300,7 @@ int SelfContacts::go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX
   for (std::size_t i = 0; i < static_cast<std::size_t>(cloth_particles()); ++i) {
     const auto k = 3 * static_cast<Eigen::Index>(i);
     const Vec3 relief = way_[i] * relief_.segment<3>(k);
-    if (way_[i] < 1 || still_[i] != 0) {
+    if (way_[i] < 1 || still_[i] != 0 || pushed_[i] != 0) {
       const Vec3 kept = x_new.segment<3>(k) - (still_[i] != 0 ? 1 : 1 - way_[i]) * given_.segment<3>(k);
       v_new.segment<3>(k) -= (kept + relief - ahead_.segment<3>(k)) / step.h;
       ++stopped;
@@ -270,11 +318,16 @@ int SelfContacts::guard(const std::vector<MovingBody>& bodies, const std::vector
   const StepMotion& step = surfaces_->step();
   bodies_ = &bodies;
   hold_.assign(way_.size(), Held::no);
-  for (const Contact& contact : on_bodies)
-    if (contact.active()) hold_[contact.particle] = Held::by_body;
+  touches_.assign(way_.size(), nullptr);
+  for (const Contact& contact : on_bodies) {
+    if (!contact.active()) continue;
+    hold_[contact.particle] = Held::by_body;
+    touches_[contact.particle] = &contact;
+  }
   std::fill(way_.begin(), way_.end(), 1.0);
   stops_.assign(way_.size(), 0);
   still_.assign(way_.size(), 0);
+  pushed_.assign(way_.size(), 0);
   zone_.resize(way_.size());
   std::iota(zone_.begin(), zone_.end(), 0);
   relief_.setZero(step.x.size());

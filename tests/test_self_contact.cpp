@@ -220,6 +220,13 @@ TEST_CASE("what stops the lowest layers of a pile that falls lets the others fal
     for (int i = highest.first_particle; i < highest.end_particle; ++i)
       CHECK(pile.state.v[3 * i + 1] < -9.81 * 0.14 + 1e-3);
     CHECK(-pile.momentum()[1] > 0.4 * 9.81 * 0.14 * layers * 0.2 * 0.01);
+    // Where single pairs would pass while the pile is pressed together, the rest of it goes on.
+    while (pile.state.time < 0.395) {
+      const StepReport report = pile.advance(0.01);
+      REQUIRE(report.done);
+      CHECK(report.self_guarded < 0.4 * pile.state.particles());
+      CHECK(pile.crossings() == 0);
+    }
   }
 }
 

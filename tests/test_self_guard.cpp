@@ -3,34 +3,50 @@
 
 #include "constraints/self_contact.h"
 #include "tests/integrators.h"
+#include "tests/sheets.h"
 
 using namespace drape;
 using namespace drape::test;
 
 namespace {
 
-// A sheet of n x n vertices above another one, which are told to go somewhere.
+// Sheets that are told to go somewhere.
 struct Guarded {
-  explicit Guarded(int n) : sheet(grid(n, n, 0.1, 0.1)) {
-    std::vector<Vec3> places = sheet.positions;
-    for (const Vec3& x : sheet.positions) places.push_back(x + Vec3(0.003, 0.004, 0.002));
+  explicit Guarded(const std::vector<TriangleMesh>& sheets) : sheet(sheets.front()) {
+    std::vector<Vec3> places;
+    std::vector<SelfFace> faces;
+    for (const TriangleMesh& mesh : sheets) {
+      const int first = static_cast<int>(places.size());
+      places.insert(places.end(), mesh.positions.begin(), mesh.positions.end());
+      for (const Triangle& t : mesh.triangles)
+        faces.push_back({{first + t[0], first + t[1], first + t[2]}, 1e-3, 0.3});
+    }
     step.h = 0.01;
     step.x = stacked(places);
     step.masses.assign(places.size(), 1e-4);
     step.held.assign(places.size(), 0);
-    std::vector<SelfFace> faces;
-    for (int first : {0, sheet.vertex_count()})
-      for (const Triangle& t : sheet.triangles)
-        faces.push_back({{first + t[0], first + t[1], first + t[2]}, 1e-3, 0.3});
     contacts.add(faces);
     x_new = step.x;
+  }
+  // A sheet of n x n vertices, and another one above it.
+  explicit Guarded(int n)
+      : Guarded({grid(n, n, 0.1, 0.1), moved(grid(n, n, 0.1, 0.1), {0.003, 0.004, 0.002})}) {}
+  static TriangleMesh moved(TriangleMesh mesh, const Vec3& way) {
+    for (Vec3& x : mesh.positions) x += way;
+    return mesh;
   }
   int half() const { return sheet.vertex_count(); }
   void move(int particle, const Vec3& way) { x_new.segment<3>(3 * particle) += way; }
   Vec3 way(int particle) const { return (x_new - step.x).segment<3>(3 * particle); }
+  void rest_on_floor(int particle) {
+    Contact contact{.particle = particle, .plane = {}};
+    for (ContactPlane& plane : contact.plane) plane = {0, Vec3::UnitY(), 0, Vec3::Zero()};
+    contact.planes = 1;
+    on_bodies.push_back(contact);
+  }
   int guard() {
     step.v = (x_new - step.x) / step.h;
-    VecX v_new = step.v;
+    v_new = step.v;
     contacts.begin_step(step, {}, 1e-3, implicit_kappa);
     return contacts.guard({}, on_bodies, true, x_new, v_new);
   }
@@ -39,7 +55,7 @@ struct Guarded {
   StepMotion step;
   SelfContacts contacts;
   std::vector<Contact> on_bodies;
-  VecX x_new;
+  VecX x_new, v_new;
 };
 
 }  // namespace
@@ -70,11 +86,10 @@ TEST_CASE("the guard moves no pin, and nothing that lies on a body at rest", "[s
     INFO((pinned ? "pinned" : "on a body"));
     Guarded two(5);
     for (int i = 0; i < two.half(); ++i) {
-      if (pinned) two.step.held[i] = 1;
-      Contact contact{.particle = i, .plane = {}};
-      for (ContactPlane& plane : contact.plane) plane = {0, Vec3::UnitY(), 0, Vec3::Zero()};
-      contact.planes = pinned ? 0 : 1;
-      two.on_bodies.push_back(contact);
+      if (pinned)
+        two.step.held[i] = 1;
+      else
+        two.rest_on_floor(i);
       two.move(two.half() + i, {0, -0.02, 0});
     }
     CHECK(two.guard() > 0);
@@ -100,4 +115,50 @@ TEST_CASE("the guard moves no pin, and nothing that lies on a body at rest", "[s
   for (int i = 0; i < led.half(); ++i) led.move(led.half() + i, {0, -0.02, 0});
   CHECK(led.guard() > 0);
   CHECK(led.way(0).isZero(0));
+}
+
+TEST_CASE(
+    "where one pair of a pile would pass, the guard moves a few particles, and those by less than a "
+    "thickness",
+    "[self-contact]") {
+  enum class Lowest { free, pinned, on_a_body };
+  const double gap = 1e-3, left = 1e-4;
+  const int layers = 20;
+  for (int n : {4, 6, 9})
+    for (const Kind kind : kinds)
+      for (const Lowest lowest : {Lowest::free, Lowest::pinned, Lowest::on_a_body}) {
+        INFO(n << " vertices along an edge, kind " << static_cast<int>(kind) << ", lowest layer "
+               << static_cast<int>(lowest));
+        const TriangleMesh flat = bent(n, kind, 0.1, [](double, double) { return 0.0; });
+        std::vector<TriangleMesh> all;
+        for (int k = 0; k < layers; ++k)
+          all.push_back(Guarded::moved(flat, k * Vec3(0.3 * gap, gap, 0.2 * gap)));
+        Guarded pile(all);
+        const int vertices = flat.vertex_count();
+        for (std::size_t i = 0; i < pile.step.masses.size(); ++i)
+          pile.step.masses[i] *= static_cast<double>(1 + i % 3);
+        // All layers come down onto the lowest one, until `left` is between them.
+        for (int k = 1; k < layers; ++k)
+          for (int i = 0; i < vertices; ++i) pile.move(k * vertices + i, {0, -k * (gap - left), 0});
+        if (lowest == Lowest::pinned) std::fill_n(pile.step.held.begin(), vertices, 1);
+        if (lowest == Lowest::on_a_body)
+          for (int i = 0; i < vertices; ++i) pile.rest_on_floor(i);
+        CHECK(pile.guard() == 0);
+        const int astray = vertices + vertices / 2 + n / 2;
+        pile.move(astray, {0, -1.2 * left, 0});
+        const VecX asked = pile.x_new;
+        const int stopped = pile.guard();
+        CHECK(stopped > 0);
+        CHECK(stopped <= 8);
+        Vec3 lost = Vec3::Zero();
+        for (int i = 0; i < layers * vertices; ++i) {
+          const Vec3 change = (pile.x_new - asked).segment<3>(3 * i);
+          CHECK(change.norm() < 0.3 * gap);
+          CHECK(((pile.v_new - pile.step.v).segment<3>(3 * i) * pile.step.h - change).norm() < 1e-15);
+          lost += pile.step.masses[i] * change;
+          if (i < vertices && lowest != Lowest::free) CHECK(pile.way(i).isZero(0));
+        }
+        if (lowest == Lowest::free) CHECK(lost.norm() < 1e-15);
+        CHECK(pile.x_new[3 * astray + 1] > 0);  // the lowest layer is at zero
+      }
 }

@@ -10,7 +10,8 @@
 namespace drape {
 namespace {
 
-constexpr int most_looks = 100;
+// Of two edges that roll on each other a look proves a way whose ends go as far as they are apart.
+constexpr int most_looks = 1000;
 constexpr double least_step = 1e-7;
 
 // The places along the edges a b and c d, 0 to 1, of the points that are nearest to each other.
