@@ -36,7 +36,7 @@ struct ContactReport {
   bool converged = true;    // the motion of bodies that react agrees with the impulses on them
   double deepest = 0;       // how deep the deepest particle was inside a body when the step began [m]
   int self_contacts = 0;    // pairs of cloth and cloth that push each other
-  int self_guarded = 0;     // particles whose way was shortened so that no cloth passes through cloth
+  int self_guarded = 0;     // particles that were pushed or stopped so that no cloth passes through cloth
   int tangled = 0;          // particles where cloth passes through cloth
   int pinched = 0;          // particles that a body could not be kept off, or that bodies hold between them
   int body_contacts = 0;    // points at which bodies press on each other

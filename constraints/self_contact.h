@@ -207,7 +207,7 @@ class SelfContacts {
   // Adds the pairs that would meet on the way to x_new and are no contacts yet, and makes those stiffer that are; true when
   // there are any.
   bool meet(const VecX& x_new);
-  // Shortens the ways to x_new so that nothing meets; returns how many particles it stopped. on_bodies: the contacts with
+  // Changes the ways to x_new so that nothing meets; returns how many particles it pushed or stopped. on_bodies: the contacts with
   // bodies. in_common: whether what is stopped goes on by a common way, which may lead into a body; without it, everything
   // stays on its own way.
   int guard(const std::vector<MovingBody>& bodies, const std::vector<Contact>& on_bodies, bool in_common,
@@ -221,7 +221,7 @@ class SelfContacts {
     return last_;
   }                                         // of the last step; `before` says how hard
   int pushing() const { return pushing_; }  // how many of them pushed at its end
-  // Whether the last step stopped the particle on its way.
+  // Whether the guard of the last step pushed or stopped the particle.
   bool is_stopped(int particle) const { return any() && !stopped_.empty() && stopped_[particle] != 0; }
   // Whether the cloth passed through itself when the step began.
   bool crossing() const;
@@ -316,9 +316,9 @@ class SelfContacts {
   enum class Held : char { no, by_body, yes };
   std::vector<Held> hold_, zone_hold_;   // of each particle; the firmest of its zone
   std::vector<const Contact*> touches_;  // the active contact of each particle with bodies; null: none
-  std::vector<char> pushed_;             // whether the guard pushed it
   std::vector<char> still_;              // of a tangle that moves as a whole, but for its relief
   double share_of(int particle) const { return still_[particle] != 0 ? 0 : way_[particle]; }
+  VecX push_;            // m, by which the guard pushed it
   VecX relief_, given_;  // m, see Tangles; what the first guard of the step gave of it
   VecX ahead_, wanted_, v_at_, proven_;
   bool accepted_ = false;   // whether v_at_ is of this step

@@ -15,9 +15,10 @@ using namespace internal;
 
 namespace {
 
-// What fails is pushed apart in so many rounds. What still fails is stopped: so often the way of a particle is shortened by
-// shares, and then given up. After so many rounds it stands still, and after the last round everything does.
-constexpr int rounds_of_pushes = 40, stops_by_shares = 8, rounds_in_common = 80, most_rounds = 104;
+// What fails is pushed apart in so many rounds at most. What still fails is stopped: so often the way of a particle is shortened
+// by shares, and then given up. After so many rounds what is stopped has no way in common any more, and after the last round
+// everything stands still.
+constexpr int rounds_of_pushes = 40, stops_by_shares = 8, rounds_in_common = 40, most_rounds = 64;
 
 // No two things end a step nearer than this, or come nearer than half of it on the way [m]: places that are written as
 // floats then do not cross, either.
@@ -184,17 +185,19 @@ void SelfContacts::stop(const std::vector<Meeting>& failing, const StepMotion& s
   go_shares(step, x_new, in_common);
 }
 
-// Whether a push this way leads the particle into no body that it touches.
+// Whether a push this way leads the particle into no body that it touches. What two bodies clamp cannot go anywhere.
 bool SelfContacts::may_leave(int particle, const Vec3& push) const {
   if (hold_[particle] == Held::no) return true;
   const Contact& contact = *touches_[particle];
-  return std::all_of(contact.plane.begin(), contact.plane.begin() + contact.planes,
+  return !contact.clamped &&
+         std::all_of(contact.plane.begin(), contact.plane.begin() + contact.planes,
                      [&](const ContactPlane& plane) { return plane.normal.dot(push) >= 0; });
 }
 
 // Pushes the sides of these pairs apart along their normals, by impulses, which keep the momentum: to a tenth of what was
-// between them at the start. Those that are farther apart at the end and met on their way go half as far again. False when it
-// pushes none: a pair would have to go farther than it is thick, or neither side of it can move, or one was stopped.
+// between them at the start. A pair that ends farther apart than that met something on its way, and goes half as far again.
+// Skips a pair of which a particle would come farther than it is thick from where it wanted to go, or was stopped, or is moved
+// by its relief, which no velocity may come from; and a pair of which neither side can move. Returns whether it pushed any.
 bool SelfContacts::push_apart(const std::vector<Meeting>& failing, const StepMotion& step) {
   constexpr double share = 0.1;
   const double floor = floor_of(step.x, ahead_);
@@ -208,23 +211,23 @@ bool SelfContacts::push_apart(const std::vector<Meeting>& failing, const StepMot
     const std::array<double, 4>& w = now.last.weights;
     std::array<double, 4> moves{};  // w_k / m_k
     double gap = 0, inverse = 0;    // 1/m
-    bool stopped = false;
+    bool skip = false;
     for (std::size_t k = 0; k < 4; ++k) {
       const int v = e.v[k];
       gap += w[k] * n.dot(end[k]);
-      stopped = stopped || way_[v] < 1 || still_[v] != 0;
+      skip = skip || way_[v] < 1 || still_[v] != 0 || !relief_.segment<3>(3 * v).isZero(0);
       if (step.is_held(v) || !(step.mass(v) > 0) || !may_leave(v, w[k] * n)) continue;
       moves[k] = w[k] / step.mass(v);
       inverse += w[k] * moves[k];
     }
     const double most = both_thicknesses(e), asked = share * std::min(now.start, most);
     const double impulse = std::max({asked - gap, 0.5 * asked, 0.5 * gap}) / inverse;  // kg m
-    const auto too_far = [&](double move) { return !(std::abs(impulse * move) < most); };
-    if (stopped || !(inverse > 0) || std::any_of(moves.begin(), moves.end(), too_far)) continue;
+    for (std::size_t k = 0; k < 4; ++k)
+      skip = skip || !((push_.segment<3>(3 * e.v[k]) + impulse * moves[k] * n).norm() < most);
+    if (skip || !(inverse > 0)) continue;
     for (std::size_t k = 0; k < 4; ++k) {
-      wanted_.segment<3>(3 * e.v[k]) += impulse * moves[k] * n;
-      ahead_.segment<3>(3 * e.v[k]) += impulse * moves[k] * n;
-      pushed_[e.v[k]] = pushed_[e.v[k]] != 0 || moves[k] != 0;
+      const Vec3 push = impulse * moves[k] * n;
+      for (VecX* places : {&push_, &wanted_, &ahead_}) places->segment<3>(3 * e.v[k]) += push;
     }
     any = true;
   }
@@ -268,12 +271,19 @@ void SelfContacts::find_relief(const StepMotion& step, const std::vector<Contact
 }
 
 // Shortens the ways until nothing meets, and no more triangles cross than may; ahead_ is then where they end.
+// x_new is wanted_, which pushes change.
 void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_common) {
+  int pushes_left = in_common ? rounds_of_pushes : 0;
   for (int round = 0; round <= most_rounds && follow_all(step.x, ahead_); ++round) {
     const bool together = in_common && round < rounds_in_common;
     const std::vector<Meeting>& failing = meetings(step.x, ahead_);
     if (!failing.empty()) {
-      if (in_common && round < rounds_of_pushes && push_apart(failing, step)) continue;
+      if (pushes_left > 0 && push_apart(failing, step)) {
+        --pushes_left;
+        --round;
+        continue;
+      }
+      pushes_left = 0;
       if (round >= rounds_in_common && let_bodies_yield(failing)) {
         --round;  // fewer particles can be pinched every time
         continue;
@@ -292,15 +302,15 @@ void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_co
   if (surfaces_->any() && follow_all(step.x, ahead_)) let_bodies_yield(meetings(step.x, ahead_));
 }
 
-// Takes the particles to ahead_, and from their velocity what they lose of their way; relief is none of it. Returns how many
-// lose some. The second guard of a step finds the relief of the first one in x_new.
+// Takes the particles to ahead_, and changes their velocity by what changes of their way; relief is none of it. Returns of how
+// many it changes. The second guard of a step finds the relief of the first one in x_new.
 int SelfContacts::go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX& v_new) {
   int stopped = 0;
   if (first) given_.setZero(x_new.size());
   for (std::size_t i = 0; i < static_cast<std::size_t>(cloth_particles()); ++i) {
     const auto k = 3 * static_cast<Eigen::Index>(i);
     const Vec3 relief = way_[i] * relief_.segment<3>(k);
-    if (way_[i] < 1 || still_[i] != 0 || pushed_[i] != 0) {
+    if (way_[i] < 1 || still_[i] != 0 || !push_.segment<3>(k).isZero(0)) {
       const Vec3 kept = x_new.segment<3>(k) - (still_[i] != 0 ? 1 : 1 - way_[i]) * given_.segment<3>(k);
       v_new.segment<3>(k) -= (kept + relief - ahead_.segment<3>(k)) / step.h;
       ++stopped;
@@ -327,10 +337,10 @@ int SelfContacts::guard(const std::vector<MovingBody>& bodies, const std::vector
   std::fill(way_.begin(), way_.end(), 1.0);
   stops_.assign(way_.size(), 0);
   still_.assign(way_.size(), 0);
-  pushed_.assign(way_.size(), 0);
   zone_.resize(way_.size());
   std::iota(zone_.begin(), zone_.end(), 0);
   relief_.setZero(step.x.size());
+  push_.setZero(step.x.size());
   if (crossing() && in_common) find_relief(step, on_bodies);
   wanted_ = surfaces_->with(x_new);
   ahead_ = wanted_ + relief_;

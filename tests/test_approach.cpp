@@ -136,15 +136,14 @@ TEST_CASE("two edges that nearly touch are proven apart where they part while th
 TEST_CASE("two edges that roll on each other a few micrometres apart are proven apart", "[approach]") {
   for (const double distance : {5e-6, 1e-5, 2e-5})
     for (const double length : {5e-3, 1e-2})
-      for (const double slope : {-0.1, 0.03, 0.1})
-        for (const double along : {-2e-3, 0.0, 1e-3}) {
-          INFO(distance << " m apart, " << length << " m long, slope " << slope << ", along " << along);
-          const FourPoints start = {Vec3(-length, distance, 0), Vec3(0.7 * length, distance, 0),
-                                    Vec3(0, 0, -length), Vec3(0, 0, 0.6 * length)};
-          FourPoints end = start;
-          for (int c : {0, 1}) end[c] += Vec3(0, slope * start[c][0], along);
-          CHECK(approach_from_within(true, start, end, 1e-7).apart);
-        }
+      for (const double slope : {-0.1, 0.03, 0.1}) {
+        INFO(distance << " m apart, " << length << " m long, slope " << slope);
+        const FourPoints start = {Vec3(-length, distance, 0), Vec3(0.7 * length, distance, 0),
+                                  Vec3(0, 0, -length), Vec3(0, 0, 0.6 * length)};
+        FourPoints end = start;
+        for (int c : {0, 1}) end[c] += Vec3(0, slope * start[c][0], 0);
+        CHECK(approach_from_within(true, start, end, 1e-7).apart);
+      }
 }
 
 TEST_CASE("a pair that stands, or goes as one, is apart however near it is", "[approach]") {

@@ -62,7 +62,7 @@ void add_reports_of_steps(py::module_& m) {
       .def_readonly("self_contacts", &StepReport::self_contacts,
                     "pairs of cloth and cloth that push each other")
       .def_readonly("self_guarded", &StepReport::self_guarded,
-                    "particles whose way was shortened so that no cloth passes through cloth")
+                    "particles that were pushed or stopped so that no cloth passes through cloth")
       .def_readonly("tangled", &StepReport::tangled,
                     "particles where cloth passes through cloth, and is brought apart")
       .def_readonly("pinched", &StepReport::pinched,

@@ -11,7 +11,7 @@ enum class Touch : std::uint8_t {
   slides = 1,  // on a body
   sticks = 2,  // to a body
   cloth = 3,   // it touches cloth, and no body
-  stopped = 4  // its way was shortened, so that nothing passes through cloth
+  stopped = 4  // pushed or stopped on its way, so that nothing passes through cloth
 };
 inline constexpr std::array touch_names = {"free", "slides", "sticks", "on cloth", "stopped"};
 

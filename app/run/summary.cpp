@@ -24,7 +24,8 @@ std::string hints(const RunRecord& record, const Output& output) {
             " says where; cloth that starts clean, with self_contact = true, does not pass through itself "
             "and others; drape untangle brings a mesh apart\n";
   if (record.self_guarded > 0)
-    text += "hint: vertices were stopped on their way " + counted(record.self_guarded, "time") +
+    text += "hint: vertices were pushed aside or stopped on their way " +
+            counted(record.self_guarded, "time") +
             ", so that no cloth passes through cloth: a smaller time step is smoother\n";
   if (record.pinched > 0)
     text += "hint: a body passes through the cloth, or holds it against another body, near " +

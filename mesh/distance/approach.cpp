@@ -10,7 +10,7 @@
 namespace drape {
 namespace {
 
-// Of two edges that roll on each other a look proves a way whose ends go as far as they are apart.
+// Where two edges roll on each other, a look proves no more of the way than takes their ends about as far as they are apart.
 constexpr int most_looks = 1000;
 constexpr double least_step = 1e-7;
 

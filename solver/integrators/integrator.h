@@ -69,7 +69,7 @@ struct StepReport {
   bool converged = true;     // every solve reached its tolerance, and the contacts have settled
   int contacts = 0;          // particles in contact at the end
   int self_contacts = 0;     // pairs of cloth and cloth that push each other at the end
-  int self_guarded = 0;      // particles whose way was shortened so that no cloth passes through cloth
+  int self_guarded = 0;      // particles that were pushed or stopped so that no cloth passes through cloth
   int tangled = 0;           // particles where cloth passes through cloth, and is brought apart
   // Particles that a body may pass, because it could not be kept off them, or that two bodies hold between them.
   int pinched = 0;
