@@ -270,8 +270,8 @@ void SelfContacts::find_relief(const StepMotion& step, const std::vector<Contact
     }
 }
 
-// Shortens the ways until nothing meets, and no more triangles cross than may; ahead_ is then where they end.
-// x_new is wanted_, which pushes change.
+// Pushes apart, and then shortens the ways, until nothing meets and no more triangles cross than may; ahead_ is then where they
+// end. x_new has to be wanted_, which the pushes change.
 void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_common) {
   int pushes_left = in_common ? rounds_of_pushes : 0;
   for (int round = 0; round <= most_rounds && follow_all(step.x, ahead_); ++round) {
