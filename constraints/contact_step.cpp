@@ -175,7 +175,7 @@ ContactReport ContactStep::finish(VecX& x_new, VecX& v_new) {
     if (report.self_guarded > 0 || report.tangled > 0)
       constraints_->contacts_.look_again();  // these went otherwise than bodies were told
     constraints_->contacts_.commit();
-    constraints_->faces_.end_step(constraints_->bodies_, step.x, x_new);
+    constraints_->faces_.end_step(constraints_->bodies_, step.x, x_new, v_new);
     const BodyMeetingReport met =
         constraints_->meeting_.end_step(constraints_->bodies_, constraints_->contacts_.nips());
     report.converged = report.converged && met.settled;

@@ -1,6 +1,8 @@
 #include "constraints/face_contact.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 #include "mesh/base/parallel.h"
 #include "mesh/distance/closest_on_triangle.h"
@@ -13,7 +15,13 @@ constexpr double slow = 1e-3;  // m/s
 // A contact that has changed this often within a step changes again only when no other does, and alone.
 constexpr int most_changes = 3;
 constexpr int most_steps = 24;  // steps of the search for the lowest point
-constexpr double fine = 0.01;   // where the search ends, as a share of the size of the triangle
+constexpr int most_met = most_steps + 1;
+constexpr double fine = 0.001;  // where the search ends, as a share of the size of the triangle
+constexpr double rough = 0.01;  // and where it ends on a triangle that is too far off to touch
+constexpr double beside = 0.1;  // normals that are met within this share of it count as those of one place
+constexpr double apart = 0.1;   // of two points at which a body touches a triangle, as such a share
+constexpr double level =
+    0.1;  // a mean of normals that is shorter, or shorter along the triangle, leads nowhere
 const Vec3 middle = Vec3::Constant(1.0 / 3);
 
 struct Corners {
@@ -32,7 +40,51 @@ struct Corners {
 struct Lowest {
   Vec3 point;
   Vec3 weights;
-  double distance;
+  SurfacePoint surface;  // its normal is the one that leads straight out of the triangle
+};
+
+// The normals that a search meets. Behind a rim or a corner of the body the lowest point is where two or three of
+// the body's faces are equally near. The normal of none of them leads straight out of the triangle, but that of
+// their means does which is the shortest along the triangle. Where it has a part along the triangle, that part
+// leads along the rim to what is lower [Burke, Lewis & Overton 2005].
+class MetNormals {
+ public:
+  explicit MetNormals(const Vec3& upright) : upright_(upright) {}
+  // from: the normal where the search came from. What lies outside the body and faces the other way is another
+  // part of its surface.
+  void add(const Vec3& place, const SurfacePoint& met, const Vec3& from) {
+    if (met.distance <= 0 || met.normal.dot(from) > -0.5)
+      met_[static_cast<std::size_t>(count_++)] = {place, met.normal};
+  }
+
+  Vec3 along(const Vec3& n) const { return n - upright_.dot(n) * upright_; }
+  // The mean that is shortest along the triangle, of `normal` and those of the `last` that were met within this
+  // distance [m] of p. It is found by pairs, and nearly the shortest after two rounds.
+  Vec3 straightest(const Vec3& p, Vec3 normal, double within, int last) const {
+    const int begin = std::max(0, count_ - last);
+    for (int round = 0; round < 2; ++round)
+      for (const Met& met : std::span(met_).subspan(begin, count_ - begin))
+        if ((met.place - p).squaredNorm() <= within * within) normal = between(normal, met.normal);
+    return normal;
+  }
+
+ private:
+  struct Met {
+    Vec3 place, normal;
+  };
+  // The mean of a and b that is shortest along the triangle, or a where they nearly cancel each other, as in the
+  // middle of a plate.
+  Vec3 between(const Vec3& a, const Vec3& b) const {
+    const Vec3 change = along(b - a);
+    const double squares = change.squaredNorm();
+    const double share = squares > 0 ? std::clamp(-a.dot(change) / squares, 0.0, 1.0) : 0.0;
+    const Vec3 mean = a + share * (b - a);
+    return mean.norm() < level ? a : Vec3(mean.normalized());
+  }
+
+  Vec3 upright_;
+  std::array<Met, most_met> met_;
+  int count_ = 0;
 };
 
 // Finds the point of the triangle that is nearest to the body. The search starts from the middle of the
@@ -46,7 +98,7 @@ Lowest lowest_point(const Corners& t, const Distance& distance, double enough, c
   SurfacePoint here = distance(p);
   Vec3 weights = middle;
   const double size = t.radius();
-  if (here.distance - size > enough) return {p, weights, here.distance - size};  // all of it is farther
+  if (const double least = here.distance - size; least > enough) return {p, weights, {least, here.normal}};
   if (likely != weights) {
     const Vec3 q = likely[0] * t.a + likely[1] * t.b + likely[2] * t.c;
     if (const SurfacePoint there = distance(q); there.distance < here.distance) {
@@ -55,20 +107,24 @@ Lowest lowest_point(const Corners& t, const Distance& distance, double enough, c
       weights = likely;
     }
   }
-  const Vec3 upright = twice_area_normal(t.a, t.b, t.c).stableNormalized();
+  MetNormals met(twice_area_normal(t.a, t.b, t.c).stableNormalized());
+  met.add(p, here, here.normal);
   double step = size;
-  for (int i = 0; i < most_steps && step > fine * size; ++i) {
-    const Vec3 along = here.normal - upright.dot(here.normal) * upright;
-    const double slope = along.norm();
-    if (slope < fine) break;
+  for (int i = 0; i < most_steps && step > (here.distance > enough ? rough : fine) * size; ++i) {
+    const Vec3 steepest = met.along(here.normal);
+    // What was tried in vain last lies two steps away.
+    const Vec3 mean = met.along(met.straightest(p, here.normal, 2.1 * step, 4));
+    const Vec3& slope = mean.norm() > level ? mean : steepest;
+    if (slope.norm() < fine) break;
     const bool first = i == 0 && here.distance > 0;
-    const Vec3 wanted = first ? Vec3(p - here.distance * here.normal) : Vec3(p - step / slope * along);
+    const Vec3 wanted = p - (first ? Vec3(here.distance * here.normal) : Vec3(step * slope.normalized()));
     const auto [q, feature] = closest_on_triangle(wanted, t.a, t.b, t.c);
     if ((q - p).squaredNorm() < fine * fine * size * size) {
       if (first) continue;
       break;  // p is at the rim of the triangle, and the slope leads out of it
     }
     const SurfacePoint there = distance(q);
+    met.add(q, there, here.normal);
     if (there.distance < here.distance - 1e-9) {
       weights = weights_on_triangle(q, feature, t.a, t.b, t.c);
       p = q;
@@ -77,7 +133,16 @@ Lowest lowest_point(const Corners& t, const Distance& distance, double enough, c
       step /= 2;
     }
   }
-  return {p, weights, here.distance};
+  here.normal = met.straightest(p, here.normal, beside * size, most_met);
+  return {p, weights, here};
+}
+
+// Sets push and slip by the motion that was found, and returns the gap [m].
+double measure(FaceContact& c, const VecX& x_new, const VecX& v_new) {
+  const double gap = c.gap_at(x_new);
+  c.push = std::max(-c.stiffness * gap, 0.0);
+  c.slip = c.slip_at(v_new).norm();
+  return gap;
 }
 
 }  // namespace
@@ -150,12 +215,18 @@ void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const std::
 }
 
 void FaceContacts::limit_dampers(const std::vector<double>& masses, double h) {
-  for (FaceContact& c : touching_) {
+  const auto of_one_face = [&](std::size_t a, std::size_t b) {
+    return b < touching_.size() && touching_[a].body == touching_[b].body &&
+           touching_[a].face == touching_[b].face;
+  };
+  for (std::size_t i = 0; i < touching_.size(); ++i) {
+    FaceContact& c = touching_[i];
     double mobility = 0;  // 1/kg
     for (std::size_t k = 0; k < 3; ++k)
       if (const double m = masses[c.particles[k]]; m > 0)
         mobility += c.weights[static_cast<int>(k)] * c.weights[static_cast<int>(k)] / m;
-    c.most_damper = 0.125 / (h * mobility);
+    const int contacts = of_one_face(i, i + 1) || (i > 0 && of_one_face(i - 1, i)) ? 2 : 1;
+    c.most_damper = 0.125 / (contacts * h * mobility);
     c.damper = std::min(c.damper, c.most_damper);
   }
 }
@@ -178,44 +249,68 @@ void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX
   double& room = room_[entry];
   Vec3& likely = likely_[entry];
   const double offset = 0.5 * body.obstacle().margin, reach = offset + travel(face);
-  const auto& corners = faces_[f].particles;
+  const auto& corners = face.particles;
   if (room > reach || std::any_of(corners.begin(), corners.end(), [&](int i) { return clamped_[i] != 0; }))
     return;
-  const Lowest start = lowest_point(
-      Corners(face, x), [&](const Vec3& p) { return body.near_start(p); }, reach, likely);
+  const Corners now(face, x);
+  const auto at_start = [&](const Vec3& p) { return body.near_start(p); };
+  const auto at_end = [&](const Vec3& p) { return body.near_end(p); };
+  const Lowest start = lowest_point(now, at_start, reach, likely);
   likely = start.weights;
-  room = start.distance;
+  room = start.surface.distance;
   if (room > reach) return;
-  const Lowest end = lowest_point(
-      Corners(face, x_new), [&](const Vec3& p) { return body.near_end(p); }, offset, likely);
-  if (start.distance > offset && end.distance > offset) return;  // the triangle passes by
-  const SurfacePoint below = body.at_start(start.point);
-  if (below.covered) return;  // its vertices go with the body
-  const ContactPlane plane = body.plane(start.point, below, body.carried(start.point));
-  const double depth = std::max(plane.gap + body.obstacle().margin - offset, -std::max(recovery, offset));
-  FaceContact contact{.body = body.number(),
-                      .face = f,
-                      .particles = face.particles,
-                      .weights = start.weights,
-                      .stiffness = face.stiffness,
-                      .normal = plane.normal,
-                      .place = start.point,
-                      .gap = depth - plane.normal.dot(body.carried(start.point)),
-                      .body_velocity = plane.body_velocity,
-                      .friction = body.obstacle().friction.kinetic};
-  contact.active = contact.gap_at(x_new) < 0;
-  if (const FaceContact* const old = before(contact.body, f)) {
-    contact.active = contact.active || old->active;
-    contact.damper = old->rubbing();
-  }
-  found.push_back(contact);
+  if (room > offset && lowest_point(Corners(face, x_new), at_end, offset, likely).surface.distance > offset)
+    return;                           // the triangle passes by
+  if (start.surface.covered) return;  // its vertices go with the body
+
+  // A rim that lies along the triangle touches it at many points, and the lowest is now this one, now that.
+  const Before last = before(body.number(), f, start.weights);
+  const auto touches_still = [&](const FaceContact* c) {
+    if (!c) return false;
+    const Vec3 p = c->at(x);
+    if ((p - start.point).norm() < apart * now.radius()) return false;
+    const SurfacePoint there = at_start(p);
+    return !there.covered && there.normal.dot(start.surface.normal) > 0 &&
+           (there.distance < offset || at_end(c->at(x_new)).distance < offset);
+  };
+  const FaceContact* const other = touches_still(last.farthest)  ? last.farthest
+                                   : touches_still(last.nearest) ? last.nearest
+                                                                 : nullptr;
+  const auto touch = [&](const Vec3& weights, const Vec3& place, const FaceContact* old) {
+    FaceContact contact = make(f, body, weights, place, start.surface.normal, recovery);
+    contact.active = contact.gap_at(x_new) < 0 || (old && old->active);
+    if (old) contact.damper = old->rubbing();
+    found.push_back(contact);
+  };
+  touch(start.weights, start.point, last.nearest != other ? last.nearest : nullptr);
+  if (other) touch(other->weights, other->at(x), other);
 }
 
-const FaceContact* FaceContacts::before(int body, int face) const {
-  const auto at = std::lower_bound(
-      last_.begin(), last_.end(), std::pair(body, face),
-      [](const FaceContact& c, const std::pair<int, int>& key) { return std::pair(c.body, c.face) < key; });
-  return at != last_.end() && at->body == body && at->face == face ? &*at : nullptr;
+FaceContact FaceContacts::make(int f, const MovingBody& body, const Vec3& weights, const Vec3& place,
+                               const Vec3& normal, double recovery) const {
+  const ContactPlane plane = body.plane(place, body.at_start(place), body.carried(place));
+  const double margin = body.obstacle().margin, offset = 0.5 * margin;
+  const double depth = std::max(plane.gap + margin - offset, -std::max(recovery, offset));
+  const Vec3 turned = body.turned(normal);
+  return {.body = body.number(),
+          .face = f,
+          .particles = faces_[f].particles,
+          .weights = weights,
+          .stiffness = faces_[f].stiffness,
+          .normal = turned,
+          .place = place,
+          .gap = depth - turned.dot(body.carried(place)),
+          .body_velocity = plane.body_velocity,
+          .friction = body.obstacle().friction.kinetic};
+}
+
+FaceContacts::Before FaceContacts::before(int body, int face, const Vec3& weights) const {
+  const auto key = [](const FaceContact& c) { return std::pair(c.body, c.face); };
+  const auto begin = std::ranges::lower_bound(last_, std::pair(body, face), {}, key);
+  const auto end = std::ranges::upper_bound(begin, last_.end(), std::pair(body, face), {}, key);
+  if (begin == end) return {};
+  const auto away = [&](const FaceContact& c) { return (c.weights - weights).squaredNorm(); };
+  return {&*std::ranges::min_element(begin, end, {}, away), &*std::ranges::max_element(begin, end, {}, away)};
 }
 
 void FaceContacts::follow(const std::vector<MovingBody>& bodies) {
@@ -240,9 +335,7 @@ bool FaceContacts::react(const VecX& x_new, const VecX& v_new) {
   bool changed = false;
   FaceContact* worst = nullptr;
   for (FaceContact& c : touching_) {
-    const double gap = c.gap_at(x_new);
-    c.push = std::max(-c.stiffness * gap, 0.0);
-    c.slip = c.slip_at(v_new).norm();
+    const double gap = measure(c, x_new, v_new);
     if (c.damper == 0 && c.rubbing() > 0) {
       c.damper = std::min(c.rubbing(), c.most_damper);
       changed = true;
@@ -269,8 +362,10 @@ bool FaceContacts::react(const VecX& x_new, const VecX& v_new) {
   return changed;
 }
 
-void FaceContacts::end_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new) {
+void FaceContacts::end_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new,
+                            const VecX& v_new) {
   if (faces_.empty()) return;
+  for (FaceContact& c : touching_) measure(c, x_new, v_new);
   last_ = touching_;
   for (const MovingBody& body : bodies) {
     measure_travel(body, x, x_new);

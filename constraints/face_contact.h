@@ -1,7 +1,8 @@
 // Triangles of the cloth against bodies. With contact at vertices alone, the corner of a table would come
 // through the middle of a triangle, or its rim through an edge. A stiff spring on the three corners of a
 // triangle keeps the body off.
-//   p = sum w_k x_k    the point of the triangle that is nearest to the body, or deepest in it
+//   p = sum w_k x_k    the point of the triangle that is nearest to the body, or deepest in it. A second contact
+//                      stays at the point of the step before as long as that touches and is not near the first.
 //   g = g_0 + n . (sum w_k (x_k - x_k0) - h v_b)     the gap of p to the surface, offset by half the margin:
 //                                                    a triangle touches nothing where its vertices rest
 //   E = k/2 g^2 for g < 0,   f_k = -k g w_k n,   K_kl = k w_k w_l n n^T
@@ -10,8 +11,9 @@
 //             `slow` [m/s] the triangle creeps instead of sticking.
 // A constraint would lock two or three particles to each other, which a filter of 3x3 blocks cannot express.
 // The blocks of the spring stand where those of the triangle's edges stand. k is the cloth's own membrane
-// stiffness: so the spring changes neither the condition of the matrix nor the longest step that explicit
-// methods bear, and a load that stretches the cloth by a hundredth makes it sink in by as little.
+// stiffness, and a triangle has two springs at most: so they change neither the condition of the matrix nor the
+// longest step that explicit methods bear by much, and a load that stretches the cloth by a hundredth makes it
+// sink in by as little.
 // Which springs act is an active set: it is predicted at x + h v, and react() corrects it until it agrees
 // with the solve. x [m], v [m/s], k [N/m], h [s].
 #pragma once
@@ -42,10 +44,10 @@ struct FaceContact {
   Vec3 body_velocity;  // m/s
   double friction;     // mu
   bool active = false;
-  int changes = 0;                                               // of `active` within this step
-  double push = 0;                                               // normal force of the last solve [N]
-  double slip = 0;                                               // |u| of the last solve [m/s]
-  double damper = 0;                                             // of the friction in this step [N s/m]
+  int changes = 0;    // of `active` within this step
+  double push = 0;    // normal force of the last solve, and then of the end of the step [N]
+  double slip = 0;    // |u| then [m/s]
+  double damper = 0;  // of the friction in this step [N s/m]
   double most_damper = std::numeric_limits<double>::infinity();  // upper bound of `damper` [N s/m]
 
   template <class Vector>
@@ -92,7 +94,7 @@ class FaceContacts {
   double imbalance(double h, const VecX& x_new) const;
   // Finds after a solve which contacts act; true when that has changed.
   bool react(const VecX& x_new, const VecX& v_new);
-  void end_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new);
+  void end_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new, const VecX& v_new);
 
   // The impulse of the step on the bodies. Where a step has stages, count_impulse adds the force at x, v
   // times its duration [s]; otherwise take_impulse takes the force at the end of the step.
@@ -109,7 +111,14 @@ class FaceContacts {
   double travel(const ClothFace& face) const;
   void look(int face, const MovingBody& body, const VecX& x, const VecX& x_new, double recovery,
             std::vector<FaceContact>& found);
-  const FaceContact* before(int body, int face) const;
+  FaceContact make(int face, const MovingBody& body, const Vec3& weights, const Vec3& place,
+                   const Vec3& normal, double recovery) const;
+  // Of the contacts of a face in the last completed step, those whose points are nearest to these weights and
+  // farthest from them. Null where it had none.
+  struct Before {
+    const FaceContact *nearest = nullptr, *farthest = nullptr;
+  };
+  Before before(int body, int face, const Vec3& weights) const;
 
   std::vector<ClothFace> faces_;
   // By body and face: the distance within which the body was not when last looked [m], less what has been

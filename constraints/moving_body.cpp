@@ -62,6 +62,10 @@ Vec3 MovingBody::carried(const Vec3& x) const {
   return end_.to_world(drape::carried(obstacle_.shape, start_.to_body(x)));
 }
 
+Vec3 MovingBody::turned(const Vec3& direction) const {
+  return turns_ ? end_.direction_to_world(start_.direction_to_body(direction)) : direction;
+}
+
 MovingBody::Mark MovingBody::mark(const Vec3& x) const {
   const Vec3 X = now_.to_body(x);
   if (const DeformingBody* const body = deforming(obstacle_.shape)) return {X, body->surface->anchor(X, 1)};

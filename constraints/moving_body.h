@@ -79,6 +79,8 @@ class MovingBody {
   SurfacePoint at_start(const Vec3& x) const;  // in the body's frame
   Vec3 carried(const Vec3& x) const;
   Vec3 carried(const Mark& mark) const;
+  // A direction at the start of the step, as the body turns it until the end. What deforms is taken as if it did not.
+  Vec3 turned(const Vec3& direction) const;
   Vec3 velocity(const Vec3& x) const { return (carried(x) - x) / h_; }
   // The most that a point within `reach` [m] of X, in the body's frame, moves in this step, over the time [m/s].
   double fastest_carried(const Vec3& X, double reach) const;
