@@ -57,12 +57,13 @@ TEST_CASE("a triangle that cuts a plate, or a blade, is pushed somewhere", "[fac
         INFO(thickness << " m, tilted by " << tilt << ", turned by " << turn);
         const Mat3 R = rotation(turn, {1, 2, 3}) * rotation(tilt, Vec3::UnitZ());
         TriangleMesh one;
-        for (const Vec3& x : {Vec3(-0.02, 0.001, -0.01), Vec3(0.021, 0.002, -0.012), Vec3(0.001, 0.0015, 0.02)})
+        for (const Vec3& x :
+             {Vec3(-0.02, 0.001, -0.01), Vec3(0.021, 0.002, -0.012), Vec3(0.001, 0.0015, 0.02)})
           one.positions.push_back(R * x);
         one.triangles = {{0, 1, 2}};
         Constraints constraints;
-        constraints.add(
-            Obstacle{.shape = Box{{0, 0, 0}, {thickness, 0.1, 0.1}, rotation(turn, {1, 2, 3})}, .margin = 2e-3});
+        constraints.add(Obstacle{.shape = Box{{0, 0, 0}, {thickness, 0.1, 0.1}, rotation(turn, {1, 2, 3})},
+                                 .margin = 2e-3});
         constraints.add_faces({{{0, 1, 2}, 500}});
         const State state = at_rest(one);
         const ContactStep step =
@@ -123,7 +124,8 @@ TEST_CASE("cloth that is drawn over the corners and rims of a box comes to rest"
 }
 
 TEST_CASE("what a face's contact remembers is its push at the end of the step", "[faces]") {
-  for (const std::string& name : {std::string("implicit-euler"), std::string("bdf2"), std::string("newton-kinsol")}) {
+  for (const std::string& name :
+       {std::string("implicit-euler"), std::string("bdf2"), std::string("newton-kinsol")}) {
     DrawnSheet sheet(8, Kind::squares, 0.3, name);
     int pushing = 0;
     for (int k = 0; k < 40; ++k) {
