@@ -20,8 +20,7 @@ constexpr double fine = 0.001;  // where the search ends, as a share of the size
 constexpr double rough = 0.01;  // and where it ends on a triangle that is too far off to touch
 constexpr double beside = 0.1;  // normals that are met within this share of it count as those of one place
 constexpr double apart = 0.1;   // of two points at which a body touches a triangle, as such a share
-constexpr double level =
-    0.1;  // a mean of normals that is shorter, or shorter along the triangle, leads nowhere
+constexpr double level = 0.1;   // a mean of normals that is shorter leads nowhere, nor does such a part of it
 const Vec3 middle = Vec3::Constant(1.0 / 3);
 
 struct Corners {
@@ -98,6 +97,7 @@ Lowest lowest_point(const Corners& t, const Distance& distance, double enough, c
   SurfacePoint here = distance(p);
   Vec3 weights = middle;
   const double size = t.radius();
+  // All of the triangle is farther off than `enough`.
   if (const double least = here.distance - size; least > enough) return {p, weights, {least, here.normal}};
   if (likely != weights) {
     const Vec3 q = likely[0] * t.a + likely[1] * t.b + likely[2] * t.c;
