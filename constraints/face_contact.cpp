@@ -14,13 +14,14 @@ namespace {
 constexpr double slow = 1e-3;  // m/s
 // A contact that has changed this often within a step changes again only when no other does, and alone.
 constexpr int most_changes = 3;
-constexpr int most_steps = 24;  // steps of the search for the lowest point
-constexpr int most_met = most_steps + 1;
-constexpr double fine = 0.001;  // where the search ends, as a share of the size of the triangle
-constexpr double rough = 0.01;  // and where it ends on a triangle that is too far off to touch
+constexpr int most_steps = 24;            // steps of the search for the lowest point
+constexpr int most_met = most_steps + 1;  // where it begins, and where each step leads
+constexpr double fine = 0.001;            // where the search ends, as a share of the size of the triangle
+constexpr double rough = 0.01;            // and where it ends on a triangle that is too far off to touch
 constexpr double beside = 0.1;  // normals that are met within this share of it count as those of one place
 constexpr double apart = 0.1;   // of two points at which a body touches a triangle, as such a share
-constexpr double level = 0.1;   // a mean of normals that is shorter leads nowhere, nor does such a part of it
+// A mean of normals, or its part along the triangle, that is shorter than this tells no direction.
+constexpr double level = 0.1;
 const Vec3 middle = Vec3::Constant(1.0 / 3);
 
 struct Corners {
