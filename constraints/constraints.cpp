@@ -140,7 +140,7 @@ void Constraints::go_back() {
 std::vector<double> Constraints::penetration(const VecX& x) const {
   std::vector<double> depth(static_cast<std::size_t>(x.size() / 3), 0.0);
   const int n = static_cast<int>(depth.size());
-  for_chunks(n, [&](int begin, int end) {
+  for_chunks<Work::heavy>(n, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
       for (const MovingBody& body : bodies_)
         depth[i] = std::max(depth[i], radius_of(i) - body.distance(x.segment<3>(3 * i)));

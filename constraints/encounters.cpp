@@ -196,17 +196,19 @@ void Encounters::measure(const Change& change, Ranges& ranges) const {
   constexpr int patches_at_once = 8;
   const int patches = static_cast<int>(patch_start_.size()) - 1;
   ranges.resize(static_cast<std::size_t>(patches));
-  parallel_for((patches + patches_at_once - 1) / patches_at_once, particles_ < serial_below, [&](int chunk) {
-    for (int p = chunk * patches_at_once; p < std::min(patches, (chunk + 1) * patches_at_once); ++p) {
-      Range range;
-      for (int k = patch_start_[p]; k < patch_start_[p + 1]; ++k) {
-        const Eigen::Array3d value = change(patch_[k]);
-        range.lower = range.lower.min(value);
-        range.upper = range.upper.max(value);
-      }
-      ranges[p] = range;
-    }
-  });
+  parallel_for((patches + patches_at_once - 1) / patches_at_once, particles_ < serial_below(Work::heavy),
+               [&](int chunk) {
+                 for (int p = chunk * patches_at_once; p < std::min(patches, (chunk + 1) * patches_at_once);
+                      ++p) {
+                   Range range;
+                   for (int k = patch_start_[p]; k < patch_start_[p + 1]; ++k) {
+                     const Eigen::Array3d value = change(patch_[k]);
+                     range.lower = range.lower.min(value);
+                     range.upper = range.upper.max(value);
+                   }
+                   ranges[p] = range;
+                 }
+               });
 }
 
 bool Encounters::follow(const VecX& x, const VecX& x_new, double gap) {
@@ -286,7 +288,7 @@ bool Encounters::make_lists(double gap, bool fitted) {
   }
   if (!stale_.empty() && !fitted) boxes_->refit(faces_, start_, end_);
   std::atomic<std::size_t> count = kept;
-  parallel_for(static_cast<int>(stale_.size()), particles_ < serial_below, [&](int k) {
+  parallel_for(static_cast<int>(stale_.size()), particles_ < serial_below(Work::heavy), [&](int k) {
     if (count > most) return;
     Group& g = groups_[stale_[k]];
     make_list(g, gap);
@@ -362,7 +364,7 @@ void Encounters::read_clocks(const VecX& x, const VecX& x_new) {
   for (Group& g : groups_)
     g.clock.end = g.clock.start + difference(of_motion_[g.first], of_motion_[g.second]).matrix().norm();
   if (beside_.list.empty()) return;
-  for_chunks(static_cast<int>(clock_.size()), [&](int begin, int end) {
+  for_chunks<Work::heavy>(static_cast<int>(clock_.size()), [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const Vec3 own = motion(i);
       double most = 0;

@@ -162,7 +162,7 @@ std::vector<Meeting>& Encounters::select(Kind kind, const VecX& x, const VecX& x
     Group& g = groups_[k];
     select_list(g.pairs, {0, g.edges_from, static_cast<int>(g.pairs.list.size())}, g.clock, g.due, found);
   });
-  select_chunks(static_cast<int>(clock_.size()), chunk_size, [&](int c, std::vector<Meeting>& found) {
+  select_chunks(static_cast<int>(clock_.size()), heavy_chunk_size, [&](int c, std::vector<Meeting>& found) {
     select_list(beside_, {beside_start_[c], beside_edges_[c], beside_start_[c + 1]}, clock_[c],
                 beside_due_[c], found);
   });
@@ -174,7 +174,7 @@ template <class Select>
 void Encounters::select_chunks(int n, int in_a_chunk, const Select& select) {
   const int count = (n + in_a_chunk - 1) / in_a_chunk;
   if (chunks_.size() < static_cast<std::size_t>(count)) chunks_.resize(count);
-  parallel_for(count, particles_ < serial_below, [&](int chunk) {
+  parallel_for(count, particles_ < serial_below(Work::heavy), [&](int chunk) {
     std::vector<Meeting>& found = chunks_[chunk];
     found.clear();
     for (int k = chunk * in_a_chunk; k < std::min(n, (chunk + 1) * in_a_chunk); ++k) select(k, found);

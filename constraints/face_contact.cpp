@@ -176,7 +176,7 @@ void FaceContacts::part(const Parting& parting) {
 
 void FaceContacts::measure_travel(const MovingBody& body, const VecX& x, const VecX& x_new) {
   travel_.resize(static_cast<std::size_t>(x.size() / 3));
-  for_chunks(static_cast<int>(travel_.size()), [&](int begin, int end) {
+  for_chunks<Work::heavy>(static_cast<int>(travel_.size()), [&](int begin, int end) {
     for (int i = begin; i < end; ++i) travel_[i] = body.travel(x.segment<3>(3 * i), x_new.segment<3>(3 * i));
   });
 }
@@ -194,7 +194,7 @@ void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const std::
   if (room_.size() != bodies.size() * faces_.size()) {
     room_.assign(bodies.size() * faces_.size(), 0.0);
     likely_.assign(room_.size(), middle);
-    found_.resize(static_cast<std::size_t>(chunk_count(n)));
+    found_.resize(static_cast<std::size_t>(heavy_chunk_count(n)));
     last_.clear();
   }
   touching_.clear();
@@ -205,10 +205,10 @@ void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const std::
       clamped_[c.particle] = 1;  // by two bodies, and not where one overlaps itself
   for (const MovingBody& body : bodies) {
     measure_travel(body, x, x_new);
-    parallel_for(chunk_count(n), n < serial_below, [&](int k) {
+    parallel_for(heavy_chunk_count(n), n < serial_below(Work::heavy), [&](int k) {
       auto& found = found_[k];
       found.clear();
-      for (int f = k * chunk_size; f < std::min(n, (k + 1) * chunk_size); ++f)
+      for (int f = k * heavy_chunk_size; f < std::min(n, (k + 1) * heavy_chunk_size); ++f)
         look(f, body, x, x_new, recovery, found);
     });
     for (const auto& found : found_) touching_.insert(touching_.end(), found.begin(), found.end());
@@ -371,7 +371,7 @@ void FaceContacts::end_step(const std::vector<MovingBody>& bodies, const VecX& x
   for (const MovingBody& body : bodies) {
     measure_travel(body, x, x_new);
     double* const room = &room_[static_cast<std::size_t>(body.number()) * faces_.size()];
-    for_chunks(static_cast<int>(faces_.size()), [&](int begin, int end) {
+    for_chunks<Work::heavy>(static_cast<int>(faces_.size()), [&](int begin, int end) {
       for (int f = begin; f < end; ++f) room[f] -= travel(faces_[f]);
     });
   }

@@ -40,8 +40,8 @@ Contact clamped(int particle, const MovingBody& body, const SurfacePoint& start,
 template <class F>
 void for_free(const StepMotion& step, const F& f) {
   const int n = static_cast<int>(step.held.size());
-  parallel_for(chunk_count(n), n < serial_below, [&](int k) {
-    for (int i = k * chunk_size; i < std::min(n, (k + 1) * chunk_size); ++i)
+  parallel_for(heavy_chunk_count(n), n < serial_below(Work::heavy), [&](int k) {
+    for (int i = k * heavy_chunk_size; i < std::min(n, (k + 1) * heavy_chunk_size); ++i)
       if (!step.is_held(i)) f(i, static_cast<std::size_t>(k));
   });
 }
@@ -85,7 +85,7 @@ void ParticleContacts::prepare(int particles, std::size_t bodies) {
   nip_of_.assign(n, -1);
   nips_.clear();
   correction_ = VecX::Zero(3 * particles);
-  const auto chunks = static_cast<std::size_t>(chunk_count(particles));
+  const auto chunks = static_cast<std::size_t>(heavy_chunk_count(particles));
   found_.resize(chunks);
   responses_.resize(chunks);
   deepest_.resize(chunks);
@@ -95,7 +95,7 @@ void ParticleContacts::prepare(int particles, std::size_t bodies) {
   committed_.reserve(n);
   friction_.reserve(2 * n);
   nips_.reserve(n);
-  for (auto& found : found_) found.reserve(chunk_size);
+  for (auto& found : found_) found.reserve(heavy_chunk_size);
 }
 
 void ParticleContacts::look_again() { std::fill(clearance_.begin(), clearance_.end(), 0.0); }

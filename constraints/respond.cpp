@@ -18,13 +18,13 @@ void ParticleContacts::respond(ContactMode mode, const Bodies& bodies, const Ste
   const int n = static_cast<int>(x.size() / 3);
   x_new = x;
   v_new = v;
-  parallel_for(chunk_count(n), n < serial_below, [&](int k) {
+  parallel_for(heavy_chunk_count(n), n < serial_below(Work::heavy), [&](int k) {
     const auto chunk = static_cast<std::size_t>(k);
     found_[chunk].clear();
     responses_[chunk].clear();
-    responses_[chunk].reserve(3 * chunk_size);
+    responses_[chunk].reserve(3 * heavy_chunk_size);
     deepest_[chunk] = 0;
-    for (int i = k * chunk_size; i < std::min(n, (k + 1) * chunk_size); ++i)
+    for (int i = k * heavy_chunk_size; i < std::min(n, (k + 1) * heavy_chunk_size); ++i)
       if (!step.is_held(i)) respond(mode, i, bodies, step, chunk, x_new, v_new);
   });
   trial_.clear();

@@ -254,7 +254,7 @@ double SelfContacts::imbalance(double h, const VecX& x_new) const {
 double SelfContacts::share_of_way(double slope, double curvature, const VecX& x_new) const {
   const auto slope_at = [&](double t) {
     return slope + curvature * (t - 1) +
-           sum_chunks(static_cast<int>(touching_.size()), [&](int begin, int end) {
+           sum_chunks<Work::heavy>(static_cast<int>(touching_.size()), [&](int begin, int end) {
              double sum = 0;
              for (int k = begin; k < end; ++k) {
                const SelfContact& c = touching_[k];

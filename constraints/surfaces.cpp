@@ -115,7 +115,7 @@ void Surfaces::look_again(const std::vector<MovingBody>& bodies, const std::vect
   for (std::size_t i = 0; i < places.size(); ++i)
     places[i] = step_.x.segment<3>(3 * static_cast<Eigen::Index>(i));
   std::vector<char> in(places.size(), 0);
-  for_chunks(cloth_, [&](int begin, int end) {
+  for_chunks<Work::heavy>(cloth_, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
       for (const auto& [number, first] : surfaces_)
         if (pinched_[i] != 0 && bodies[number].near_start(places[i]).distance < -inside) in[i] = 1;

@@ -57,7 +57,7 @@ void add_reports_of_steps(py::module_& m) {
                     "solves for which the linear solver 'auto' took ppcg+multigrid")
       .def_readonly("linear_iterations", &StepReport::linear_iterations)
       .def_readonly("rescues", &StepReport::rescues,
-                    "Newton iterations cut short, so that energy is not made")
+                    "Newton iterations that raised the potential, so that another one followed")
       .def_readonly("guarded", &StepReport::guarded, "particles stopped at a surface outside the equations")
       .def_readonly("self_contacts", &StepReport::self_contacts,
                     "pairs of cloth and cloth that push each other")

@@ -10,8 +10,12 @@
 
 namespace drape {
 
-// Below this many particles a second thread costs more than it brings.
-inline constexpr int serial_below = 3000;
+// What a loop does for each item. Light: it reads and writes a few numbers of a vector. Heavy: it goes through a row of
+// a matrix, or works out a force or a contact.
+enum class Work { light, heavy };
+
+// For fewer items a second thread costs more than it brings.
+constexpr int serial_below(Work work) { return work == Work::light ? 2000 : 600; }
 
 // Calls f(k) for k = 0 .. count-1, in any order. f(k) must not write what another call f(l) touches.
 template <class F>
@@ -32,19 +36,22 @@ void even_then_odd(int count, bool serial, const F& f) {
     parallel_for((count + 1 - parity) / 2, serial, [&](int k) { f(2 * k + parity); });
 }
 
-inline constexpr int chunk_size = 512;
+// Chunks of heavy work are small, so that two threads share the few of a small cloth. All sums have the same chunks.
+inline constexpr int chunk_size = 512, heavy_chunk_size = 128;
 inline int chunk_count(int n) { return (n + chunk_size - 1) / chunk_size; }
+inline int heavy_chunk_count(int n) { return (n + heavy_chunk_size - 1) / heavy_chunk_size; }
 
 // Calls f(begin, end) for consecutive chunks of [0, n).
-template <class F>
+template <Work work = Work::light, class F>
 void for_chunks(int n, const F& f) {
-  parallel_for(chunk_count(n), n < serial_below,
-               [&](int k) { f(k * chunk_size, std::min(n, (k + 1) * chunk_size)); });
+  constexpr int size = work == Work::light ? chunk_size : heavy_chunk_size;
+  parallel_for((n + size - 1) / size, n < serial_below(work),
+               [&](int k) { f(k * size, std::min(n, (k + 1) * size)); });
 }
 
 // The sum of f(begin, end) over the chunks of [0, n). f returns one number or any type that has +=. Groups of
 // up to `max_partials` chunks are computed in parallel and then added in order.
-template <class F>
+template <Work work = Work::light, class F>
 auto sum_chunks(int n, const F& f) {
   using Sum = decltype(f(0, 0));
   constexpr int max_partials = 1024;
@@ -53,7 +60,7 @@ auto sum_chunks(int n, const F& f) {
   const int chunks = chunk_count(n);
   for (int base = 0; base < chunks; base += max_partials) {
     const int here = std::min(max_partials, chunks - base);
-    parallel_for(here, n < serial_below, [&](int k) {
+    parallel_for(here, n < serial_below(work), [&](int k) {
       const int begin = (base + k) * chunk_size;
       partial[k] = f(begin, std::min(n, begin + chunk_size));
     });

@@ -127,15 +127,16 @@ void MovingBoxes::fit_node(Node& node, int child) const {
 
 void MovingBoxes::refit(const std::vector<Face>& faces, const std::vector<Vec3>& start,
                         const std::vector<Vec3>& end) {
-  const Eigen::AlignedBox3d box = sum_chunks(static_cast<int>(faces.size()), [&](int begin, int after) {
-                                    Extent extent;
-                                    for (int f = begin; f < after; ++f)
-                                      for (int v : faces[f].v) extent.box.extend(start[v]).extend(end[v]);
-                                    return extent;
-                                  }).box;
+  const Eigen::AlignedBox3d box =
+      sum_chunks<Work::heavy>(static_cast<int>(faces.size()), [&](int begin, int after) {
+        Extent extent;
+        for (int f = begin; f < after; ++f)
+          for (int v : faces[f].v) extent.box.extend(start[v]).extend(end[v]);
+        return extent;
+      }).box;
   origin_ = box.center();
   slack_ = static_cast<float>(1e-6 * box.diagonal().norm()) + std::numeric_limits<float>::min();
-  for_chunks(static_cast<int>(nodes_.size()), [&](int begin, int after) {
+  for_chunks<Work::heavy>(static_cast<int>(nodes_.size()), [&](int begin, int after) {
     for (int n = begin; n < after; ++n)
       for (int child = 0; child < 4; ++child)
         if (nodes_[n].count[child] > 0) fit_leaf(nodes_[n], child, faces, start, end);

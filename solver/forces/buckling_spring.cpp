@@ -20,10 +20,8 @@ double clamp_crossing(double c_hat) {
   constexpr double four_pi_squared = 39.478417604357434;
   if (!(c_hat > four_pi_squared)) return 1;
   double low = 0, high = 1;  // c_hat delta + force(delta) is < 0 at low and > 0 at high
-  for (int k = 0; k < 80; ++k) {
-    const double mid = 0.5 * (low + high);
+  for (double mid = 0.5; low < mid && mid < high; mid = 0.5 * (low + high))
     (c_hat * mid + immediate_buckling(mid).force < 0 ? low : high) = mid;
-  }
   return high;
 }
 

@@ -21,7 +21,7 @@ class ChunkSchedule {
       while (chunk < first_row(e) / pattern.chunk_rows()) start_[++chunk] = e;
     start_[0] = 0;
     for (std::size_t k = start_.size() - 1; k-- > 0;) start_[k] = std::min(start_[k], start_[k + 1]);
-    serial_ = pattern.rows() < serial_below;
+    serial_ = pattern.rows() < serial_below(Work::heavy);
   }
 
   // Calls f(e) for every element: first the even chunks in parallel, then the odd ones. When the schedule is

@@ -102,26 +102,29 @@ void Clusters::list_places(int particles) {
 }
 
 void Clusters::match(const VecX& x, std::vector<ClusterPose>& poses) const {
-  parallel_for(chunk_count(count()), static_cast<int>(members_.size()) < serial_below, [&](int chunk) {
-    const int end = std::min(count(), (chunk + 1) * chunk_size);
-    for (int c = chunk * chunk_size; c < end; ++c) poses[c] = matched((*this)[c], x, poses[c].rotation);
-  });
+  parallel_for(chunk_count(count()), static_cast<int>(members_.size()) < serial_below(Work::heavy),
+               [&](int chunk) {
+                 const int end = std::min(count(), (chunk + 1) * chunk_size);
+                 for (int c = chunk * chunk_size; c < end; ++c)
+                   poses[c] = matched((*this)[c], x, poses[c].rotation);
+               });
 }
 
 void Clusters::take_shapes(const Clusters& others, const std::vector<ClusterPose>& poses, double s,
                            const VecX& x) {
-  parallel_for(chunk_count(count()), static_cast<int>(members_.size()) < serial_below, [&](int chunk) {
-    const int end = std::min(count(), (chunk + 1) * chunk_size);
-    for (int c = chunk * chunk_size; c < end; ++c)
-      for (std::size_t k = start_[c]; k < start_[c + 1]; ++k) {
-        const Vec3 here = poses[c].rotation.conjugate() * (at(x, members_[k].particle) - poses[c].centre);
-        members_[k].rest = others.members_[k].rest + s * (here - others.members_[k].rest);
-      }
-  });
+  parallel_for(
+      chunk_count(count()), static_cast<int>(members_.size()) < serial_below(Work::heavy), [&](int chunk) {
+        const int end = std::min(count(), (chunk + 1) * chunk_size);
+        for (int c = chunk * chunk_size; c < end; ++c)
+          for (std::size_t k = start_[c]; k < start_[c + 1]; ++k) {
+            const Vec3 here = poses[c].rotation.conjugate() * (at(x, members_[k].particle) - poses[c].centre);
+            members_[k].rest = others.members_[k].rest + s * (here - others.members_[k].rest);
+          }
+      });
 }
 
 void Clusters::project(const std::vector<ClusterPose>& poses, double alpha, VecX& x) const {
-  for_chunks(static_cast<int>(places_start_.size()) - 1, [&](int begin, int end) {
+  for_chunks<Work::heavy>(static_cast<int>(places_start_.size()) - 1, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const std::size_t first = places_start_[i], last = places_start_[i + 1];
       if (first == last) continue;

@@ -78,7 +78,7 @@ double PlateForce::energy_noise(const VecX& x) const {
 }
 
 double PlateForce::energy(const VecX& x) const {
-  double sum = sum_chunks(static_cast<int>(pairs_.size()), [&](int begin, int end) {
+  double sum = sum_chunks<Work::heavy>(static_cast<int>(pairs_.size()), [&](int begin, int end) {
     double total = 0;
     for (int e = begin; e < end; ++e) {
       const Pair& p = pairs_[static_cast<std::size_t>(e)];
@@ -101,7 +101,7 @@ double PlateForce::energy(const VecX& x) const {
 
 double PlateForce::dissipation(const VecX&, const VecX& v) const {
   if (time_ == 0) return 0;
-  return time_ * sum_chunks(static_cast<int>(pairs_.size()), [&](int begin, int end) {
+  return time_ * sum_chunks<Work::heavy>(static_cast<int>(pairs_.size()), [&](int begin, int end) {
            double total = 0;
            for (int e = begin; e < end; ++e) {
              const Pair& p = pairs_[static_cast<std::size_t>(e)];

@@ -103,7 +103,7 @@ bool PlateFriction::begin_step(const StepStart& start) {
 // Lets every spring follow until it holds as much as friction does.
 void PlateFriction::end_step(const VecX& x) {
   const auto at = [&x](int i) { return Vec3(x.segment<3>(3 * i)); };
-  for_chunks(static_cast<int>(triangles_.size()), [&](int begin, int end) {
+  for_chunks<Work::heavy>(static_cast<int>(triangles_.size()), [&](int begin, int end) {
     for (int e = begin; e < end; ++e) {
       const Triangle& t = triangles_[static_cast<std::size_t>(e)];
       const Bent b = bent(t, at);
@@ -114,7 +114,7 @@ void PlateFriction::end_step(const VecX& x) {
 
 double PlateFriction::energy(const VecX& x) const {
   const auto at = [&x](int i) { return Vec3(x.segment<3>(3 * i)); };
-  return sum_chunks(static_cast<int>(triangles_.size()), [&](int begin, int end) {
+  return sum_chunks<Work::heavy>(static_cast<int>(triangles_.size()), [&](int begin, int end) {
     double total = 0;
     for (int e = begin; e < end; ++e) {
       const Triangle& t = triangles_[static_cast<std::size_t>(e)];

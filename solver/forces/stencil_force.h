@@ -211,7 +211,7 @@ class StencilForce : public Force {
  protected:
   template <class F>
   double sum(const F& f) const {
-    return sum_chunks(static_cast<int>(elements_.size()), [&](int begin, int end) {
+    return sum_chunks<Work::heavy>(static_cast<int>(elements_.size()), [&](int begin, int end) {
       double total = 0;
       for (int e = begin; e < end; ++e) total += f(elements_[e]);
       return total;

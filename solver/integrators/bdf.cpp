@@ -150,10 +150,10 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
     ContactSolve solve(*this, state, newton, contacts, report);
     if (!settle_contacts(contacts, options_, solve, report, imbalance_) || !good(linear_))
       return fail(report, "linear solve: " + std::string(drape::name(linear_.reason)));
-    const bool full = descend(contacts, newton.first());  // v += dv, as far as Phi falls         [NW06, 3.1]
-    p_.x = k().x_bar + k().c * p_.v;                      // x = x_bar + c v
+    const Taken taken = descend(contacts, newton);  // v += dv, as far as Phi falls               [NW06, 3.1]
+    p_.x = k().x_bar + k().c * p_.v;                // x = x_bar + c v
     if (!p_.x.allFinite()) return fail(report, "the new positions are not finite numbers");
-    newton.took(full, falls_back() && makes_energy(state, contacts, piece.h), report);
+    newton.took(taken, falls_back() && makes_energy(state, contacts, piece.h), report);
   }
   if (k().order_2() && makes_energy(state, contacts, piece.h)) {
     ++report.rescues;
@@ -261,11 +261,11 @@ bool Bdf::falls(ContactStep& contacts) {
   return merit_.falls(k(), friction(contacts), v_base_, end_.v);
 }
 
-// Sets the velocity towards which a step goes back when it is too long. It meets the constraints, as the step does:
-// the energy that it takes to meet them must not count against the step. The first step goes back to standing still.
-void Bdf::set_base(ContactStep& contacts, bool first) {
+// Sets the velocity towards which a step goes back when it is too long: the last one, or standing still. It meets the
+// constraints, as the step does: the energy that it takes to meet them must not count against the step.
+void Bdf::set_base(ContactStep& contacts, bool standing) {
   contacts.filter(p_.v, filter_);
-  if (first)
+  if (standing)
     v_base_ = -p_.v;
   else
     v_base_.setZero();
@@ -273,9 +273,9 @@ void Bdf::set_base(ContactStep& contacts, bool first) {
   v_base_ += p_.v;
 }
 
-bool Bdf::descend(ContactStep& contacts, bool first) {
-  set_base(contacts, first);
-  return merit_.descend(k(), friction(contacts), v_base_, dv_, p_.v);
+Taken Bdf::descend(ContactStep& contacts, const NewtonLoop& newton) {
+  set_base(contacts, newton.from_standing());
+  return merit_.descend(k(), friction(contacts), v_base_, dv_, newton.may_overshoot(), p_.v);
 }
 
 void Bdf::finish(State& state, ContactStep& contacts, StepReport& report) {

@@ -21,6 +21,10 @@
 
 namespace drape {
 
+namespace internal {
+class NewtonLoop;
+}
+
 class Bdf final : public Integrator {
  public:
   // Keeps references to the system and the constraints. `order` is 1 or 2.
@@ -48,9 +52,9 @@ class Bdf final : public Integrator {
   double residual(ContactStep& contacts);  // N s
   double residual_wanted() const;          // N s
   bool makes_energy(const State& start, const ContactStep& contacts, double h) const;
-  bool falls(ContactStep& contacts);  // whether the first solve of a step will be taken whole
-  void set_base(ContactStep& contacts, bool first);
-  bool descend(ContactStep& contacts, bool first);
+  bool falls(ContactStep& contacts);  // whether the first solve of a step lowers Phi
+  void set_base(ContactStep& contacts, bool standing);
+  Taken descend(ContactStep& contacts, const internal::NewtonLoop& newton);
   void finish(State& state, ContactStep& contacts, StepReport& report);
   bool good(const LinearReport& linear) const;
   bool fail(StepReport& report, const std::string& what);

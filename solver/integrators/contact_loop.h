@@ -34,7 +34,7 @@ inline constexpr int max_meetings = 3;
 // An Attempt offers
 //   bool solve()                     solves within the contacts as they are; false: it failed, and so does
 //                                    the loop
-//   bool worth_settling()            false: the step will be cut short and solved anew, so that the contacts need
+//   bool worth_settling()            false: the step overshoots and will be solved anew, so that the contacts need
 //                                    not agree with it
 //   ContactTrial trial()             returns what the solve gave
 //   void release()                   moves on what is not held any more, before the contacts are looked at

@@ -63,7 +63,7 @@ struct StepReport {
   int linear_solves = 0;
   int linear_iterations = 0;
   int multigrid_solves = 0;  // the solves for which the linear solver "auto" took ppcg+multigrid
-  int rescues = 0;           // Newton iterations that had to be cut short, so that no energy is made
+  int rescues = 0;           // Newton iterations that raised the potential, so that another one followed
   int guarded = 0;           // particles that were stopped at a surface outside the equations
   double residual = 0;       // relative: the worst of the solves that the substeps ended with
   bool converged = true;     // every solve reached its tolerance, and the contacts have settled

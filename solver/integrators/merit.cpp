@@ -12,7 +12,7 @@ RoundOff round_off(const System& system, const BlockMatrix& A, const VecX& x, co
     double energy = 0, squares = 0;  // sums of A_ii e_i^2, and of (A_ii e_i)^2
     void operator+=(const Sums& other) { energy += other.energy, squares += other.squares; }
   };
-  const Sums all = sum_chunks(A.rows(), [&](int begin, int end) {
+  const Sums all = sum_chunks<Work::heavy>(A.rows(), [&](int begin, int end) {
     Sums sums;
     for (int i = begin; i < end; ++i) {
       const int row = A.pattern().row_of()[i];
@@ -86,15 +86,17 @@ bool Merit::falls(const StepCoefficients& k, const std::vector<ContactFriction>&
   return potential(k, friction, v) <= allowed;
 }
 
-bool Merit::descend(const StepCoefficients& k, const std::vector<ContactFriction>& friction,
-                    const VecX& v_base, const VecX& dv, VecX& v) {
+Taken Merit::descend(const StepCoefficients& k, const std::vector<ContactFriction>& friction,
+                     const VecX& v_base, const VecX& dv, bool may_overshoot, VecX& v) {
   v += dv;
   const double allowed = most(potential(k, friction, v_base));
-  for (int halvings = 0; halvings < 12; ++halvings) {
-    if (potential(k, friction, v) <= allowed) return halvings == 0;
+  if (potential(k, friction, v) <= allowed) return Taken::whole;
+  if (may_overshoot) return Taken::overshot;
+  for (int halvings = 1; halvings < 12; ++halvings) {
     v = 0.5 * (v + v_base);
+    if (potential(k, friction, v) <= allowed) break;
   }
-  return false;
+  return Taken::cut;
 }
 
 bool Merit::makes_energy(const State& before, const Point& after, double work) const {

@@ -1,9 +1,11 @@
 // How long Newton's iteration goes on, and with which stiffness: it takes as many steps as were asked for,
-// and more until one is taken whole. After a step that had to be cut short, the next one uses the majorant.
+// and more until one is taken whole. The first may overshoot: edges that were slack where it was linearised have
+// become taut, and the next one knows them. After a step that had to be cut short, the next one uses the majorant.
 // The same is done, max_rescues times at most, while the motion that the iteration came to makes energy.
 #pragma once
 
 #include "solver/integrators/integrator.h"
+#include "solver/integrators/merit.h"
 
 namespace drape::internal {
 
@@ -13,19 +15,23 @@ class NewtonLoop {
 
   bool next() {
     ++k_;
-    return k_ < options_.newton_iterations || !full_ || (makes_energy_ && k_ < most());
+    return k_ < options_.newton_iterations || taken_ != Taken::whole || (makes_energy_ && k_ < most());
   }
   bool first() const { return k_ == 0; }
   bool exhausted() const { return k_ == most(); }
-  bool may_stop() const { return k_ > 0 && full_; }  // when the residual is small enough
+  bool may_stop() const { return k_ > 0 && taken_ == Taken::whole; }  // when the residual is small enough
+  bool may_overshoot() const { return first(); }
+  // Whether the next step is judged against standing still, and not against where the last one ended.
+  bool from_standing() const { return first() || taken_ == Taken::overshot; }
   Stiffness stiffness() const {
-    return first() || (full_ && !makes_energy_) ? Stiffness::chord : Stiffness::majorant;
+    const bool sound = from_standing() || (taken_ == Taken::whole && !makes_energy_);
+    return sound ? Stiffness::chord : Stiffness::majorant;
   }
 
-  void took(bool full, bool makes_energy, StepReport& report) {
+  void took(Taken taken, bool makes_energy, StepReport& report) {
     ++report.newton_iterations;
-    if (!full || makes_energy) ++report.rescues;
-    full_ = full;
+    if (taken != Taken::whole || makes_energy) ++report.rescues;
+    taken_ = taken;
     makes_energy_ = makes_energy;
   }
 
@@ -34,7 +40,7 @@ class NewtonLoop {
 
   const StepOptions& options_;
   int k_ = -1;
-  bool full_ = false;          // the last step was taken whole
+  Taken taken_ = Taken::cut;   // the last step
   bool makes_energy_ = false;  // and so far the motion makes energy
 };
 

@@ -19,7 +19,7 @@ float squared_norm(const Scalar* block) {
 
 void Aggregation::find_strong(const Smoother& A, double theta, const ProjectedBlocks* projected) {
   least_.resize(static_cast<std::size_t>(A.rows()));
-  for_chunks(A.rows(), [&](int begin, int end) {
+  for_chunks<Work::heavy>(A.rows(), [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
       least_[i] = static_cast<float>(theta * std::sqrt(static_cast<double>(squared_norm(A.diagonal(i)))));
   });
@@ -87,9 +87,9 @@ int Aggregation::make_prolongation(const Smoother& A, double theta, const Projec
   const auto free = [&](int i) { return !projected || projected->free(i); };
   constexpr double omega = 2.0 / 3;
   P.resize(A.rows());
-  for_chunks(A.rows(), [&](int begin, int end) {
+  for_chunks<Work::heavy>(A.rows(), [&](int begin, int end) {
     RowSum sum(aggregates);
-    BlockRows::Chunk& chunk = P.open(begin, 4 * chunk_size);
+    BlockRows::Chunk& chunk = P.open(begin, 4 * heavy_chunk_size);
     for (int i = begin; i < end; ++i) {
       const int own = of_[i];
       if (own >= 0) {

@@ -15,7 +15,7 @@ class BlockJacobi final : public Preconditioner {
     inverse_.resize(6 * static_cast<std::size_t>(A.rows()));
     std::atomic<bool> definite{true};
     const std::vector<FilterEntry>& entries = filter.entries();
-    for_chunks(A.rows(), [&](int begin, int end) {
+    for_chunks<Work::heavy>(A.rows(), [&](int begin, int end) {
       auto e = std::lower_bound(entries.begin(), entries.end(), begin,
                                 [](const FilterEntry& f, int row) { return f.particle < row; });
       for (int r = begin; r < end; ++r) {
@@ -35,7 +35,7 @@ class BlockJacobi final : public Preconditioner {
   }
 
   void apply(const VecX& r, VecX& s) override {
-    for_chunks(static_cast<int>(r.size() / 3), [&](int begin, int end) {
+    for_chunks<Work::heavy>(static_cast<int>(r.size() / 3), [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
         const double* p = inverse_.data() + 6 * static_cast<std::size_t>(i);
         const double* ri = r.data() + 3 * static_cast<std::ptrdiff_t>(i);

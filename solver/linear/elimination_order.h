@@ -50,7 +50,7 @@ class EliminationOrder {
   template <class F>
   void for_chunks_of(int colour, const F& f) const {
     const int first = colour_start_[colour];
-    parallel_for(colour_start_[colour + 1] - first, rows() < serial_below,
+    parallel_for(colour_start_[colour + 1] - first, rows() < serial_below(Work::heavy),
                  [&](int k) { f(chunk_start_[first + k], chunk_start_[first + k + 1]); });
   }
   // For every chunk, colour by colour; backwards the last colour comes first.

@@ -158,14 +158,14 @@ class Multigrid final : public Preconditioner {
     level.smoother.down(r, x, level.residual);
     if (depth + 1 == count_) return;
     Level& below = levels_[depth + 1];
-    for_chunks(below.smoother.rows(), [&](int begin, int end) {
+    for_chunks<Work::heavy>(below.smoother.rows(), [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
         const Four sum = times(level.restriction[i], level.residual.data());
         for (int k = 0; k < 3; ++k) below.r[3 * i + k] = sum[k];
       }
     });
     cycle(depth + 1, below.r, below.x);
-    for_chunks(level.smoother.rows(), [&](int begin, int end) {
+    for_chunks<Work::heavy>(level.smoother.rows(), [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
         const Four correction = times(level.prolongation[i], below.x.data());
         for (int k = 0; k < 3; ++k) x[3 * i + k] += correction[k];

@@ -12,7 +12,7 @@ namespace drape::internal {
 // r <- S (b - A dv)
 inline void residual(const BlockMatrix& A, const VecX& b, const Filter& filter, const VecX& dv, VecX& r) {
   A.multiply(dv, r);
-  for_chunks(A.rows(), [&](int begin, int end) {
+  for_chunks<Work::heavy>(A.rows(), [&](int begin, int end) {
     for (int i = 3 * begin; i < 3 * end; ++i) r[i] = b[i] - r[i];
   });
   filter.apply(r);

@@ -5,7 +5,7 @@ namespace drape::internal {
 template <class F>
 void Smoother::for_rows_of(bool odd, const F& f) const {
   const int chunks = (rows_ + chunk_rows_ - 1) / chunk_rows_;
-  parallel_for((chunks + 1 - odd) / 2, rows_ < serial_below, [&](int k) {
+  parallel_for((chunks + 1 - odd) / 2, rows_ < serial_below(Work::heavy), [&](int k) {
     const int begin = (2 * k + odd) * chunk_rows_;
     f(begin, std::min(rows_, begin + chunk_rows_));
   });
@@ -39,7 +39,7 @@ void Smoother::down(const VecX& r, VecX& x, VecX& residual) const {
     for_rows_of(odd, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) set(x, i, solve_diagonal(i, at(r, i) - times(lower_[i], x.data())));
     });
-  for_chunks(rows_, [&](int begin, int end) {
+  for_chunks<Work::heavy>(rows_, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) set(residual, i, -times(upper_[i], x.data()));
   });
 }

@@ -66,8 +66,9 @@ void Smoother::build(const Rows& A) {
   upper_.resize(rows_);
   diagonal_.resize(9 * static_cast<std::size_t>(rows_) + 1);
   inverse_.resize(diagonal_.size());
-  for_chunks(rows_, [&](int begin, int end) {
-    BlockRows::Chunk &lower = lower_.open(begin, 8 * chunk_size), &upper = upper_.open(begin, 8 * chunk_size);
+  for_chunks<Work::heavy>(rows_, [&](int begin, int end) {
+    BlockRows::Chunk &lower = lower_.open(begin, 8 * heavy_chunk_size),
+                     &upper = upper_.open(begin, 8 * heavy_chunk_size);
     for (int r = begin; r < end; ++r) {
       const int chunk = r / chunk_rows_, first = chunk * chunk_rows_, last = first + chunk_rows_;
       const bool odd = chunk % 2 == 1;

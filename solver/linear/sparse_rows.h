@@ -56,11 +56,11 @@ class SparseRows {
   // keep their memory for a larger matrix.
   void resize(int rows) {
     rows_ = rows;
-    const auto needed = static_cast<std::size_t>(chunk_count(rows));
+    const auto needed = static_cast<std::size_t>(heavy_chunk_count(rows));
     if (chunks_.size() < needed) chunks_.resize(needed);
   }
   Chunk& open(int first_row, std::size_t entries_expected) {
-    Chunk& chunk = chunks_[first_row / chunk_size];
+    Chunk& chunk = chunks_[first_row / heavy_chunk_size];
     chunk.begin();
     chunk.expect(entries_expected);
     return chunk;
@@ -68,8 +68,8 @@ class SparseRows {
   template <class Make>  // make(row, chunk) adds the entries of the row
   void build(int rows, int entries_a_row, const Make& make) {
     resize(rows);
-    for_chunks(rows, [&](int begin, int end) {
-      Chunk& chunk = open(begin, static_cast<std::size_t>(entries_a_row) * chunk_size);
+    for_chunks<Work::heavy>(rows, [&](int begin, int end) {
+      Chunk& chunk = open(begin, static_cast<std::size_t>(entries_a_row) * heavy_chunk_size);
       for (int row = begin; row < end; ++row) {
         make(row, chunk);
         chunk.end_row();
@@ -79,9 +79,9 @@ class SparseRows {
 
   int rows() const { return rows_; }
   Row operator[](int row) const {
-    const Chunk& chunk = chunks_[row / chunk_size];
-    const int begin = chunk.start_[row % chunk_size];
-    const int end = chunk.start_[static_cast<std::size_t>(row % chunk_size) + 1];
+    const Chunk& chunk = chunks_[row / heavy_chunk_size];
+    const int begin = chunk.start_[row % heavy_chunk_size];
+    const int end = chunk.start_[static_cast<std::size_t>(row % heavy_chunk_size) + 1];
     return {end - begin, chunk.column_.data() + begin,
             chunk.value_.data() + width * static_cast<std::ptrdiff_t>(begin)};
   }

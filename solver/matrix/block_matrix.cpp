@@ -54,7 +54,7 @@ void BlockMatrix::take_kept() {
 void BlockMatrix::set_to_mass(const std::vector<double>& mass) {
   clear_overlay();
   const std::vector<int>& start = pattern_->row_start();
-  for_chunks(rows(), [&](int begin, int end) {
+  for_chunks<Work::heavy>(rows(), [&](int begin, int end) {
     const auto first = 9 * static_cast<std::size_t>(start[begin]);
     const auto last = 9 * static_cast<std::size_t>(start[end]);
     std::memset(values_.data() + first, 0, (last - first) * sizeof(double));
@@ -81,7 +81,7 @@ void BlockMatrix::multiply(const VecX& x, VecX& y) const {
 
 // Each row gathers its own blocks.
 void BlockMatrix::add_overlay(const VecX& x, VecX& y) const {
-  for_chunks(overlay_->row_count(), [&](int begin, int end) {
+  for_chunks<Work::heavy>(overlay_->row_count(), [&](int begin, int end) {
     for (int k = begin; k < end; ++k) {
       Four sum = {0, 0, 0, 0};
       double turned[3] = {0, 0, 0};
@@ -109,7 +109,7 @@ void BlockMatrix::multiply_base(const VecX& x, VecX& y) const {
   const int* column = pattern_->column().data();
   const int chunk_rows = pattern_->chunk_rows(), chunks = pattern_->chunks();
   const auto first_row = [&](int chunk) { return std::min(chunk * chunk_rows, rows()); };
-  even_then_odd(chunks, rows() < serial_below, [&](int chunk) {
+  even_then_odd(chunks, rows() < serial_below(Work::heavy), [&](int chunk) {
     const int begin = first_row(chunk), end = first_row(chunk + 1);
     if (chunk % 2 == 0) y.segment(3 * begin, 3 * (first_row(chunk + 2) - begin)).setZero();
     const double* a = block(start[begin]);

@@ -1,6 +1,6 @@
 // Whole runs in motion: what a simulated second costs, and where its time goes.
 //   hung      a sheet of 1 m that begins horizontal and swings down from two of its corners
-//   dropped   the same sheet, let go 1 cm above a ball of 0.3 m radius, friction 0.3
+//   dropped   the same sheet, let go 1 cm (or --height, in m) above a ball of 0.3 m radius, friction 0.3
 // 0.2 kg/m^2, 1000 N/m, 10 uN.m, h = 10 ms, tolerance 1e-4. Iterations, solves and Newton iterations are those of a
 // step on average; the contact residual is the largest of the run. Arguments: SIDE ... (vertices along an edge; 32 and
 // 100 unless given), --steps N (100), --solver NAME (auto), --threads N, --model noh-jung|woven, --scene hung|dropped,
@@ -29,6 +29,7 @@ struct Run {
   int side, threads;
   std::string scene, model, solver;
   bool self_contact = false, alone = false;
+  double height = 0.01;  // m above the ball
 };
 
 // Remembers the last system of a step, to solve it alone.
@@ -80,7 +81,7 @@ Cost measure(const Run& run, int steps) {
   TriangleMesh sheet = grid(run.side, run.side, 1, 1);
   const bool dropped = run.scene == "dropped";
   if (dropped)
-    for (Vec3& x : sheet.positions) x.y() += 0.31;
+    for (Vec3& x : sheet.positions) x.y() += 0.3 + run.height;
   const Fabric fabric{.area_density = 0.2, .stretch = 1000, .bend = 1e-5};
   System system(lumped_mass(sheet, fabric.area_density));
   system.add(run.model == "woven" ? woven(sheet, sheet, fabric) : noh_jung(sheet, fabric));
@@ -169,6 +170,7 @@ int main(int count, char** arguments) {
   std::string solver = "auto";
   int steps = 100;
   bool self_contact = false, alone = false;
+  double height = 0.01;
   for (int k = 1; k < count; ++k) {
     const std::string name = arguments[k];
     if (name.rfind("--", 0) != 0) {
@@ -181,6 +183,7 @@ int main(int count, char** arguments) {
     if (name == "--threads") thread_counts = {std::atoi(arguments[k])};
     if (name == "--model") models = {arguments[k]};
     if (name == "--scene") scenes = {arguments[k]};
+    if (name == "--height") height = std::atof(arguments[k]);
     if (name == "--alone") alone = std::atoi(arguments[k]) != 0;
     if (name == "--self-contact") self_contact = std::atoi(arguments[k]) != 0;
   }
@@ -195,7 +198,7 @@ int main(int count, char** arguments) {
       std::map<int, double> before;  // threads -> s a simulated second, of the smaller sheet
       for (std::size_t s = 0; s < sides.size(); ++s)
         for (int threads : thread_counts) {
-          const Run run{sides[s], threads, scene, model, solver, self_contact, alone};
+          const Run run{sides[s], threads, scene, model, solver, self_contact, alone, height};
           const Cost c = measure(run, steps);
           table.add(run, c.seconds);
           const double growth =
