@@ -162,7 +162,8 @@ std::vector<Meeting>& Encounters::select(Kind kind, const VecX& x, const VecX& x
     Group& g = groups_[k];
     select_list(g.pairs, {0, g.edges_from, static_cast<int>(g.pairs.list.size())}, g.clock, g.due, found);
   });
-  select_chunks(static_cast<int>(clock_.size()), heavy_chunk_size, [&](int c, std::vector<Meeting>& found) {
+  const int count = static_cast<int>(clock_.size());
+  select_chunks(count, heavy_chunk_size(count), [&](int c, std::vector<Meeting>& found) {
     select_list(beside_, {beside_start_[c], beside_edges_[c], beside_start_[c + 1]}, clock_[c],
                 beside_due_[c], found);
   });

@@ -189,7 +189,7 @@ double FaceContacts::travel(const ClothFace& face) const {
 
 void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const std::vector<Contact>& contacts,
                               const VecX& x, const VecX& x_new, double recovery) {
-  const int n = static_cast<int>(faces_.size());
+  const int n = static_cast<int>(faces_.size()), size = heavy_chunk_size(n);
   if (n == 0 || bodies.empty()) return;
   if (room_.size() != bodies.size() * faces_.size()) {
     room_.assign(bodies.size() * faces_.size(), 0.0);
@@ -208,8 +208,7 @@ void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const std::
     parallel_for(heavy_chunk_count(n), n < serial_below(Work::heavy), [&](int k) {
       auto& found = found_[k];
       found.clear();
-      for (int f = k * heavy_chunk_size; f < std::min(n, (k + 1) * heavy_chunk_size); ++f)
-        look(f, body, x, x_new, recovery, found);
+      for (int f = k * size; f < std::min(n, (k + 1) * size); ++f) look(f, body, x, x_new, recovery, found);
     });
     for (const auto& found : found_) touching_.insert(touching_.end(), found.begin(), found.end());
   }
@@ -371,7 +370,7 @@ void FaceContacts::end_step(const std::vector<MovingBody>& bodies, const VecX& x
   for (const MovingBody& body : bodies) {
     measure_travel(body, x, x_new);
     double* const room = &room_[static_cast<std::size_t>(body.number()) * faces_.size()];
-    for_chunks<Work::heavy>(static_cast<int>(faces_.size()), [&](int begin, int end) {
+    for_chunks(static_cast<int>(faces_.size()), [&](int begin, int end) {
       for (int f = begin; f < end; ++f) room[f] -= travel(faces_[f]);
     });
   }

@@ -39,9 +39,9 @@ Contact clamped(int particle, const MovingBody& body, const SurfacePoint& start,
 // Calls f(particle, chunk) for every particle that is not held.
 template <class F>
 void for_free(const StepMotion& step, const F& f) {
-  const int n = static_cast<int>(step.held.size());
+  const int n = static_cast<int>(step.held.size()), size = heavy_chunk_size(n);
   parallel_for(heavy_chunk_count(n), n < serial_below(Work::heavy), [&](int k) {
-    for (int i = k * heavy_chunk_size; i < std::min(n, (k + 1) * heavy_chunk_size); ++i)
+    for (int i = k * size; i < std::min(n, (k + 1) * size); ++i)
       if (!step.is_held(i)) f(i, static_cast<std::size_t>(k));
   });
 }
@@ -95,7 +95,7 @@ void ParticleContacts::prepare(int particles, std::size_t bodies) {
   committed_.reserve(n);
   friction_.reserve(2 * n);
   nips_.reserve(n);
-  for (auto& found : found_) found.reserve(heavy_chunk_size);
+  for (auto& found : found_) found.reserve(static_cast<std::size_t>(heavy_chunk_size(particles)));
 }
 
 void ParticleContacts::look_again() { std::fill(clearance_.begin(), clearance_.end(), 0.0); }

@@ -15,16 +15,16 @@ constexpr int most_rounds = 8;
 
 void ParticleContacts::respond(ContactMode mode, const Bodies& bodies, const StepMotion& step, const VecX& x,
                                const VecX& v, VecX& x_new, VecX& v_new) {
-  const int n = static_cast<int>(x.size() / 3);
+  const int n = static_cast<int>(x.size() / 3), size = heavy_chunk_size(n);
   x_new = x;
   v_new = v;
   parallel_for(heavy_chunk_count(n), n < serial_below(Work::heavy), [&](int k) {
     const auto chunk = static_cast<std::size_t>(k);
     found_[chunk].clear();
     responses_[chunk].clear();
-    responses_[chunk].reserve(3 * heavy_chunk_size);
+    responses_[chunk].reserve(3 * static_cast<std::size_t>(size));
     deepest_[chunk] = 0;
-    for (int i = k * heavy_chunk_size; i < std::min(n, (k + 1) * heavy_chunk_size); ++i)
+    for (int i = k * size; i < std::min(n, (k + 1) * size); ++i)
       if (!step.is_held(i)) respond(mode, i, bodies, step, chunk, x_new, v_new);
   });
   trial_.clear();

@@ -188,7 +188,7 @@ TEST_CASE("multigrid takes few iterations in every step of a moving sheet, whate
 TEST_CASE("auto gives block-ic0 up in a solve that takes too long, and solves as multigrid does",
           "[solvers]") {
   for (const bool as_woven : {false, true}) {
-    MovingSheet sheet(80, false, as_woven);
+    MovingSheet sheet(120, false, as_woven);  // large enough for block-ic0 to take too long
     Cost cost;
     ImplicitEuler stepper(sheet.system, sheet.constraints, std::make_unique<CountingSolver>("auto", cost),
                           {.tolerance = 1e-12});

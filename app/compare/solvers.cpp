@@ -74,7 +74,8 @@ double true_residual(const LinearSystem& system, const VecX& dv) { return residu
 double reference_impulse(const LinearSystem& system) {
   VecX z = VecX::Zero(system.b.size());
   for (const FilterEntry& e : system.filter.entries()) z.segment<3>(3 * e.particle) = e.z;
-  return std::max(residual_of(system, z).norm(), system.options.scale);
+  const LinearOptions& options = system.options;
+  return std::min(std::max(residual_of(system, z).norm(), options.scale), options.most_scale);
 }
 
 double constraint_violation(const LinearSystem& system, const VecX& dv) {

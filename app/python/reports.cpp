@@ -56,8 +56,9 @@ void add_reports_of_steps(py::module_& m) {
       .def_readonly("multigrid_solves", &StepReport::multigrid_solves,
                     "solves for which the linear solver 'auto' took ppcg+multigrid")
       .def_readonly("linear_iterations", &StepReport::linear_iterations)
-      .def_readonly("rescues", &StepReport::rescues,
-                    "Newton iterations that raised the potential, so that another one followed")
+      .def_readonly(
+          "rescues", &StepReport::rescues,
+          "Newton iterations, or whole steps, taken again because they raised the potential or made energy")
       .def_readonly("guarded", &StepReport::guarded, "particles stopped at a surface outside the equations")
       .def_readonly("self_contacts", &StepReport::self_contacts,
                     "pairs of cloth and cloth that push each other")

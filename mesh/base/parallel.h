@@ -1,4 +1,4 @@
-// Loops over fixed chunks. The chunks depend on the size of the problem only, never on the number of threads,
+// Loops over fixed chunks. The chunks depend on the size and the kind of the work only, never on the number of threads,
 // and every sum is taken chunk by chunk in order. So 1, 2 or 7 threads give the same bits.
 #pragma once
 
@@ -36,15 +36,17 @@ void even_then_odd(int count, bool serial, const F& f) {
     parallel_for((count + 1 - parity) / 2, serial, [&](int k) { f(2 * k + parity); });
 }
 
-// Chunks of heavy work are small, so that two threads share the few of a small cloth. All sums have the same chunks.
-inline constexpr int chunk_size = 512, heavy_chunk_size = 128;
+inline constexpr int chunk_size = 512;
 inline int chunk_count(int n) { return (n + chunk_size - 1) / chunk_size; }
-inline int heavy_chunk_count(int n) { return (n + heavy_chunk_size - 1) / heavy_chunk_size; }
+
+// Chunks of heavy work on few items are small, so that two threads share them evenly. All sums have chunks of one size.
+constexpr int heavy_chunk_size(int n) { return n < 8192 ? 128 : chunk_size; }
+inline int heavy_chunk_count(int n) { return (n + heavy_chunk_size(n) - 1) / heavy_chunk_size(n); }
 
 // Calls f(begin, end) for consecutive chunks of [0, n).
 template <Work work = Work::light, class F>
 void for_chunks(int n, const F& f) {
-  constexpr int size = work == Work::light ? chunk_size : heavy_chunk_size;
+  const int size = work == Work::light ? chunk_size : heavy_chunk_size(n);
   parallel_for((n + size - 1) / size, n < serial_below(work),
                [&](int k) { f(k * size, std::min(n, (k + 1) * size)); });
 }

@@ -102,7 +102,7 @@ void Clusters::list_places(int particles) {
 }
 
 void Clusters::match(const VecX& x, std::vector<ClusterPose>& poses) const {
-  parallel_for(chunk_count(count()), static_cast<int>(members_.size()) < serial_below(Work::heavy),
+  parallel_for(heavy_chunk_count(count()), static_cast<int>(members_.size()) < serial_below(Work::heavy),
                [&](int chunk) {
                  const int end = std::min(count(), (chunk + 1) * chunk_size);
                  for (int c = chunk * chunk_size; c < end; ++c)
@@ -112,15 +112,16 @@ void Clusters::match(const VecX& x, std::vector<ClusterPose>& poses) const {
 
 void Clusters::take_shapes(const Clusters& others, const std::vector<ClusterPose>& poses, double s,
                            const VecX& x) {
-  parallel_for(
-      chunk_count(count()), static_cast<int>(members_.size()) < serial_below(Work::heavy), [&](int chunk) {
-        const int end = std::min(count(), (chunk + 1) * chunk_size);
-        for (int c = chunk * chunk_size; c < end; ++c)
-          for (std::size_t k = start_[c]; k < start_[c + 1]; ++k) {
-            const Vec3 here = poses[c].rotation.conjugate() * (at(x, members_[k].particle) - poses[c].centre);
-            members_[k].rest = others.members_[k].rest + s * (here - others.members_[k].rest);
-          }
-      });
+  parallel_for(heavy_chunk_count(count()), static_cast<int>(members_.size()) < serial_below(Work::heavy),
+               [&](int chunk) {
+                 const int end = std::min(count(), (chunk + 1) * chunk_size);
+                 for (int c = chunk * chunk_size; c < end; ++c)
+                   for (std::size_t k = start_[c]; k < start_[c + 1]; ++k) {
+                     const Vec3 here =
+                         poses[c].rotation.conjugate() * (at(x, members_[k].particle) - poses[c].centre);
+                     members_[k].rest = others.members_[k].rest + s * (here - others.members_[k].rest);
+                   }
+               });
 }
 
 void Clusters::project(const std::vector<ClusterPose>& poses, double alpha, VecX& x) const {

@@ -46,6 +46,9 @@ class Force {
   // True for a force of bodies in the way, not of the cloth. The energy that it stores is counted apart.
   virtual bool from_contact() const { return false; }
 
+  // True for the springs of a cloth that resist nothing until they are taut. Where a system has any, a step may overshoot
+  // (solver/integrators/merit.h).
+  virtual bool goes_slack() const { return false; }
   // Lists the pairs of particles that act on each other as long as the force exists: its off-diagonal blocks.
   virtual void list_pairs(std::vector<ParticlePair>& pairs) const = 0;
   // Whether the force has stencils that come and go.

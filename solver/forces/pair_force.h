@@ -7,6 +7,7 @@
 //     static double chord(const Rest&, double l);       // stiffer where a step would overshoot, else 0 [N/m]
 //     static double stiffest(const Rest&, double l);    // >= dt/dl: of a parabola above E(l)          [N/m]
 //     static constexpr bool link_pushes;                // of a link of the length Rest::L only: whether it pushes, too
+//     static bool goes_slack(const Rest&);              // may be left out: whether it resists nothing until it is taut
 //     static double damper(double k_d, const Rest&);    // may be left out: the damping of one pair  [N s/m]
 //     static void relax_apart(...);                     // may be left out: solver/forces/pair_projection.h
 //   };
@@ -46,6 +47,13 @@ struct AlongDistance {
   static constexpr std::array<double, 2> weights(const Rest&) { return {1, -1}; }
 
   static double energy(double, const Rest& r, const Vec3& d) { return Spring::energy(r, d.norm()); }
+
+  static bool goes_slack(const Rest& r) {
+    if constexpr (requires { Spring::goes_slack(r); })
+      return Spring::goes_slack(r);
+    else
+      return false;
+  }
 
   static double damper(double k_d, const Rest& r) {
     if constexpr (requires { Spring::damper(k_d, r); })

@@ -24,6 +24,8 @@
 //   static const Eigen::Matrix<double, n, 2>& slope_weights(const Rest&);                          // w_ku, w_kv
 // and energy, gradient, hessian, damping and damped as above, over f = (f_u, f_v) in place of X: the gradient as
 // Slopes and the second derivatives as SlopeBlocks.
+// A law may also say
+//   static bool goes_slack(const Rest&);                          // whether it resists nothing until it is taut
 // velocity() is sum w_k v_k and shift() is sum w_k y_k; they are functions because they are computed only
 // when asked for. The pull is dE/dp + D v, and f_k = -w_k pull. The response is that of an implicit step (see
 // Force::add_linearised).
@@ -82,6 +84,14 @@ class StencilForce : public Force {
   }
   bool changes() const override { return static_cast<bool>(find_); }
   bool begin_step(const StepStart& start) override { return find_ && find_(start, elements_); }
+
+  bool goes_slack() const override {
+    if constexpr (requires(const typename Law::Rest& rest) { Law::goes_slack(rest); })
+      return std::any_of(elements_.begin(), elements_.end(),
+                         [](const Element& e) { return Law::goes_slack(e.rest); });
+    else
+      return false;
+  }
 
   bool projects() const override { return true; }
   void begin_substep(int particles) override {

@@ -17,6 +17,7 @@ struct TensionSpring {
     double k;  // N/m
   };
 
+  static bool goes_slack(const Rest& r) { return r.L > 0; }
   static bool taut(const Rest& r, double l) { return l >= r.L * (1 - 1e-12); }
   static double energy(const Rest& r, double l) { return taut(r, l) ? 0.5 * r.k * (l - r.L) * (l - r.L) : 0; }
   static Tension tension(const Rest& r, double l) {

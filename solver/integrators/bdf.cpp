@@ -1,6 +1,7 @@
 #include "solver/integrators/bdf.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "mesh/base/errors.h"
 #include "mesh/base/parallel.h"
@@ -64,8 +65,8 @@ class Bdf::ContactSolve {
     const Stopwatch watch(report_.solve_ms);
     bdf_.add_friction(bdf_.friction(contacts_));
     contacts_.filter(bdf_.p_.v, bdf_.filter_);
-    const LinearOptions options{tolerance_, bdf_.options_.max_linear_iterations,
-                                bdf_.merit_.weight_impulse()};
+    const LinearOptions options{tolerance_, bdf_.options_.max_linear_iterations, bdf_.merit_.weight_impulse(),
+                                bdf_.most_reference_};
     bdf_.linear_ = bdf_.A_.solve(bdf_.b_rubbed_, bdf_.filter_, options, bdf_.dv_);
     count_solve(bdf_.linear_, report_);
     return bdf_.linear_.reason != StopReason::indefinite && bdf_.linear_.reason != StopReason::not_finite;
@@ -140,7 +141,7 @@ class Bdf::ContactSolve {
 
 bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
   ContactStep contacts = begin(state, piece, report);  // what touches; c = gamma h; the first (x, v) and dv
-  for (NewtonLoop newton(options_); newton.next();) {
+  for (NewtonLoop newton(options_, system_.goes_slack()); newton.next();) {
     if (newton.exhausted()) return fail(report, "no step lowers the energy");
     // A = M + c D + c^2 K,  b = M (v_bar - v) + c (f - K y)                            [BW98, eq. 6 and 18]
     linearise(state, newton.stiffness(), contacts, report, Assembly::all);
@@ -150,9 +151,12 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
     ContactSolve solve(*this, state, newton, contacts, report);
     if (!settle_contacts(contacts, options_, solve, report, imbalance_) || !good(linear_))
       return fail(report, "linear solve: " + std::string(drape::name(linear_.reason)));
-    const Taken taken = descend(contacts, newton);  // v += dv, as far as Phi falls               [NW06, 3.1]
-    p_.x = k().x_bar + k().c * p_.v;                // x = x_bar + c v
+    const StepTaken taken =
+        descend(contacts, newton);    // v += dv, as far as Phi falls               [NW06, 3.1]
+    p_.x = k().x_bar + k().c * p_.v;  // x = x_bar + c v
     if (!p_.x.allFinite()) return fail(report, "the new positions are not finite numbers");
+    if (taken == StepTaken::overshot && linear_.residual > 0)
+      most_reference_ = linear_.residual_impulse / linear_.residual;
     newton.took(taken, falls_back() && makes_energy(state, contacts, piece.h), report);
   }
   if (k().order_2() && makes_energy(state, contacts, piece.h)) {
@@ -179,6 +183,7 @@ ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& repor
     history_.forget(system_);
   }
   linear_ = {};
+  most_reference_ = std::numeric_limits<double>::infinity();
   merit_.begin(piece.h);
   const Stopwatch watch(report.collide_ms);
   ContactStep contacts = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, piece.h);
@@ -273,7 +278,7 @@ void Bdf::set_base(ContactStep& contacts, bool standing) {
   v_base_ += p_.v;
 }
 
-Taken Bdf::descend(ContactStep& contacts, const NewtonLoop& newton) {
+StepTaken Bdf::descend(ContactStep& contacts, const NewtonLoop& newton) {
   set_base(contacts, newton.from_standing());
   return merit_.descend(k(), friction(contacts), v_base_, dv_, newton.may_overshoot(), p_.v);
 }

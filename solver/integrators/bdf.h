@@ -7,7 +7,7 @@
 // x_bar + c times that velocity: from the last state, one solve with a K that is not the exact one would be
 // of first order only.
 // The iteration is Newton's for the minimum of the incremental potential; solver/integrators/merit.h keeps it
-// from overshooting. Contacts are settled within each of its solves (solver/integrators/contact_loop.h).
+// from ending above where it began. Contacts are settled within each of its solves (solver/integrators/contact_loop.h).
 // A step of order 2 that made energy is taken again by order 1 (and counted in rescues). Such a step goes on
 // with Newton's iteration until it makes none: one solve bounds the energy of a motion that the scheme itself
 // damps, but not that of one which order 2 has kept alive.
@@ -54,7 +54,7 @@ class Bdf final : public Integrator {
   bool makes_energy(const State& start, const ContactStep& contacts, double h) const;
   bool falls(ContactStep& contacts);  // whether the first solve of a step lowers Phi
   void set_base(ContactStep& contacts, bool standing);
-  Taken descend(ContactStep& contacts, const internal::NewtonLoop& newton);
+  StepTaken descend(ContactStep& contacts, const internal::NewtonLoop& newton);
   void finish(State& state, ContactStep& contacts, StepReport& report);
   bool good(const LinearReport& linear) const;
   bool fail(StepReport& report, const std::string& what);
@@ -70,8 +70,11 @@ class Bdf final : public Integrator {
   StepHistory history_;
   NewtonMatrix A_;
   Merit merit_;
-  Point p_;               // the current point of Newton's iteration
-  VecX dv_;               // m/s: before a solve its guess, afterwards its solution
+  Point p_;  // the current point of Newton's iteration
+  VecX dv_;  // m/s: before a solve its guess, afterwards its solution
+  // What residuals are relative to at most [N s]. Where a step overshot that is what they were relative to before, not the
+  // large forces there.
+  double most_reference_ = 0;
   double imbalance_ = 0;  // of the contacts after the last solve, relative
   LinearReport linear_;   // of the last solve
   State before_;          // the state to which a step that fails half-way returns

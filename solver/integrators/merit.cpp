@@ -86,17 +86,18 @@ bool Merit::falls(const StepCoefficients& k, const std::vector<ContactFriction>&
   return potential(k, friction, v) <= allowed;
 }
 
-Taken Merit::descend(const StepCoefficients& k, const std::vector<ContactFriction>& friction,
-                     const VecX& v_base, const VecX& dv, bool may_overshoot, VecX& v) {
+StepTaken Merit::descend(const StepCoefficients& k, const std::vector<ContactFriction>& friction,
+                         const VecX& v_base, const VecX& dv, bool may_overshoot, VecX& v) {
   v += dv;
   const double allowed = most(potential(k, friction, v_base));
-  if (potential(k, friction, v) <= allowed) return Taken::whole;
-  if (may_overshoot) return Taken::overshot;
-  for (int halvings = 1; halvings < 12; ++halvings) {
+  for (int halvings = 0; halvings < 12; ++halvings) {
+    const double phi = potential(k, friction, v);
+    if (phi <= allowed) return halvings == 0 ? StepTaken::whole : StepTaken::cut;
+    if (may_overshoot && std::isfinite(phi)) return StepTaken::overshot;
+    may_overshoot = false;
     v = 0.5 * (v + v_base);
-    if (potential(k, friction, v) <= allowed) break;
   }
-  return Taken::cut;
+  return StepTaken::cut;
 }
 
 bool Merit::makes_energy(const State& before, const Point& after, double work) const {

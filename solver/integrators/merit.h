@@ -4,8 +4,8 @@
 // one against the v before it. A full step that would raise Phi is cut short by halves: so a step of order 1
 // makes no energy, however stiff the cloth.
 //                                                                [Nocedal & Wright 2006, section 3.1]
-// The first Newton step may be taken whole although it raises Phi: the next one knows which edges have become taut, and
-// is judged against standing still in its place.                    [the watchdog of Chamberlain et al. 1982]
+// Where edges go slack, the first Newton step may be taken whole although it raises Phi: the next one knows which edges
+// have become taut, and is judged against standing still in its place.                    [the watchdog of Chamberlain et al. 1982]
 // Rounding of x and v, in sums of a few terms, disturbs v by e_i = 8 eps (|x_i|/c + |v_i|). With
 // N = sum A_ii e_i^2 it changes Phi, a sum of squares, by at most N + 2 sqrt(Phi N), and the gradient of Phi
 // by |A_ii e_i|. Forces whose energy is a sum of terms that cancel add what these may be off (Force::energy_noise).
@@ -36,7 +36,7 @@ double potential_of_forces(const System& system, const VecX& x, const VecX& v,
                            double c);  // E(x) + c/2 v . D v [J]
 
 // How far a Newton step was taken: whole, whole although Phi rose, or cut short.
-enum class Taken { whole, overshot, cut };
+enum class StepTaken { whole, overshot, cut };
 
 class Merit {
  public:
@@ -56,8 +56,8 @@ class Merit {
              const VecX& v);
   // v <- v + dv where that does not raise Phi above its value at v_base, or where it may overshoot; otherwise v goes
   // back towards v_base by halves until Phi is not above that value.
-  Taken descend(const StepCoefficients& k, const std::vector<ContactFriction>& friction, const VecX& v_base,
-                const VecX& dv, bool may_overshoot, VecX& v);
+  StepTaken descend(const StepCoefficients& k, const std::vector<ContactFriction>& friction,
+                    const VecX& v_base, const VecX& dv, bool may_overshoot, VecX& v);
   // True when the motion has more energy than moving bodies bring and than the error of a smooth motion
   // explains: a step of order 2 has then looked back across a contact or a slackening of stiff cloth.
   bool makes_energy(const State& before, const Point& after, double work) const;

@@ -89,7 +89,7 @@ int Aggregation::make_prolongation(const Smoother& A, double theta, const Projec
   P.resize(A.rows());
   for_chunks<Work::heavy>(A.rows(), [&](int begin, int end) {
     RowSum sum(aggregates);
-    BlockRows::Chunk& chunk = P.open(begin, 4 * heavy_chunk_size);
+    BlockRows::Chunk& chunk = P.open(begin, 4);
     for (int i = begin; i < end; ++i) {
       const int own = of_[i];
       if (own >= 0) {

@@ -22,7 +22,7 @@ const SymmetricRows& Galerkin::coarse(const Smoother& A, const BlockRows& P, con
   product_.resize(A.rows());
   for_chunks<Work::heavy>(A.rows(), [&](int begin, int end) {
     RowSum sum(columns);
-    BlockRows::Chunk& chunk = product_.open(begin, 8 * heavy_chunk_size);
+    BlockRows::Chunk& chunk = product_.open(begin, 8);
     for (int i = begin; i < end; ++i) {
       const BlockRows::Row own = P[i];  // A_c above its diagonal needs no columns before these
       const int least = own.count == 0 ? columns : *std::min_element(own.column, own.column + own.count);
@@ -38,7 +38,7 @@ const SymmetricRows& Galerkin::coarse(const Smoother& A, const BlockRows& P, con
   coarse_.upper_.resize(columns);
   for_chunks<Work::heavy>(columns, [&](int begin, int end) {
     RowSum sum(columns);
-    BlockRows::Chunk& chunk = coarse_.upper_.open(begin, 8 * heavy_chunk_size);
+    BlockRows::Chunk& chunk = coarse_.upper_.open(begin, 8);
     for (int i = begin; i < end; ++i) {
       sum.at(i);  // puts the diagonal block first
       const BlockRows::Row row = R[i];

@@ -5,6 +5,7 @@
 //   iteration.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -24,9 +25,11 @@ enum class StopReason {
 std::string_view name(StopReason reason);
 
 struct LinearOptions {
-  double tolerance = 1e-6;  // of the residual, relative to the larger of |S (b - A z)| and scale
-  int max_iterations = 0;   // 0: 1000 + 20 sqrt(rows)
-  double scale = 0;         // impulse that acts even where forces cancel in b [N s]: h |m g|
+  double tolerance =
+      1e-6;  // of the residual, relative to the larger of |S (b - A z)| and scale, but to most_scale at most
+  int max_iterations = 0;  // 0: 1000 + 20 sqrt(rows)
+  double scale = 0;        // impulse that acts even where forces cancel in b [N s]: h |m g|
+  double most_scale = std::numeric_limits<double>::infinity();  // N s
   std::vector<double>* history =
       nullptr;  // when given, gets the relative residual of every iteration, from 0 on
 };

@@ -12,7 +12,7 @@ namespace drape::internal {
 // r <- S (b - A dv)
 inline void residual(const BlockMatrix& A, const VecX& b, const Filter& filter, const VecX& dv, VecX& r) {
   A.multiply(dv, r);
-  for_chunks<Work::heavy>(A.rows(), [&](int begin, int end) {
+  for_chunks(A.rows(), [&](int begin, int end) {
     for (int i = 3 * begin; i < 3 * end; ++i) r[i] = b[i] - r[i];
   });
   filter.apply(r);
@@ -24,7 +24,7 @@ inline int iteration_limit(const LinearOptions& options, int rows) {
 }
 
 // The norm |S (b - A z)| [N s] of the right-hand side of the projected system, or options.scale where that is
-// larger. Fills z, and leaves S (b - A z) in r.
+// larger, but at most options.most_scale. Fills z, and leaves S (b - A z) in r.
 inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filter& filter,
                                 const LinearOptions& options, VecX& z, VecX& r) {
   z.setZero();
@@ -39,7 +39,7 @@ inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filte
     r = b;
     filter.apply(r);
   }
-  return std::max(std::sqrt(dot(r, r)), options.scale);
+  return std::min(std::max(std::sqrt(dot(r, r)), options.scale), options.most_scale);
 }
 
 // The multiple of the guess at which y . S A S y / 2 - y . r, with r = S (b - A z), is least along it. Free fall, say, is right

@@ -67,8 +67,7 @@ void Smoother::build(const Rows& A) {
   diagonal_.resize(9 * static_cast<std::size_t>(rows_) + 1);
   inverse_.resize(diagonal_.size());
   for_chunks<Work::heavy>(rows_, [&](int begin, int end) {
-    BlockRows::Chunk &lower = lower_.open(begin, 8 * heavy_chunk_size),
-                     &upper = upper_.open(begin, 8 * heavy_chunk_size);
+    BlockRows::Chunk &lower = lower_.open(begin, 8), &upper = upper_.open(begin, 8);
     for (int r = begin; r < end; ++r) {
       const int chunk = r / chunk_rows_, first = chunk * chunk_rows_, last = first + chunk_rows_;
       const bool odd = chunk % 2 == 1;

@@ -4,6 +4,7 @@
 // matrix together, and the number of threads does not change it.
 #pragma once
 
+#include <bit>
 #include <vector>
 
 #include "mesh/base/parallel.h"
@@ -56,20 +57,23 @@ class SparseRows {
   // keep their memory for a larger matrix.
   void resize(int rows) {
     rows_ = rows;
+    chunk_rows_ = heavy_chunk_size(rows);
+    shift_ = std::countr_zero(static_cast<unsigned>(chunk_rows_));
     const auto needed = static_cast<std::size_t>(heavy_chunk_count(rows));
     if (chunks_.size() < needed) chunks_.resize(needed);
   }
-  Chunk& open(int first_row, std::size_t entries_expected) {
-    Chunk& chunk = chunks_[first_row / heavy_chunk_size];
+  Chunk& open(int first_row, int entries_a_row) {
+    constexpr int more = 256;  // few rows may be longer than rows are on average
+    Chunk& chunk = chunks_[first_row >> shift_];
     chunk.begin();
-    chunk.expect(entries_expected);
+    chunk.expect(static_cast<std::size_t>(entries_a_row * chunk_rows_ + more));
     return chunk;
   }
   template <class Make>  // make(row, chunk) adds the entries of the row
   void build(int rows, int entries_a_row, const Make& make) {
     resize(rows);
     for_chunks<Work::heavy>(rows, [&](int begin, int end) {
-      Chunk& chunk = open(begin, static_cast<std::size_t>(entries_a_row) * heavy_chunk_size);
+      Chunk& chunk = open(begin, entries_a_row);
       for (int row = begin; row < end; ++row) {
         make(row, chunk);
         chunk.end_row();
@@ -79,15 +83,15 @@ class SparseRows {
 
   int rows() const { return rows_; }
   Row operator[](int row) const {
-    const Chunk& chunk = chunks_[row / heavy_chunk_size];
-    const int begin = chunk.start_[row % heavy_chunk_size];
-    const int end = chunk.start_[static_cast<std::size_t>(row % heavy_chunk_size) + 1];
+    const Chunk& chunk = chunks_[row >> shift_];
+    const int begin = chunk.start_[row & (chunk_rows_ - 1)];
+    const int end = chunk.start_[static_cast<std::size_t>(row & (chunk_rows_ - 1)) + 1];
     return {end - begin, chunk.column_.data() + begin,
             chunk.value_.data() + width * static_cast<std::ptrdiff_t>(begin)};
   }
 
  private:
-  int rows_ = 0;
+  int rows_ = 0, chunk_rows_ = chunk_size, shift_ = 9;  // a chunk has 2^shift rows
   std::vector<Chunk> chunks_;
 };
 

@@ -1,5 +1,6 @@
 #include "solver/system/system.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -143,6 +144,10 @@ double System::given_power(const VecX& x, const VecX& v) const {
   double sum = 0;
   for (const auto& force : forces_) sum += force->given_power(x, v);
   return sum;
+}
+
+bool System::goes_slack() const {
+  return std::any_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->goes_slack(); });
 }
 
 std::string_view System::not_finite_force(const VecX& x, const VecX& v) const {

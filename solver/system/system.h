@@ -28,6 +28,7 @@ class System {
   const std::vector<double>& masses() const { return masses_; }
   const Vec3& gravity_acceleration() const { return gravity_; }
   const std::vector<std::unique_ptr<Force>>& forces() const { return forces_; }
+  bool goes_slack() const;  // whether any of the forces does
 
   // Returns the pattern of all forces together. On the first call after a change it builds the pattern and
   // binds the forces to it.
