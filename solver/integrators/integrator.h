@@ -63,15 +63,14 @@ struct StepReport {
   int linear_solves = 0;
   int linear_iterations = 0;
   int multigrid_solves = 0;  // the solves for which the linear solver "auto" took ppcg+multigrid
-  int rescues =
-      0;  // Newton iterations, or whole steps, taken again because they raised the potential or made energy
-  int guarded = 0;        // particles that were stopped at a surface outside the equations
-  double residual = 0;    // relative: the worst of the solves that the substeps ended with
-  bool converged = true;  // every solve reached its tolerance, and the contacts have settled
-  int contacts = 0;       // particles in contact at the end
-  int self_contacts = 0;  // pairs of cloth and cloth that push each other at the end
-  int self_guarded = 0;   // particles that were pushed or stopped so that no cloth passes through cloth
-  int tangled = 0;        // particles where cloth passes through cloth, and is brought apart
+  int rescues = 0;           // iterations or steps taken again, because the potential rose or energy was made
+  int guarded = 0;           // particles that were stopped at a surface outside the equations
+  double residual = 0;       // relative: the worst of the solves that the substeps ended with
+  bool converged = true;     // every solve reached its tolerance, and the contacts have settled
+  int contacts = 0;          // particles in contact at the end
+  int self_contacts = 0;     // pairs of cloth and cloth that push each other at the end
+  int self_guarded = 0;      // particles that were pushed or stopped so that no cloth passes through cloth
+  int tangled = 0;           // particles where cloth passes through cloth, and is brought apart
   // Particles that a body may pass, because it could not be kept off them, or that two bodies hold between them.
   int pinched = 0;
   int body_contacts = 0;        // points at which bodies press on each other at the end
