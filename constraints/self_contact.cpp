@@ -32,10 +32,31 @@ constexpr double eased_below = 0.4;
 constexpr double eased_for = 0.25, softens_to = 0.8, runs_back = 2.5;
 // What is then left of its stiffness after 10 ms, at least.
 constexpr double slowest_fall = 0.9;
+// A contact may hold what would else snap: as it becomes softer the load comes back, it becomes stiff again, is eased again,
+// and they swing for ever. So where the load asks for this much more than a contact that became softer is stiff for, the
+// contact is never eased below this share of that again.
+constexpr double comes_back = 1.1, ends_above = 1.25;
 
 // How fast a contact that has become thinner than its cloth may thicken [m/s]: so slowly that, on earth, what it lifts flies no
 // farther than the contact is remembered.
 double lift_speed(double thickness) { return std::sqrt(2 * 9.81 * 0.5 * thickness); }
+
+// How stiff a contact becomes of which the load asks for `wanted` [N/m], in a step of h [s].
+double next_stiffness(SelfContact& contact, double wanted, double h) {
+  using Ease = SelfContact::Ease;
+  const bool eases = wanted < (contact.eased > eased_for ? softens_to : eased_below) * contact.stiff;
+  contact.eased = std::clamp(contact.eased + (eases ? h : -runs_back * h), 0.0, 2 * eased_for);
+  if (contact.ease == Ease::softer && wanted > comes_back * contact.stiff) {
+    contact.least_stiff = ends_above * contact.stiff;
+    contact.ease = Ease::bears;
+  }
+  const double share_left = contact.eased > eased_for ? std::pow(slowest_fall, h / 0.01) : 1;
+  const double least = std::max(share_left * contact.stiff, std::min(contact.least_stiff, contact.stiff));
+  const double next = std::max(std::sqrt(wanted * contact.stiff), least);
+  if (contact.ease == Ease::bears && next < contact.stiff) contact.ease = Ease::softer;
+  if (contact.ease == Ease::untried && contact.eased == 0) contact.ease = Ease::bears;
+  return next;
+}
 
 }  // namespace
 
@@ -145,13 +166,9 @@ void SelfContacts::stiffen(SelfContact& contact, const StepMotion& step) const {
   const double under_load = load_sinks * sinks;
   double bears =
       contact.load / (ropes_->is_rope(contact.who) ? std::min(under_load, rope_sinks) : under_load);
-  if (step.last_h > 0) contact.stiff *= step.last_h * step.last_h / (step.h * step.h);
-  if (contact.stiff > 0) {
-    const bool eases = bears < (contact.eased > eased_for ? softens_to : eased_below) * contact.stiff;
-    contact.eased = std::clamp(contact.eased + (eases ? step.h : -runs_back * step.h), 0.0, 2 * eased_for);
-    const double least = contact.eased > eased_for ? std::pow(slowest_fall, step.h / 0.01) : 1;
-    bears = std::max(std::sqrt(bears * contact.stiff), least * contact.stiff);
-  }
+  if (step.last_h > 0)
+    for (double* k : {&contact.stiff, &contact.least_stiff}) *k *= step.last_h * step.last_h / (step.h * step.h);
+  if (contact.stiff > 0) bears = next_stiffness(contact, bears, step.h);
   contact.stiffness = std::clamp(std::max(bears, stops / (arrival_sinks * sinks)), contact.stiffness,
                                  stiffest * contact.stiffness);
 }

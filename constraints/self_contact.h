@@ -108,6 +108,9 @@ struct SelfContact {
   double stiff = 0;  // k of the last step [N/m]; 0: there was no contact
   // For how long the load has asked for much less [s]; of a new contact, for ever.
   double eased = std::numeric_limits<double>::infinity();
+  // What easing it has come to: nothing yet, it bears its load, or it became softer after it had borne it.
+  enum class Ease { untried, bears, softer } ease = Ease::untried;
+  double least_stiff = 0;      // where easing ends [N/m]: above where the load came back before
   Vec3 hold = Vec3::Zero();    // t_0 [N]
   bool active = false;         // whether it acts in the next solve
   double push = 0;             // f of the last solve [N]

@@ -134,6 +134,8 @@ void SelfContacts::take_over(SelfContact& contact, double recovery) const {
   contact.load = at->load;
   contact.stiff = at->stiff;
   contact.eased = at->eased;
+  contact.ease = at->ease;
+  contact.least_stiff = at->least_stiff;
   contact.hold = across(contact.normal, at->hold);
   contact.thickness =
       std::min(thickness_of(contact.who), std::max(contact.thickness, at->thickness + recovery));

@@ -99,3 +99,29 @@ TEST_CASE("contacts become softer again when their load is gone", "[self-contact
       CHECK(later < 1.05 * at_rest);
     }
 }
+
+TEST_CASE("a contact whose load comes back when it is eased is not eased as far again", "[self-contact]") {
+  // Stands for what would snap where a contact gives way: the pile is light until its springs are down to a share of
+  // what they were, and is then heavy for a while. Springs that forget go up and down six times in this time.
+  constexpr double heavy = 100, light = 5, gives_way = 0.6, for_a_while = 0.3;  // m/s^2, m/s^2, -, s
+  for (Kind kind : kinds)
+    for (int n : {4, 6, 8}) {
+      INFO(n << " vertices along an edge, kind " << static_cast<int>(kind));
+      Assembly pile = pile_on({.shape = Plane{}, .friction = 0.5, .margin = 2e-3}, 4, n, kind);
+      const auto weigh = [&](double g, double until) {
+        pile.system->add(gravity({0, -g, 0}));
+        while (pile.state.time < until) REQUIRE(pile.advance(0.01).done);
+        return sum_of_stiffnesses(pile);
+      };
+      const double stiff = weigh(heavy, 1);
+      int came_back = 0;
+      while (pile.state.time < 6) {
+        const double now = weigh(light, pile.state.time + 0.01);
+        if (now > gives_way * stiff) continue;
+        ++came_back;
+        CHECK(weigh(heavy, pile.state.time + for_a_while) > 0.9 * stiff);
+      }
+      CHECK(came_back >= 1);
+      CHECK(came_back <= 2);
+    }
+}
