@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "constraints/encounters.h"
 #include "constraints/rope_rest.h"
@@ -167,7 +168,8 @@ void SelfContacts::stiffen(SelfContact& contact, const StepMotion& step) const {
   double bears =
       contact.load / (ropes_->is_rope(contact.who) ? std::min(under_load, rope_sinks) : under_load);
   if (step.last_h > 0)
-    for (double* k : {&contact.stiff, &contact.least_stiff}) *k *= step.last_h * step.last_h / (step.h * step.h);
+    for (double* k : {&contact.stiff, &contact.least_stiff})
+      *k *= step.last_h * step.last_h / (step.h * step.h);
   if (contact.stiff > 0) bears = next_stiffness(contact, bears, step.h);
   contact.stiffness = std::clamp(std::max(bears, stops / (arrival_sinks * sinks)), contact.stiffness,
                                  stiffest * contact.stiffness);
@@ -206,15 +208,17 @@ void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<Movi
   find_contacts(step);
   std::sort(touching_.begin(), touching_.end(),
             [](const SelfContact& a, const SelfContact& b) { return a.who < b.who; });
-  for (SelfContact& c : touching_) {
-    take_over(c, std::min(recovery, step.h * lift_speed(thickness_of(c.who))));
-    c.push = c.before;
-    stiffen(c, step);
-    const Vec3 p = c.now = c.at(ahead_);
-    const double drag = c.drag_at(p).norm();
-    c.active = c.linear_push(p) > 0;
-    c.share = drag > 0 ? std::min(1.0, c.friction * c.push / drag) : 1;
-  }
+  for_chunks<Work::heavy>(static_cast<int>(touching_.size()), [&](int begin, int end) {
+    for (SelfContact& c : std::span(touching_).subspan(begin, end - begin)) {
+      take_over(c, std::min(recovery, step.h * lift_speed(thickness_of(c.who))));
+      c.push = c.before;
+      stiffen(c, step);
+      const Vec3 p = c.now = c.at(ahead_);
+      const double drag = c.drag_at(p).norm();
+      c.active = c.linear_push(p) > 0;
+      c.share = drag > 0 ? std::min(1.0, c.friction * c.push / drag) : 1;
+    }
+  });
 }
 
 void SelfContacts::pinch(const Contact& contact, const MovingBody& body) {

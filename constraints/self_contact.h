@@ -256,6 +256,7 @@ class SelfContacts {
   bool is_sewn(const Encounter& e) const { return have_on_both_sides(sewn_, e); }
   static bool have_on_both_sides(const std::vector<char>& mark, const Encounter& e);  // a marked particle
   bool has_contact(const Encounter& e) const;
+  const SelfContact* last_of(const Encounter& e) const;
   // The pairs that are not surely apart all the way from x to x_new, in order.
   std::vector<internal::Meeting>& meetings(const VecX& x, const VecX& x_new);
   // Prepares both searches for this motion; false: so much is near that there is no list.
@@ -304,6 +305,7 @@ class SelfContacts {
   VecX rest_;                                    // places of the cloth when the faces were added [m]
   std::vector<char> tangled_;                    // whether it was in a tangle there, or is beside a cut
   std::vector<SelfContact> touching_, last_;     // of this step and of the last one, sorted
+  std::vector<Encounter> last_ones_;             // scratch: of which pairs those of the last step are
   std::vector<SelfContact> met_;                 // scratch
   std::vector<internal::Meeting> found_;         // scratch
   std::vector<double> way_, shorter_, nearest_;  // scratch, by particle

@@ -30,16 +30,19 @@ bool share_a_particle(const Encounter& a, const Encounter& b) {
                      [&](int v) { return std::find(b.v.begin() + 1, b.v.end(), v) != b.v.end(); });
 }
 
-// The contact of this pair in a sorted list; null when there is none.
-const SelfContact* find(const std::vector<SelfContact>& sorted, const Encounter& who) {
-  const auto at = std::lower_bound(sorted.begin(), sorted.end(), who,
-                                   [](const SelfContact& c, const Encounter& key) { return c.who < key; });
-  return at != sorted.end() && at->who == who ? &*at : nullptr;
-}
-
 }  // namespace
 
-bool SelfContacts::has_contact(const Encounter& e) const { return find(touching_, e) != nullptr; }
+bool SelfContacts::has_contact(const Encounter& e) const {
+  const auto at = std::lower_bound(touching_.begin(), touching_.end(), e,
+                                   [](const SelfContact& c, const Encounter& key) { return c.who < key; });
+  return at != touching_.end() && at->who == e;
+}
+
+// The contact of this pair in the last step; null when there was none.
+const SelfContact* SelfContacts::last_of(const Encounter& e) const {
+  const auto at = std::lower_bound(last_ones_.begin(), last_ones_.end(), e);
+  return at != last_ones_.end() && *at == e ? &last_[at - last_ones_.begin()] : nullptr;
+}
 
 int SelfContacts::one_of(const Encounter& e, bool second) const { return ropes_->one_of(e, second); }
 
@@ -116,7 +119,7 @@ std::optional<SelfContact> SelfContacts::contact_of(const StepMotion& step, cons
 // The forces of the last step, and the thickness reached there: of the same pair, or of a contact that the vertex
 // had on the same side and has no more.
 void SelfContacts::take_over(SelfContact& contact, double recovery) const {
-  const SelfContact* at = find(last_, contact.who);
+  const SelfContact* at = last_of(contact.who);
   if (!at && !contact.who.edges) {
     const auto of_vertex = [&](const SelfContact& c) {
       return !c.who.edges && c.who.v[0] == contact.who.v[0];
@@ -153,7 +156,7 @@ double SelfContacts::farthest_of_edges(const Encounter& e, double reach) const {
   for (int v : e.v)
     if (!is_on_body(e) || v >= cloth_particles()) farthest = std::min(farthest, clearly_nearer * nearest_[v]);
   const bool may_go_on = std::all_of(e.v.begin(), e.v.end(), [&](int v) { return has_edge_[v] != 0; });
-  return farthest < reach && may_go_on && find(last_, e) ? reach : farthest;
+  return farthest < reach && may_go_on && last_of(e) ? reach : farthest;
 }
 
 // The pairs of vertices with triangles, or of edges, that come within the thickness, and a little more, on the way to ahead_.
@@ -223,6 +226,8 @@ void SelfContacts::find_near_ones(const StepMotion& step, double thickest, bool 
 
 void SelfContacts::find_contacts(const StepMotion& step) {
   touching_.clear();
+  last_ones_.clear();
+  for (const SelfContact& c : last_) last_ones_.push_back(c.who);
   double thickest = 0, thickest_rope = 0;
   for (const SelfFace& face : faces_) thickest = std::max(thickest, face.thickness);
   for (const SelfSegment& segment : segments_) thickest_rope = std::max(thickest_rope, segment.thickness);
@@ -242,7 +247,7 @@ void SelfContacts::find_contacts_of_vertices(const StepMotion& step, double thic
     if (const auto contact = contact_of(step, m.who, m.approach.last)) touching_.push_back(*contact);
   };
   const auto goes_on = [&](const Meeting& m) {
-    const SelfContact* const before = find(last_, m.who);
+    const SelfContact* const before = last_of(m.who);
     const auto& w = m.approach.last.weights;
     return before && before->before > 0 &&
            std::all_of(w.begin() + 1, w.end(), [](double k) { return k < -1e-3; });
@@ -282,7 +287,7 @@ void SelfContacts::find_contacts_of_edges(const StepMotion& step, double thickes
       for (int v : c.who.v) has_edge_[v] = 1;
   find_near_ones(step, thickest, true);
   for (const Meeting& m : found_) {
-    const bool near = ropes_->is_rope(m.who) ? find(last_, m.who) || !is_borne_otherwise(m)
+    const bool near = ropes_->is_rope(m.who) ? last_of(m.who) || !is_borne_otherwise(m)
                                              : m.approach.last.distance < farthest_of_edges(m.who, infinity);
     if (!near) continue;
     if (const auto contact = contact_of(step, m.who, m.approach.last)) touching_.push_back(*contact);

@@ -41,17 +41,6 @@ class MovingBoxes {
   template <class Ask>
   void along(const Vec3& x0, const Vec3& x1, double from, const Ask& ask, double beside = 0) const;
 
-  // Calls ask(face, other) once for every two faces that can come within `margin` [m] of each other at some s: their
-  // boxes come as near along each axis at a common s. ask returns whether to go on.
-  template <class Ask>
-  void pairs(const Ask& ask, double margin = 0) const {
-    const float reach = reach_of(margin);
-    for (int child = 0; child < 4; ++child)
-      if (!pairs_between(0, child, 0, 1u << child | (near_children(0, child, 0, reach) & after(child)), reach,
-                         IsLeaf{this}, ask_faces(ask)))
-        return;
-  }
-
   // The faces in patches of up to 32 that lie beside each other.
   struct Patch {
     int node, child;   // where in the tree
@@ -59,11 +48,13 @@ class MovingBoxes {
   };
   const std::vector<Patch>& patches() const { return patches_; }
   int face(int place) const { return order_[place]; }  // in the tree's order
-  // Calls meet(p, q), p <= q, once for every two patches that can come within the margin at some s and have pairs to ask
-  // for, and with p = q for those within a patch. meet returns whether to go on; returns false when it did.
+  // Calls meet(p, q), p <= q, once for every two patches that can come within the margin [m] at some s and have pairs to ask
+  // for, and with p = q for those within a patch. meet returns whether to go on; returns false when it did not.
   template <class Meet>
   bool near_patches(const Meet& meet, double margin) const;
-  // pairs() of the faces of two patches, or of those within one. Returns false when ask did.
+  // Calls ask(face, other) once for every two faces of two patches, or within one, that can come within the margin of each
+  // other at some s: their boxes come as near along each axis at a common s. ask returns whether to go on; returns false
+  // when it did not.
   template <class Ask>
   bool pairs_of_patches(int first, int second, const Ask& ask, double margin) const;
 

@@ -4,7 +4,9 @@
 #include <array>
 #include <compare>
 #include <numeric>
+#include <utility>
 
+#include "mesh/base/parallel.h"
 #include "mesh/distance/moving_boxes.h"
 #include "mesh/distance/passing_edges.h"
 
@@ -39,6 +41,17 @@ class Search {
   }
 
   int found() const { return static_cast<int>(pairs_.size()); }
+  // Takes what another search of the same triangles found, up to most_crossing_pairs in all.
+  void take(const Search& other) {
+    const int before = found(), most = most_crossing_pairs - before;
+    for (const PairPassage& p : other.passages_)
+      if (p.pair < most) passages_.push_back({p, before + p.pair});
+    pairs_.insert(pairs_.end(), other.pairs_.begin(), other.pairs_.begin() + std::min(most, other.found()));
+  }
+  void clear() {
+    pairs_.clear();
+    passages_.clear();
+  }
   std::vector<CrossingContour> contours();
 
  private:
@@ -105,6 +118,38 @@ std::vector<CrossingContour> Search::contours() {
   return contours;
 }
 
+// Calls look_at(part, face, other) for what comes near each other, up to most_crossing_pairs. Several parts of the search
+// go on side by side.
+template <class LookAt>
+void look_at_near_ones(const MovingBoxes& boxes, bool serial, Search& search, const LookAt& look_at) {
+  constexpr int parts_at_once = 64, pairs_of_a_part = 32;  // of patches of faces
+  std::vector<Search> parts(parts_at_once, search);
+  std::vector<std::pair<int, int>> near;
+  const auto goes_on = [](const Search& s) { return s.found() < most_crossing_pairs; };
+  const auto look = [&] {
+    const auto count = static_cast<int>(near.size());
+    const int used = (count + pairs_of_a_part - 1) / pairs_of_a_part;
+    parallel_for(used, serial, [&](int part) {
+      Search& here = parts[part];
+      here.clear();
+      const auto ask = [&](int face, int other) {
+        look_at(here, face, other);
+        return goes_on(here);
+      };
+      for (int k = part * pairs_of_a_part; k < std::min(count, (part + 1) * pairs_of_a_part); ++k)
+        if (!boxes.pairs_of_patches(near[k].first, near[k].second, ask, 0)) return;
+    });
+    for (int part = 0; part < used; ++part) search.take(parts[part]);
+    near.clear();
+    return goes_on(search);
+  };
+  const auto add = [&](int p, int q) {
+    near.emplace_back(p, q);
+    return near.size() < parts_at_once * pairs_of_a_part || look();
+  };
+  if (boxes.near_patches(add, 0)) look();
+}
+
 // first_kind: as of MovingBoxes, in triangles. segments: as of crossing_contours().
 std::vector<CrossingContour> contours_of(const std::vector<Vec3>& positions,
                                          const std::vector<Triangle>& triangles, int first_kind,
@@ -126,11 +171,11 @@ std::vector<CrossingContour> contours_of(const std::vector<Vec3>& positions,
   MovingBoxes boxes(faces, positions, in_a_box, faces_of_first);
   boxes.refit(faces, positions, positions);
   Search search(positions, triangles);
-  boxes.pairs([&](int first, int second) {
-    const int a = triangle_of[first], b = triangle_of[second];
-    if (first_kind == 0 || (a < first_kind) != (b < first_kind)) search.look_at(a, b);
-    return search.found() < most_crossing_pairs;
-  });
+  look_at_near_ones(boxes, static_cast<int>(faces.size()) < serial_below(Work::heavy), search,
+                    [&](Search& here, int first, int second) {
+                      const int a = triangle_of[first], b = triangle_of[second];
+                      if (first_kind == 0 || (a < first_kind) != (b < first_kind)) here.look_at(a, b);
+                    });
   return search.contours();
 }
 

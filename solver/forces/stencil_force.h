@@ -118,14 +118,17 @@ class StencilForce : public Force {
                      [&](int e) { return rows(elements_[e])[0]; });
       to_take_ = true;
     }
-    for (Element& e : elements_) {
-      auto slot = e.slots.begin();
-      for (std::size_t k = 0; k < e.particles.size(); ++k)
-        for (std::size_t l = k; l < e.particles.size(); ++l) {
-          const int i = row(e.particles[k]), j = row(e.particles[l]);
-          *slot++ = i <= j ? layout.slot(i, j) : ~layout.slot(j, i);
-        }
-    }
+    for_chunks<Work::heavy>(static_cast<int>(elements_.size()), [&](int begin, int end) {
+      for (int one = begin; one < end; ++one) {
+        Element& e = elements_[one];
+        auto slot = e.slots.begin();
+        for (std::size_t k = 0; k < e.particles.size(); ++k)
+          for (std::size_t l = k; l < e.particles.size(); ++l) {
+            const int i = row(e.particles[k]), j = row(e.particles[l]);
+            *slot++ = i <= j ? layout.slot(i, j) : ~layout.slot(j, i);
+          }
+      }
+    });
   }
 
   double energy(const VecX& x) const override {

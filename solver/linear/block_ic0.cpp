@@ -166,7 +166,7 @@ class BlockIc0 final : public Preconditioner {
     if (!A.overlay().empty()) add_far(j, A);
     for (int k = first; k < end; ++k) {
       Four c0 = values_[k].column[0], c1 = values_[k].column[1], c2 = values_[k].column[2];
-      for (const EliminationOrder::Update& u : order_.updates(k)) {
+      for (const EliminationOrder::Update& u : order_.updates(j, k)) {
         const Four *factor = factors_[u.factor].column, *from = values_[u.from].column;
         const Four f0 = factor[0], f1 = factor[1], f2 = factor[2];
         c0 -= f0 * from[0][0] + f1 * from[0][1] + f2 * from[0][2];

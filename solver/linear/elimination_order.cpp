@@ -73,19 +73,26 @@ void EliminationOrder::list_blocks(const BlockMatrix& A) {
 }
 
 void EliminationOrder::list_updates() {
-  factor_of_.assign(row_.size(), -1);  // row i -> place of A_ij, for one j
-  update_.clear();
-  update_start_.assign(1, 0);
-  for (int j = 0; j < rows(); ++j) {
-    below_.in_column(j, [&](int i, int place) { factor_of_[i] = place; });
-    for (int to = start(j); to < start(j + 1); ++to) {
-      below_.in_column(block_[to].column, [&](int i, int from) {
-        if (i < j && factor_of_[i] >= 0) update_.push_back({factor_of_[i], from});
-      });
-      update_start_.push_back(static_cast<int>(update_.size()));
+  update_start_.resize(block_.size());
+  update_count_.resize(block_.size());
+  update_.resize(static_cast<std::size_t>(heavy_chunk_count(rows())));
+  drape::for_chunks<Work::heavy>(rows(), [&](int begin, int end) {
+    thread_local std::vector<int> factor_of;  // row i -> place of A_ij, for one j; else -1
+    factor_of.assign(row_.size(), -1);
+    std::vector<Update>& list = update_[begin / heavy_chunk_size(rows())];
+    list.clear();
+    for (int j = begin; j < end; ++j) {
+      below_.in_column(j, [&](int i, int place) { factor_of[i] = place; });
+      for (int to = start(j); to < start(j + 1); ++to) {
+        update_start_[to] = static_cast<int>(list.size());
+        below_.in_column(block_[to].column, [&](int i, int from) {
+          if (i < j && factor_of[i] >= 0) list.push_back({factor_of[i], from});
+        });
+        update_count_[to] = static_cast<int>(list.size()) - update_start_[to];
+      }
+      below_.in_column(j, [&](int i, int) { factor_of[i] = -1; });
     }
-    below_.in_column(j, [&](int i, int) { factor_of_[i] = -1; });
-  }
+  });
 }
 
 }  // namespace drape::internal

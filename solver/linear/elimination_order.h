@@ -42,8 +42,10 @@ class EliminationOrder {
   const Mirror& far() const {
     return far_;
   }  // the blocks of the overlay, in row j and in column j of the triangle
-  std::span<const Update> updates(int place) const {  // of the block A_jk that stands there, i ascending
-    return {update_.data() + update_start_[place], update_.data() + update_start_[place + 1]};
+  // Of the block A_jk of row j that stands at this place, i ascending.
+  std::span<const Update> updates(int j, int place) const {
+    return std::span(update_[j / heavy_chunk_size(rows())])
+        .subspan(update_start_[place], update_count_[place]);
   }
   int colours() const { return colours_; }
   // Calls f(begin, end) for the chunks of rows of one colour, in any order.
@@ -72,8 +74,9 @@ class EliminationOrder {
   std::vector<int> row_, start_, place_;  // place_: row of the matrix -> in the order of elimination
   std::vector<Block> block_;
   Mirror below_, far_, left_;  // left_: the blocks of the matrix below its diagonal
-  std::vector<int> update_start_, factor_of_;
-  std::vector<Update> update_;
+  // By heavy chunk of rows, which are listed side by side; and where in the list those of each place are.
+  std::vector<std::vector<Update>> update_;
+  std::vector<int> update_start_, update_count_;
 };
 
 }  // namespace drape::internal

@@ -3,23 +3,24 @@
 #include <algorithm>
 #include <utility>
 
+#include "mesh/base/parallel.h"
+
 namespace drape {
 namespace {
 
-bool before(const ParticlePair& a, const ParticlePair& b) {
-  return std::pair(a.i, a.j) < std::pair(b.i, b.j);
-}
 bool same(const ParticlePair& a, const ParticlePair& b) { return a.i == b.i && a.j == b.j; }
 
 }  // namespace
 
 bool BlockOverlay::assign(const BlockPattern& pattern, std::vector<ParticlePair>& pairs) {
-  for (ParticlePair& p : pairs) {
-    const auto [i, j] = std::minmax(pattern.row_of()[p.i], pattern.row_of()[p.j]);
-    p = {i, j};
-  }
-  std::erase_if(pairs, [&](const ParticlePair& p) { return p.i == p.j || pattern.has(p.i, p.j); });
-  std::sort(pairs.begin(), pairs.end(), before);
+  for_chunks<Work::heavy>(static_cast<int>(pairs.size()), [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) {
+      const auto [i, j] = std::minmax(pattern.row_of()[pairs[k].i], pattern.row_of()[pairs[k].j]);
+      pairs[k] = i == j || pattern.has(i, j) ? ParticlePair{-1, -1} : ParticlePair{i, j};
+    }
+  });
+  std::erase_if(pairs, [](const ParticlePair& p) { return p.i < 0; });
+  sort(pairs, pattern.rows());
   pairs.erase(std::unique(pairs.begin(), pairs.end(), same), pairs.end());
   const bool stands = first_slot_ == pattern.blocks() &&
                       std::equal(pairs.begin(), pairs.end(), pairs_.begin(), pairs_.end(), same);
@@ -29,6 +30,22 @@ bool BlockOverlay::assign(const BlockPattern& pattern, std::vector<ParticlePair>
   serial_ = next_pattern_serial();
   list_rows(pattern.rows());
   return true;
+}
+
+// By the first row, and then by the second.
+void BlockOverlay::sort(std::vector<ParticlePair>& pairs, int rows) {
+  row_begin_.assign(static_cast<std::size_t>(rows) + 2, 0);
+  for (const ParticlePair& p : pairs) ++row_begin_[p.i + 2];
+  for (int r = 2; r < rows + 2; ++r) row_begin_[r] += row_begin_[r - 1];
+  by_row_.resize(pairs.size());
+  for (const ParticlePair& p : pairs)
+    by_row_[row_begin_[p.i + 1]++] = p;  // where the row goes on, in the end its end
+  for_chunks<Work::heavy>(rows, [&](int begin, int end) {
+    for (int r = begin; r < end; ++r)
+      std::sort(by_row_.begin() + row_begin_[r], by_row_.begin() + row_begin_[r + 1],
+                [](const ParticlePair& a, const ParticlePair& b) { return a.j < b.j; });
+  });
+  std::swap(pairs, by_row_);
 }
 
 void BlockOverlay::clear() {

@@ -51,6 +51,7 @@ class BlockOverlay {
   }
 
  private:
+  void sort(std::vector<ParticlePair>& pairs, int rows);
   void list_rows(int rows);
 
   int first_slot_ = 0;
@@ -59,6 +60,9 @@ class BlockOverlay {
   std::vector<int> rows_, start_;
   std::vector<Entry> entries_;
   std::vector<int> place_;  // row of the matrix -> k; -1: it has no blocks here
+  // Scratch: pairs by their first rows, and where those of each row begin.
+  std::vector<ParticlePair> by_row_;
+  std::vector<int> row_begin_;
 };
 
 // A pattern and the overlay beside it: they say where every block stands.
