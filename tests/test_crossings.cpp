@@ -105,6 +105,19 @@ TriangleMesh two_sheets(double height, double turn) {
   return both;
 }
 
+// Triangles of three vertices each, of this size [m], in a cube of 1 m.
+std::pair<std::vector<Vec3>, std::vector<Triangle>> loose_triangles(int count, double size) {
+  Random random;
+  std::pair<std::vector<Vec3>, std::vector<Triangle>> soup;
+  auto& [x, triangles] = soup;
+  for (int k = 0; k < count; ++k) {
+    const Vec3 middle = 0.5 * random.point(1);
+    for (int corner = 0; corner < 3; ++corner) x.push_back(middle + size * random.point(1));
+    triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  return soup;
+}
+
 }  // namespace
 
 TEST_CASE("orient3d has the sign of rational arithmetic, also where doubles cannot tell", "[crossings]") {
@@ -148,6 +161,42 @@ TEST_CASE("the triangles that cross are those of rational arithmetic", "[crossin
     const std::set<TrianglePair> expected = crossing_by_rationals(mesh.positions, mesh.triangles);
     CHECK(crossing(mesh.positions, mesh.triangles) == expected);
   }
+}
+
+TEST_CASE("crossings of many triangles are those of each two, on any number of threads", "[crossings]") {
+  const ThreadsRestored restored;
+  const auto [x, triangles] = loose_triangles(700, 0.25);
+  const int half = static_cast<int>(triangles.size()) / 2;
+  std::set<TrianglePair> expected, between;
+  for (int i = 0; i < static_cast<int>(triangles.size()); ++i)
+    for (int j = i + 1; j < static_cast<int>(triangles.size()); ++j)
+      if (!crossing_contours(x, {triangles[i], triangles[j]}).empty()) {
+        expected.insert({i, j});
+        if (i < half && j >= half) between.insert({i, j});
+      }
+  CHECK(between.size() > 500);
+  std::vector<Passage> passages;
+  for (int t : {1, 2, 7}) {
+    set_threads(t);
+    INFO(t << " threads");
+    CHECK(crossing(x, triangles) == expected);
+    CHECK(crossing_count(contours_between(x, triangles, half)) == static_cast<int>(between.size()));
+    std::vector<Passage> now;
+    for (const CrossingContour& contour : crossing_contours(x, triangles))
+      now.insert(now.end(), contour.passages.begin(), contour.passages.end());
+    if (t == 1) passages = now;
+    CHECK(std::equal(now.begin(), now.end(), passages.begin(), passages.end(),
+                     [](const Passage& p, const Passage& q) {
+                       return std::tuple(p.a, p.b, p.of, p.through) == std::tuple(q.a, q.b, q.of, q.through);
+                     }));
+  }
+}
+
+TEST_CASE("no more crossings are listed than are told", "[crossings]") {
+  const auto [x, triangles] = loose_triangles(3000, 3);
+  const std::vector<CrossingContour> contours = crossing_contours(x, triangles);
+  CHECK(crossing_count(contours) == most_crossing_pairs);
+  for (const CrossingContour& contour : contours) CHECK_FALSE(contour.passages.empty());
 }
 
 TEST_CASE("crossings do not depend on where the mesh is, how large, or how its vertices are numbered",
