@@ -33,22 +33,23 @@ constexpr double eased_below = 0.4;
 constexpr double eased_for = 0.25, softens_to = 0.8, runs_back = 2.5;
 // What is then left of its stiffness after 10 ms, at least.
 constexpr double slowest_fall = 0.9;
-// A contact may hold what would else snap: as it becomes softer the load comes back, it becomes stiff again, is eased again,
-// and they swing for ever. So where the load asks for this much more than a contact that became softer is stiff for, the
-// contact is never eased below this share of that again.
+// A contact may hold what would else snap: as the contact becomes softer the load comes back, the contact becomes stiff
+// again, is eased again, and the cloth swings for ever. The load has come back where it asks for 1.1 times what a contact
+// that became softer is stiff for. From then on easing ends at 1.25 times the stiffness at which the load came back.
 constexpr double comes_back = 1.1, ends_above = 1.25;
 
 // How fast a contact that has become thinner than its cloth may thicken [m/s]: so slowly that, on earth, what it lifts flies no
 // farther than the contact is remembered.
 double lift_speed(double thickness) { return std::sqrt(2 * 9.81 * 0.5 * thickness); }
 
-// How stiff a contact becomes of which the load asks for `wanted` [N/m], in a step of h [s].
+// How stiff a contact becomes of which the load asks for `wanted` [N/m], in a step of h [s]. Notes in the contact how its
+// easing goes on.
 double next_stiffness(SelfContact& contact, double wanted, double h) {
   using Ease = SelfContact::Ease;
   const bool eases = wanted < (contact.eased > eased_for ? softens_to : eased_below) * contact.stiff;
   contact.eased = std::clamp(contact.eased + (eases ? h : -runs_back * h), 0.0, 2 * eased_for);
   if (contact.ease == Ease::softer && wanted > comes_back * contact.stiff) {
-    contact.least_stiff = ends_above * contact.stiff;
+    contact.least_stiff = std::max(contact.least_stiff, ends_above * contact.stiff);
     contact.ease = Ease::bears;
   }
   const double share_left = contact.eased > eased_for ? std::pow(slowest_fall, h / 0.01) : 1;
@@ -171,8 +172,10 @@ void SelfContacts::stiffen(SelfContact& contact, const StepMotion& step) const {
     for (double* k : {&contact.stiff, &contact.least_stiff})
       *k *= step.last_h * step.last_h / (step.h * step.h);
   if (contact.stiff > 0) bears = next_stiffness(contact, bears, step.h);
-  contact.stiffness = std::clamp(std::max(bears, stops / (arrival_sinks * sinks)), contact.stiffness,
-                                 stiffest * contact.stiffness);
+  const double arrives = stops / (arrival_sinks * sinks);
+  if (arrives > bears)
+    contact.ease = SelfContact::Ease::untried;  // the force of a blow is no load that comes back
+  contact.stiffness = std::clamp(std::max(bears, arrives), contact.stiffness, stiffest * contact.stiffness);
 }
 
 // Makes a contact that let its sides pass on the way to x_new as stiff as what pushes there asks for.
@@ -189,6 +192,7 @@ bool SelfContacts::stiffen_to_hold(SelfContact& contact, const VecX& x_new) cons
   const double wanted = contact.push_at(contact.at(x_new)) / (arrival_sinks * sinks);
   if (kappa_ < 1 || std::min(wanted, limit) < 1.01 * contact.stiffness) return false;
   contact.stiffness = std::min({wanted, most * contact.stiffness, limit});
+  contact.ease = SelfContact::Ease::untried;
   contact.active = true;
   return true;
 }

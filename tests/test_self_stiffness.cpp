@@ -100,6 +100,30 @@ TEST_CASE("contacts become softer again when their load is gone", "[self-contact
     }
 }
 
+TEST_CASE("a blow to contacts that were eased is no load that comes back", "[self-contact]") {
+  // The upper half of a light pile gets a blow from above. One pile was heavy before, and had become soft again.
+  constexpr double heavy = 100, light = 5, blow = 6;  // m/s^2, m/s^2, m/s
+  for (Kind kind : kinds)
+    for (int n : {4, 6, 8}) {
+      INFO(n << " vertices along an edge, kind " << static_cast<int>(kind));
+      const auto stiffness_after = [&](double weight_at_first) {
+        Assembly pile = pile_on({.shape = Plane{}, .friction = 0.5, .margin = 2e-3}, 4, n, kind);
+        const auto weigh = [&](double g, double until) {
+          pile.system->add(gravity({0, -g, 0}));
+          while (pile.state.time < until) REQUIRE(pile.advance(0.01).done);
+          return sum_of_stiffnesses(pile);
+        };
+        weigh(weight_at_first, 1);
+        const double soft = weigh(light, 2);
+        for (int i = pile.cloths[2].first_particle; i < pile.state.particles(); ++i)
+          pile.state.v[3 * i + 1] -= blow;
+        CHECK(weigh(light, 2.01) > 1.5 * soft);
+        return weigh(light, 4);
+      };
+      CHECK(stiffness_after(heavy) < 1.1 * stiffness_after(light));
+    }
+}
+
 TEST_CASE("a contact whose load comes back when it is eased is not eased as far again", "[self-contact]") {
   // Stands for what would snap where a contact gives way: the pile is light until its springs are down to a share of
   // what they were, and is then heavy for a while. Springs that forget go up and down six times in this time.

@@ -125,7 +125,6 @@ void look_at_near_ones(const MovingBoxes& boxes, bool serial, Search& search, co
   constexpr int parts_at_once = 64, pairs_of_a_part = 32;  // of patches of faces
   std::vector<Search> parts(parts_at_once, search);
   std::vector<std::pair<int, int>> near;
-  const auto goes_on = [](const Search& s) { return s.found() < most_crossing_pairs; };
   const auto look = [&] {
     const auto count = static_cast<int>(near.size());
     const int used = (count + pairs_of_a_part - 1) / pairs_of_a_part;
@@ -134,14 +133,14 @@ void look_at_near_ones(const MovingBoxes& boxes, bool serial, Search& search, co
       here.clear();
       const auto ask = [&](int face, int other) {
         look_at(here, face, other);
-        return goes_on(here);
+        return true;
       };
       for (int k = part * pairs_of_a_part; k < std::min(count, (part + 1) * pairs_of_a_part); ++k)
-        if (!boxes.pairs_of_patches(near[k].first, near[k].second, ask, 0)) return;
+        boxes.pairs_of_patches(near[k].first, near[k].second, ask, 0);
     });
     for (int part = 0; part < used; ++part) search.take(parts[part]);
     near.clear();
-    return goes_on(search);
+    return search.found() < most_crossing_pairs;
   };
   const auto add = [&](int p, int q) {
     near.emplace_back(p, q);

@@ -1,5 +1,7 @@
 #include "solver/linear/elimination_order.h"
 
+#include <utility>
+
 #include "solver/linear/projected_block.h"
 
 namespace drape::internal {
@@ -78,8 +80,8 @@ void EliminationOrder::list_updates() {
   update_.resize(static_cast<std::size_t>(heavy_chunk_count(rows())));
   drape::for_chunks<Work::heavy>(rows(), [&](int begin, int end) {
     thread_local std::vector<int> factor_of;  // row i -> place of A_ij, for one j; else -1
-    factor_of.assign(row_.size(), -1);
-    std::vector<Update>& list = update_[begin / heavy_chunk_size(rows())];
+    if (factor_of.size() < row_.size()) factor_of.assign(row_.size(), -1);
+    std::vector<Update> list = std::move(update_[begin / heavy_chunk_size(rows())]);
     list.clear();
     for (int j = begin; j < end; ++j) {
       below_.in_column(j, [&](int i, int place) { factor_of[i] = place; });
@@ -92,6 +94,7 @@ void EliminationOrder::list_updates() {
       }
       below_.in_column(j, [&](int i, int) { factor_of[i] = -1; });
     }
+    update_[begin / heavy_chunk_size(rows())] = std::move(list);
   });
 }
 

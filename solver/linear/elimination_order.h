@@ -42,7 +42,7 @@ class EliminationOrder {
   const Mirror& far() const {
     return far_;
   }  // the blocks of the overlay, in row j and in column j of the triangle
-  // Of the block A_jk of row j that stands at this place, i ascending.
+  // The updates of the block A_jk of row j that stands at this place, i ascending.
   std::span<const Update> updates(int j, int place) const {
     return std::span(update_[j / heavy_chunk_size(rows())])
         .subspan(update_start_[place], update_count_[place]);
@@ -74,7 +74,8 @@ class EliminationOrder {
   std::vector<int> row_, start_, place_;  // place_: row of the matrix -> in the order of elimination
   std::vector<Block> block_;
   Mirror below_, far_, left_;  // left_: the blocks of the matrix below its diagonal
-  // By heavy chunk of rows, which are listed side by side; and where in the list those of each place are.
+  // Each heavy chunk of rows has a list of its own. update_start_ and update_count_ say where in it those of a place
+  // stand.
   std::vector<std::vector<Update>> update_;
   std::vector<int> update_start_, update_count_;
 };

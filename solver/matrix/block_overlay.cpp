@@ -32,14 +32,14 @@ bool BlockOverlay::assign(const BlockPattern& pattern, std::vector<ParticlePair>
   return true;
 }
 
-// By the first row, and then by the second.
+// Sorts pairs by their first rows, and those of equal first rows by the second.
 void BlockOverlay::sort(std::vector<ParticlePair>& pairs, int rows) {
   row_begin_.assign(static_cast<std::size_t>(rows) + 2, 0);
   for (const ParticlePair& p : pairs) ++row_begin_[p.i + 2];
   for (int r = 2; r < rows + 2; ++r) row_begin_[r] += row_begin_[r - 1];
   by_row_.resize(pairs.size());
   for (const ParticlePair& p : pairs)
-    by_row_[row_begin_[p.i + 1]++] = p;  // where the row goes on, in the end its end
+    by_row_[row_begin_[p.i + 1]++] = p;  // says where the row goes on, and in the end where it ends
   for_chunks<Work::heavy>(rows, [&](int begin, int end) {
     for (int r = begin; r < end; ++r)
       std::sort(by_row_.begin() + row_begin_[r], by_row_.begin() + row_begin_[r + 1],
