@@ -192,7 +192,7 @@ bool SelfContacts::stiffen_to_hold(SelfContact& contact, const VecX& x_new) cons
   const double wanted = contact.push_at(contact.at(x_new)) / (arrival_sinks * sinks);
   if (kappa_ < 1 || std::min(wanted, limit) < 1.01 * contact.stiffness) return false;
   contact.stiffness = std::min({wanted, most * contact.stiffness, limit});
-  contact.ease = SelfContact::Ease::untried;
+  contact.ease = SelfContact::Ease::untried;  // as after a blow
   contact.active = true;
   return true;
 }

@@ -305,7 +305,7 @@ class SelfContacts {
   VecX rest_;                                    // places of the cloth when the faces were added [m]
   std::vector<char> tangled_;                    // whether it was in a tangle there, or is beside a cut
   std::vector<SelfContact> touching_, last_;     // of this step and of the last one, sorted
-  std::vector<Encounter> last_ones_;             // scratch: of which pairs those of the last step are
+  std::vector<Encounter> last_ones_;             // scratch: the pairs of last_, in its order
   std::vector<SelfContact> met_;                 // scratch
   std::vector<internal::Meeting> found_;         // scratch
   std::vector<double> way_, shorter_, nearest_;  // scratch, by particle
