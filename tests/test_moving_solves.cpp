@@ -42,7 +42,7 @@ struct Cost {
   int given_up = 0;                                                       // solves that another method began
 
   void add(const LinearReport& report, bool multigrid, double blocks_of_row) {
-    total += multigrid ? (0.7 + 10 / blocks_of_row) * report.iterations + 6 + 19 * report.analyses
+    total += multigrid ? (1 + 14 / blocks_of_row) * report.iterations + 6 + 19 * report.analyses
                        : report.iterations + 8;
     ++solves;
     iterations += report.iterations;
@@ -167,7 +167,7 @@ TEST_CASE("auto takes multigrid earlier where a matrix has many blocks or severa
   for (const bool irregular : {false, true}) {
     INFO("irregular " << irregular);
     CHECK(solves_by_multigrid(irregular, 4, 20) == 0);
-    for (const int side : {32, 36, 40}) CHECK(solves_by_multigrid(irregular, 4, side) > 40);
+    for (const int side : {36, 40, 44}) CHECK(solves_by_multigrid(irregular, 4, side) > 40);
   }
   for (const int side : {44, 52}) CHECK(solves_by_multigrid(true, 1, side) > 8);
 }
@@ -179,9 +179,9 @@ TEST_CASE("multigrid takes few iterations in every step of a moving sheet, whate
         const Cost cost = run(side, on_ball, as_woven, "ppcg+multigrid", 30).cost;
         INFO(side << " vertices a side, on a ball " << on_ball << ", woven " << as_woven << ": "
                   << cost.iterations << " iterations in " << cost.solves << " solves");
-        CHECK(cost.iterations <= 22 * cost.solves);
+        CHECK(cost.iterations <= 13 * cost.solves);
         // Where contacts have changed, levels that were kept may have to be made anew within a solve.
-        CHECK(cost.most_iterations <= (on_ball ? 48 : 40));
+        CHECK(cost.most_iterations <= (on_ball ? 44 : 28));
       }
 }
 
@@ -195,7 +195,6 @@ TEST_CASE("auto gives block-ic0 up in a solve that takes too long, and solves as
     REQUIRE(stepper.advance(sheet.state, 0.1).done);  // the solver itself compares the bits
     CHECK(cost.given_up == 1);
     CHECK(cost.by_multigrid >= 1);
-    CHECK(cost.most_iterations > 254);
   }
 }
 

@@ -1,6 +1,8 @@
 // Laws of the multigrid preconditioner: iterations on fine and stiff sheets,
 // what it keeps, what it leaves behind.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <limits>
 
 #include "mesh/base/threads.h"
 #include "solver/linear/aggregation.h"
@@ -169,6 +171,44 @@ TEST_CASE(
     });
   CHECK(zero == 0);
   CHECK(blocks < 2 * (matrix.pattern().blocks() - matrix.rows()));  // there are slack springs
+}
+
+TEST_CASE("sweeps are Gauss-Seidel's, down and up, and tell the residual and the product that they leave",
+          "[solvers]") {
+  for (const int side : {13, 33}) {  // one chunk of rows, and several
+    const FallingSheet sheet(side, 15);
+    const ProjectedSheet projected(sheet, sheet.held({0, 20, 21, 22, 150}));
+    const Smoother& smoother = projected.smoother;
+    const Eigen::MatrixXd A = dense(smoother);
+    const VecX r = random_vector(A.rows(), 1, 2);
+    const VecX unset = VecX::Constant(r.size(), std::numeric_limits<double>::quiet_NaN());
+    VecX x = VecX::Zero(r.size()), change = unset, left = unset, from_zero = unset;
+    smoother.sweep(r, x, change);
+    smoother.sweep_from_zero(r, from_zero, change = unset, left);
+    CHECK(from_zero == x);
+    CHECK((left - (r - A * x)).norm() < 1e-12 * r.norm());
+    CHECK(left.norm() > 1e-3 * r.norm());
+    VecX again = x, Ax = unset;
+    smoother.sweep(r, x, change);
+    smoother.sweep(r, again, change = unset, Ax);
+    CHECK(again == x);
+    CHECK((Ax - A * x).norm() < 1e-12 * Ax.norm());
+    std::vector<int> order;  // even chunks of 256 rows, then odd ones
+    for (const int odd : {0, 1})
+      for (int i = 0; i < smoother.rows(); ++i)
+        if (i / 256 % 2 == odd) order.push_back(i);
+    VecX expected = VecX::Zero(r.size());
+    const auto solve_row = [&](int i) {
+      const Vec3 rest = r.segment<3>(3 * i) - A.middleRows<3>(3 * i) * expected +
+                        A.block<3, 3>(3 * i, 3 * i) * expected.segment<3>(3 * i);
+      expected.segment<3>(3 * i) = A.block<3, 3>(3 * i, 3 * i).inverse() * rest;
+    };
+    for (int time = 0; time < 2; ++time) {
+      std::for_each(order.begin(), order.end(), solve_row);
+      std::for_each(order.rbegin(), order.rend(), solve_row);
+    }
+    CHECK((x - expected).norm() < 1e-10 * expected.norm());
+  }
 }
 
 TEST_CASE("the next coarser matrix is P^T A P, symmetric to the last bit", "[solvers]") {

@@ -33,7 +33,7 @@ constexpr Price ic0_price = {1, 8, 0};
 // The time of an iteration with block-ic0 grows with the number of blocks, that of one with multigrid grows less.
 Price multigrid_price(const BlockMatrix& A) {
   const double blocks_of_row = static_cast<double>(A.pattern().blocks()) / A.rows();
-  return {0.7 + 10 / blocks_of_row, 6, 19};
+  return {1 + 14 / blocks_of_row, 6, 19};
 }
 
 class Auto final : public LinearSolver {
@@ -140,9 +140,9 @@ class Auto final : public LinearSolver {
     now_ = other();
   }
 
-  // What one matrix usually costs with multigrid: 16 iterations a solve.
+  // What one matrix usually costs with multigrid: 12 iterations a solve.
   double usual_multigrid(int solves) const {
-    return solves * (16 * multigrid_price_.iteration + multigrid_price_.system) + multigrid_price_.levels;
+    return solves * (12 * multigrid_price_.iteration + multigrid_price_.system) + multigrid_price_.levels;
   }
 
   Method other() const { return now_ == ic0 ? multigrid : ic0; }

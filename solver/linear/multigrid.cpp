@@ -1,6 +1,7 @@
 // A V-cycle of smoothed aggregation as preconditioner.
 //                                      [Vanek, Mandel & Brezina 1996; Tamstorf, Jones & McCormick 2015]
-//   level: x = smooth down (r);  x += P V(P^T (r - A x));  x = smooth up (r, x);    next level: A_c = P^T A P
+//   level: x = sweep (r);  x += P V(P^T (r - A x));  x = sweep (r, x);    next level: A_c = P^T A P
+// A sweep is Gauss-Seidel's, down and up (smoother.h).
 // It is our own because it was faster than PETSc's GAMG on these matrices (tests/bench measures both): it has
 // blocks of whole vertices, kept in float, and threads that do not change a bit of the result. The finest
 // level is made for every system, because it contains what is held. The coarser levels are new for every matrix
@@ -24,7 +25,7 @@ namespace drape::internal {
 namespace {
 
 // A threshold above a few percent cuts couplings that the finest sheets need: 0.08 took 65 iterations where
-// 0.02 takes 12 (100,000 vertices, tolerance 1e-3).
+// 0.02 took 12 (100,000 vertices, tolerance 1e-3).
 constexpr double strength = 0.02;
 constexpr int coarsest_rows = 50, most_levels = 12;
 // Levels that took more iterations than this even when new are not kept for the next system.
@@ -34,12 +35,12 @@ struct Level {
   Smoother smoother;
   Aggregation aggregation;
   BlockRows prolongation, restriction;  // to the next coarser level
-  VecX x, r, residual;                  // x and r belong to the system of a coarser level
+  VecX x, r, residual, change;          // x and r belong to the system of a coarser level
 
   template <class Rows>
   void build(const Rows& A) {
     smoother.build(A);
-    for (VecX* v : {&x, &r, &residual}) v->setZero(3 * static_cast<Eigen::Index>(A.rows()));
+    for (VecX* v : {&x, &r, &residual, &change}) v->setZero(3 * static_cast<Eigen::Index>(A.rows()));
   }
 };
 
@@ -87,7 +88,7 @@ class Multigrid final : public Preconditioner {
   bool apply_and_multiply(const VecX& r, VecX& s, VecX& Bs) override {
     if (fallen_back_ || count_ == 1) return Preconditioner::apply_and_multiply(r, s, Bs);
     correct(0, r, s);
-    levels_.front().smoother.up(r, s, levels_.front().residual, Bs);
+    levels_.front().smoother.sweep(r, s, levels_.front().change, Bs);
     return true;
   }
 
@@ -148,14 +149,14 @@ class Multigrid final : public Preconditioner {
       x = coarse_->solve(r);
     } else {
       correct(depth, r, x);
-      levels_[depth].smoother.up(r, x);
+      levels_[depth].smoother.sweep(r, x, levels_[depth].change);
     }
   }
 
-  // All of a cycle but the sweep up.
+  // All of a cycle but the sweep after the coarser levels.
   void correct(int depth, const VecX& r, VecX& x) {
     Level& level = levels_[depth];
-    level.smoother.down(r, x, level.residual);
+    level.smoother.sweep_from_zero(r, x, level.change, level.residual);
     if (depth + 1 == count_) return;
     Level& below = levels_[depth + 1];
     for_chunks<Work::heavy>(below.smoother.rows(), [&](int begin, int end) {

@@ -1,5 +1,7 @@
 #include "solver/linear/smoother.h"
 
+#include <type_traits>
+
 namespace drape::internal {
 
 template <class F>
@@ -29,45 +31,51 @@ inline Four Smoother::solve_diagonal(int row, const Four& right) const {
   return load(d) * right[0] + load(d + 3) * right[1] + load(d + 6) * right[2];
 }
 
-inline Four Smoother::solved_upwards(int row, const VecX& r, const VecX& x) const {
-  return solve_diagonal(row,
-                        at(r, row) - times<true>(lower_[row], x.data()) - times<true>(upper_[row], x.data()));
-}
-
-void Smoother::down(const VecX& r, VecX& x, VecX& residual) const {
-  for (const bool odd : {false, true})
-    for_rows_of(odd, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) set(x, i, solve_diagonal(i, at(r, i) - times(lower_[i], x.data())));
-    });
-  for_chunks<Work::heavy>(rows_, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) set(residual, i, -times(upper_[i], x.data()));
-  });
-}
-
-void Smoother::up(const VecX& r, VecX& x) const {
-  for (const bool odd : {true, false})
-    for_rows_of(odd, [&](int begin, int end) {
-      for (int i = end - 1; i >= begin; --i) set(x, i, solved_upwards(i, r, x));
-    });
-}
-
-void Smoother::up(const VecX& r, VecX& x, VecX& change, VecX& Ax) const {
-  const auto sweep = [&](int begin, int end) {
+// Even chunks come first in the order. So L of an even chunk, and U of an odd one, stay within the chunk; U of an
+// even chunk and L of an odd one reach into its neighbours, too. Hence an odd chunk can go up as soon as it went
+// down, and an even one can multiply by L as soon as it went up.
+template <bool from_zero, class F>
+void Smoother::down_and_up(const VecX& r, VecX& x, VecX& change, const F& f) const {
+  const auto down = [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const Four right = at(r, i) - of_lower(i, x);
+      set(change, i, right);  // what the sweep up begins with
+      set(x, i, solve_diagonal(i, from_zero ? right : right - times(upper_[i], x.data())));
+    }
+  };
+  const auto up = [&](int begin, int end) {
     for (int i = end - 1; i >= begin; --i) {
-      const Four solved = solved_upwards(i, r, x);
+      const Four solved = solve_diagonal(i, at(change, i) - times<true>(upper_[i], x.data()));
       set(change, i, solved - at(x, i));
       set(x, i, solved);
     }
   };
-  const auto multiply = [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) set(Ax, i, at(r, i) + times(lower_[i], change.data()));
+  const auto finish = [&](int begin, int end) {
+    if constexpr (!std::is_null_pointer_v<F>)
+      for (int i = begin; i < end; ++i) f(i);
   };
-  for_rows_of(true, sweep);
-  for_rows_of(false, [&](int begin, int end) {
-    sweep(begin, end);
-    multiply(begin, end);  // has no blocks in other chunks, and its own are at hand
+  for_rows_of(false, down);
+  for_rows_of(true, [&](int begin, int end) {
+    down(begin, end);
+    up(begin, end);
   });
-  for_rows_of(true, multiply);
+  for_rows_of(false, [&](int begin, int end) {
+    up(begin, end);
+    finish(begin, end);
+  });
+  if constexpr (!std::is_null_pointer_v<F>) for_rows_of(true, finish);
+}
+
+void Smoother::sweep_from_zero(const VecX& r, VecX& x, VecX& change, VecX& residual) const {
+  down_and_up<true>(r, x, change, [&](int i) { set(residual, i, -of_lower(i, change)); });
+}
+
+void Smoother::sweep(const VecX& r, VecX& x, VecX& change) const {
+  down_and_up<false>(r, x, change, nullptr);
+}
+
+void Smoother::sweep(const VecX& r, VecX& x, VecX& change, VecX& Ax) const {
+  down_and_up<false>(r, x, change, [&](int i) { set(Ax, i, at(r, i) + of_lower(i, change)); });
 }
 
 }  // namespace drape::internal

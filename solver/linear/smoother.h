@@ -1,11 +1,14 @@
-// A matrix of a multigrid level in the three parts of Gauss-Seidel's method, and its symmetric sweeps by
-// blocks. The sweep down goes over the matrix once, residual included, and so does the sweep up.
-//   A = L + D + U:   down from x = 0:  (L + D) x = r,  r - A x = -U x;      up:  (D + U) x_new = r - L x
-//                                                              [Briggs, Henson & McCormick 2000]
-// What the sweep up gives needs no whole product with A:   A x_new = r + L (x_new - x).          [Eisenstat 1981]
+// A matrix of a multigrid level in the three parts of Gauss-Seidel's method, A = L + D + U, and its symmetric sweeps by
+// blocks: one down, and one up after it.                              [Briggs, Henson & McCormick 2000]
+//   down:  (L + D) y = r - U x;      up:  (D + U) x_new = r - L y
+// The sweep up goes over U alone, because the sweep down has r - L y already [Conrad & Wallach 1979]. And what is left
+// needs no whole product with A:   A x_new = r + L (x_new - y),  the residual is -L (x_new - y).  [Eisenstat 1981]
+// From x = 0, where L y is all of it, sweeps and residual go over the matrix one and a half times; from x the sweeps do,
+// and with the product it is twice.
 // Rows are cut into chunks at least as long as the bandwidth. All even chunks come before all odd ones, and
 // that order says what is L and what is U. Two chunks of one kind have no coupling, so they are swept in
-// parallel, and the sweep up is the adjoint of the sweep down, whatever the number of threads.
+// parallel, and the sweep up is the adjoint of the sweep down, so that both together are symmetric, whatever the number
+// of threads.
 // L and U are kept in float. What the rounding takes from the sum of a row is added to D, which is kept in
 // double: the mass of a vertex of a fine sheet is a millionth of its stiffness, and would be lost in float.
 // (This matters on the finest level only: coarser matrices come in float, and have more mass.)
@@ -43,15 +46,20 @@ class Smoother {
     }
   }
 
-  void down(const VecX& r, VecX& x, VecX& residual) const;
-  void up(const VecX& r, VecX& x) const;
-  void up(const VecX& r, VecX& x, VecX& change, VecX& Ax) const;  // change = x_new - x
+  // One sweep down and one up, from x = 0 (whatever x holds) or from x. Where asked they give r - A x or A x of the new
+  // x. `change` is scratch. No two of the vectors may be the same.
+  void sweep_from_zero(const VecX& r, VecX& x, VecX& change, VecX& residual) const;
+  void sweep(const VecX& r, VecX& x, VecX& change) const;
+  void sweep(const VecX& r, VecX& x, VecX& change, VecX& Ax) const;
 
  private:
   template <class F>
   void for_rows_of(bool odd, const F& f) const;  // calls f(begin, end) for every odd or every even chunk
+  // `change` becomes x_new - y. Calls f(row), unless f is null, once all of it that L of this row meets is there.
+  template <bool from_zero, class F>
+  void down_and_up(const VecX& r, VecX& x, VecX& change, const F& f) const;
   Four solve_diagonal(int row, const Four& right) const;
-  Four solved_upwards(int row, const VecX& r, const VecX& x) const;  // x_new of this row
+  Four of_lower(int row, const VecX& x) const { return times(lower_[row], x.data()); }
 
   int rows_ = 0, chunk_rows_ = 1;
   BlockRows lower_, upper_;
