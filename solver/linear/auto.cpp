@@ -1,7 +1,8 @@
 // Takes incomplete Cholesky or multigrid, whichever costs less in the run as it goes.
 //   Costs are counted, never timed, so that the same input gives the same bits. Their unit is one iteration with
 // block-ic0; the prices were measured (docs/design.md) on sheets of 4 k and 10 k vertices and on a skirt of 4.7 k, without
-// contact of cloth with cloth: the overlay, and what block-ic0 lists anew for it, is not counted. A factor that breaks down is counted once.
+// contact of cloth with cloth: the overlay, and what block-ic0 lists anew for it, is not counted. A factor that breaks
+// down is counted once.
 // What is compared is the cost of all systems of one assembled matrix, because contacts ask for several short
 // solves with it, for which the levels of multigrid do not pay.
 // A run begins with block-ic0. Multigrid has the next matrix on trial where a solve costs more than one with

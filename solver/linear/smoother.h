@@ -3,8 +3,8 @@
 //   down:  (L + D) y = r - U x;      up:  (D + U) x_new = r - L y
 // The sweep up goes over U alone, because the sweep down has r - L y already [Conrad & Wallach 1979]. And what is left
 // needs no whole product with A:   A x_new = r + L (x_new - y),  the residual is -L (x_new - y).  [Eisenstat 1981]
-// From x = 0, where L y is all of it, sweeps and residual go over the matrix one and a half times; from x the sweeps do,
-// and with the product it is twice.
+// From x = 0, where U x is zero, the sweeps and the residual together read one and a half times the blocks of the matrix.
+// From another x the sweeps alone read as many, and with the product it is twice the blocks.
 // Rows are cut into chunks at least as long as the bandwidth. All even chunks come before all odd ones, and
 // that order says what is L and what is U. Two chunks of one kind have no coupling, so they are swept in
 // parallel, and the sweep up is the adjoint of the sweep down, so that both together are symmetric, whatever the number
