@@ -191,6 +191,8 @@ void BodyMeeting::show(std::vector<BodyTouch>& touches) const {
   }
 }
 
+Vec3 BodyMeeting::Meeting::impulse() const { return lambda[0] * normal + lambda[1] * t1 + lambda[2] * t2; }
+
 void BodyMeeting::apply(const Meeting& m, const Vec3& impulse) {
   Mover &a = movers_[m.a], &b = movers_[m.b];
   a.v += a.inverse_mass * impulse;

@@ -89,7 +89,7 @@ class BodyMeeting {
     double k_n,
         k_t;      // velocity for an impulse of 1 N s along the normal, and at most for one along the surface
     Vec3 lambda;  // along n, t1, t2
-    Vec3 impulse() const { return lambda[0] * normal + lambda[1] * t1 + lambda[2] * t2; }
+    Vec3 impulse() const;
   };
   static int particle_of(const Meeting& m, const std::vector<Nip>& nips) {
     return m.nip < 0 ? -1 : nips[static_cast<std::size_t>(m.nip)].particle;

@@ -31,15 +31,9 @@ class Filter {
   const std::vector<FilterEntry>& entries() const { return entries_; }
 
   // v_i <- S_i v_i
-  void apply(VecX& v) const {
-    for (const FilterEntry& e : entries_)
-      v.segment<3>(3 * e.particle) = (e.S * v.segment<3>(3 * e.particle)).eval();
-  }
+  void apply(VecX& v) const;
   // dv_i <- S_i dv_i + z_i
-  void impose(VecX& dv) const {
-    for (const FilterEntry& e : entries_)
-      dv.segment<3>(3 * e.particle) = (e.S * dv.segment<3>(3 * e.particle) + e.z).eval();
-  }
+  void impose(VecX& dv) const;
 
  private:
   std::vector<FilterEntry> entries_;

@@ -58,6 +58,19 @@ SurfacePoint MovingBody::near_end(const Vec3& x) const {
   return {s.distance, end_.direction_to_world(s.normal), s.covered};
 }
 
+Vec3 MovingBody::vertex_at_start(int v) const { return start_.to_world(surface()->vertex(v, 0)); }
+Vec3 MovingBody::vertex_at_end(int v) const { return end_.to_world(surface()->vertex(v, 1)); }
+
+double MovingBody::distance(const Vec3& x) const {
+  return closest(obstacle_.shape, now_.to_body(x), 1).distance;
+}
+
+Vec3 MovingBody::velocity(const Vec3& x) const { return (carried(x) - x) / h_; }
+
+double MovingBody::approach(const Vec3& x0, const Vec3& x1, const ContactPlane& plane) const {
+  return (x1 - carried(x0)).dot(plane.normal);
+}
+
 Vec3 MovingBody::carried(const Vec3& x) const {
   return end_.to_world(drape::carried(obstacle_.shape, start_.to_body(x)));
 }

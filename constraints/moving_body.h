@@ -44,8 +44,8 @@ class MovingBody {
   // Of a body that is a mesh, its surface and where the vertices of that are when the step begins and ends [m]; null for
   // all others.
   const SurfaceDistance* surface() const;
-  Vec3 vertex_at_start(int v) const { return start_.to_world(surface()->vertex(v, 0)); }
-  Vec3 vertex_at_end(int v) const { return end_.to_world(surface()->vertex(v, 1)); }
+  Vec3 vertex_at_start(int v) const;
+  Vec3 vertex_at_end(int v) const;
 
   void begin_step(double t, double h);
   bool end_step();  // false: the reaction has not converged. A step that is abandoned does not move the body.
@@ -71,7 +71,7 @@ class MovingBody {
   void expect(const Vec3& u, const Vec3& w);
 
   // Signed distance at the end of the last completed step [m].
-  double distance(const Vec3& x) const { return closest(obstacle_.shape, now_.to_body(x), 1).distance; }
+  double distance(const Vec3& x) const;
 
   // The closest point of the surface at the start and at the end of the step under way.
   SurfacePoint near_start(const Vec3& x) const;
@@ -81,7 +81,7 @@ class MovingBody {
   Vec3 carried(const Mark& mark) const;
   // A direction at the start of the step, as the body turns it until the end. What deforms is taken as if it did not.
   Vec3 turned(const Vec3& direction) const;
-  Vec3 velocity(const Vec3& x) const { return (carried(x) - x) / h_; }
+  Vec3 velocity(const Vec3& x) const;
   // The most that a point within `reach` [m] of X, in the body's frame, moves in this step, over the time [m/s].
   double fastest_carried(const Vec3& X, double reach) const;
   // The most by which the distance of a particle from the body can change on its way [m].
@@ -90,9 +90,7 @@ class MovingBody {
   ContactPlane plane(const Vec3& x, const SurfacePoint& at_start, const Vec3& x_new, double radius = 0) const;
   ContactPlane plane_at(const Vec3& x, const Vec3& normal, double gap) const;  // normal: in the body's frame
   // How far the way leads away from the plane that moves with the body [m]; negative where it comes nearer.
-  double approach(const Vec3& x0, const Vec3& x1, const ContactPlane& plane) const {
-    return (x1 - carried(x0)).dot(plane.normal);
-  }
+  double approach(const Vec3& x0, const Vec3& x1, const ContactPlane& plane) const;
   // The plane in which the way first meets the surface offset by the margin and the radius.
   std::optional<ContactPlane> meeting(const Vec3& x0, const Vec3& x1, double radius = 0) const;
   // Moves x1 to where the way ends if the surface stops it, and returns the normal there; returns nothing

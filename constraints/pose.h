@@ -12,17 +12,15 @@ struct Pose {
   Mat3 rotation = Mat3::Identity();
   Vec3 translation = Vec3::Zero();  // m
 
-  Vec3 to_world(const Vec3& X) const { return rotation * X + translation; }
-  Vec3 to_body(const Vec3& x) const { return rotation.transpose() * (x - translation); }
-  Vec3 direction_to_world(const Vec3& D) const { return rotation * D; }
-  Vec3 direction_to_body(const Vec3& d) const { return rotation.transpose() * d; }
+  Vec3 to_world(const Vec3& X) const;
+  Vec3 to_body(const Vec3& x) const;
+  Vec3 direction_to_world(const Vec3& D) const;
+  Vec3 direction_to_body(const Vec3& d) const;
 };
 
 // Applies the right one first: (a * b).to_world(X) = a.to_world(b.to_world(X)).
-inline Pose operator*(const Pose& a, const Pose& b) {
-  return {a.rotation * b.rotation, a.to_world(b.translation)};
-}
+Pose operator*(const Pose& a, const Pose& b);
 
-inline Pose inverse(const Pose& pose) { return {pose.rotation.transpose(), pose.to_body(Vec3::Zero())}; }
+Pose inverse(const Pose& pose);
 
 }  // namespace drape

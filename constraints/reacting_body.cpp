@@ -51,6 +51,16 @@ Mat3 ReactingBody::world_inertia(const Pose& pose) const {
 
 Vec3 ReactingBody::spin() const { return world_inertia(pose_).inverse() * L_; }
 
+Vec3 ReactingBody::momentum() const { return body_.mass * v_; }
+Vec3 ReactingBody::centre() const { return pose_.to_world(body_.centre); }
+
+Vec3 ReactingBody::met_velocity() const { return meets_ ? Vec3(met_.head<3>()) : Vec3(Vec3::Zero()); }
+Vec3 ReactingBody::met_spin() const { return meets_ ? Vec3(met_.tail<3>() / radius_) : Vec3(Vec3::Zero()); }
+
+Vec3 ReactingBody::free_velocity() const { return v_ + h_ * body_.gravity + J_ / body_.mass; }
+Vec3 ReactingBody::free_spin() const { return inverse_inertia() * (L_ + T_); }
+Mat3 ReactingBody::inverse_inertia() const { return world_inertia(pose_).inverse(); }
+
 Mat3 ReactingBody::mobility(const Vec3& place) const {
   const Vec3 r = place - centre();
   Mat3 cross;

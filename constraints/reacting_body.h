@@ -50,9 +50,9 @@ class ReactingBody {
   const Pose& pose() const { return pose_; }
   const Vec3& velocity() const { return v_; }
   Vec3 spin() const;
-  Vec3 momentum() const { return body_.mass * v_; }
+  Vec3 momentum() const;
   Vec3 angular_momentum() const { return L_; }  // about its centre of mass
-  Vec3 centre() const { return pose_.to_world(body_.centre); }
+  Vec3 centre() const;
   // What cloth and other bodies gave it in that step [N s].
   const Vec3& impulse_of_cloth() const { return last_J_; }
   const Vec3& impulse_of_bodies() const { return last_P_; }
@@ -78,13 +78,13 @@ class ReactingBody {
   bool converged(double share = well) const;
 
   // What other bodies change of its motion in this step.
-  Vec3 met_velocity() const { return meets_ ? Vec3(met_.head<3>()) : Vec3(Vec3::Zero()); }        // m/s
-  Vec3 met_spin() const { return meets_ ? Vec3(met_.tail<3>() / radius_) : Vec3(Vec3::Zero()); }  // rad/s
+  Vec3 met_velocity() const;  // m/s
+  Vec3 met_spin() const;      // rad/s
   // What other bodies do to it. The motion without that, by gravity and by the impulses of the cloth, of which there are
   // those of the last step before the first solve:
-  Vec3 free_velocity() const { return v_ + h_ * body_.gravity + J_ / body_.mass; }
-  Vec3 free_spin() const { return inverse_inertia() * (L_ + T_); }
-  Mat3 inverse_inertia() const { return world_inertia(pose_).inverse(); }  // at the start of the step
+  Vec3 free_velocity() const;
+  Vec3 free_spin() const;
+  Mat3 inverse_inertia() const;  // at the start of the step
   const Vec3& gravity() const { return body_.gravity; }
   // Impulse P [N s] and moment A [N m s] of the other bodies in this step.
   void meet(const Vec3& impulse, const Vec3& moment);

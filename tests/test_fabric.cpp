@@ -5,6 +5,7 @@
 
 #include "mesh/triangles/topology.h"
 #include "solver/forces/buckling_spring.h"
+#include "solver/forces/tension_spring.h"
 #include "solver/integrators/integrator.h"
 #include "tests/tables.h"
 

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "app/scene/fabrics.h"
+#include "solver/forces/membrane.h"
 #include "solver/forces/woven.h"
 #include "tests/folder.h"
 

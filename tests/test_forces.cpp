@@ -14,6 +14,7 @@
 #include "solver/forces/rope_laws.h"
 #include "solver/forces/seam_spring.h"
 #include "solver/forces/soft.h"
+#include "solver/forces/tension_spring.h"
 #include "tests/places.h"
 #include "tests/tables.h"
 

@@ -2,6 +2,7 @@
 #include <Eigen/Dense>
 #include <complex>
 
+#include "solver/forces/tension_spring.h"
 #include "tests/integrators.h"
 
 using namespace drape;

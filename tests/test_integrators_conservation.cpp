@@ -1,4 +1,5 @@
 // What every integrator keeps, and what it loses as its scheme does: spin, momentum, energy, rest.
+#include "solver/forces/tension_spring.h"
 #include "solver/forces/woven.h"
 #include "tests/integrators.h"
 

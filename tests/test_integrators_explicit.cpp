@@ -1,6 +1,7 @@
 // The explicit schemes: their limits of stability, and what is told to be an explosion and what is not.
 #include <functional>
 
+#include "solver/forces/tension_spring.h"
 #include "tests/integrators.h"
 
 using namespace drape;

@@ -1,5 +1,6 @@
 // Constraints hold single particles in every integrator of the build: landing,
 // friction, coming out of a body.
+#include "solver/forces/tension_spring.h"
 #include "solver/integrators/held_motion.h"
 #include "tests/integrators.h"
 

@@ -2,6 +2,7 @@
 // the state it is given, whatever it did before.
 #include <functional>
 
+#include "solver/forces/tension_spring.h"
 #include "tests/integrators.h"
 
 using namespace drape;

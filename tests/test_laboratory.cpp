@@ -6,6 +6,7 @@
 #include "app/base/toml_file.h"
 #include "app/scene/fabrics.h"
 #include "app/scene/scene.h"
+#include "solver/forces/membrane.h"
 #include "solver/forces/woven.h"
 #include "tests/mistakes.h"
 #include "tests/workshop.h"

@@ -10,6 +10,7 @@
 #include "mesh/triangles/topology.h"
 #include "solver/forces/buckling_spring.h"
 #include "solver/forces/damping.h"
+#include "solver/forces/tension_spring.h"
 #include "tests/folder.h"
 #include "tests/tables.h"
 

@@ -5,6 +5,7 @@
 
 #include "solver/forces/buckling_spring.h"
 #include "solver/forces/damping.h"
+#include "solver/forces/tension_spring.h"
 #include "tests/tables.h"
 
 using namespace drape;

@@ -7,6 +7,7 @@
 
 #include "solver/forces/damping.h"
 #include "solver/forces/linear_spring.h"
+#include "solver/forces/membrane.h"
 #include "solver/forces/pair_force.h"
 #include "solver/forces/rope_laws.h"
 #include "solver/forces/woven.h"

@@ -5,6 +5,7 @@
 #include "app/base/words.h"
 #include "app/scene/fabric_read.h"
 #include "constraints/pins.h"
+#include "solver/forces/membrane.h"
 #include "solver/forces/woven.h"
 
 namespace drape::app {

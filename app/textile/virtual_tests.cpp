@@ -9,6 +9,7 @@
 #include "app/scene/laboratory.h"
 #include "app/textile/elastica.h"
 #include "app/textile/single_tests.h"
+#include "solver/forces/membrane.h"
 #include "solver/forces/woven.h"
 
 namespace drape::app {

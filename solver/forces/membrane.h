@@ -23,6 +23,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/forces/fabric.h"
 #include "solver/forces/rest_corners.h"
 #include "solver/forces/stencil_force.h"
 
@@ -139,5 +140,7 @@ struct Membrane {
             outer(k.vv, n_v, n_v) + outer(G, f.col(0), f.col(0))};
   }
 };
+
+Membrane::Common membrane_of(const Fabric& fabric);  // of a fabric that check() takes
 
 }  // namespace drape

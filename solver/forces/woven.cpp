@@ -9,27 +9,12 @@
 #include "mesh/triangles/topology.h"
 #include "solver/forces/held_corner.h"
 #include "solver/forces/hinge.h"
+#include "solver/forces/membrane.h"
 #include "solver/forces/plate_force.h"
 
 namespace drape {
 
 using internal::HeldCorner;
-
-Membrane::Common membrane_of(const Fabric& fabric) {
-  const Weave& weave = fabric.weave;
-  const double warp = fabric.stretch, weft = weave.stretch_weft.value_or(warp), mean = std::sqrt(warp * weft),
-               nu = weave.poisson, full = 1 / (1 - nu * nu);
-  return {.warp = warp,
-          .weft = weft,
-          .cross = nu * mean,
-          .uu = full * warp,
-          .uv = full * nu * mean,
-          .vv = full * weft,
-          .shear = weave.shear.value_or(mean / (2 * (1 + nu))),
-          .compression = weave.compression,
-          .stretch_time = weave.stretch_time,
-          .shear_time = weave.shear_time};
-}
 
 // Bent about the direction between warp and weft, a plate takes (D_11 + D_22 + 2 D_12) / 4 + D_66.
 double least_bend_bias(const Fabric& fabric) {

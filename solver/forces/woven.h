@@ -16,14 +16,12 @@
 
 #include "solver/forces/fabric.h"
 #include "solver/forces/force.h"
-#include "solver/forces/membrane.h"
 #include "solver/forces/plate.h"
 #include "solver/forces/plate_friction.h"
 
 namespace drape {
 
 // Of a fabric that check() takes. plate_of throws InputError where bend_bias is too small.
-Membrane::Common membrane_of(const Fabric& fabric);
 PlateStiffness plate_of(const Fabric& fabric);
 PlateFrictionLaw plate_friction_of(const Fabric& fabric);
 double least_bend_bias(const Fabric& fabric);  // N m; bend_bias is greater
