@@ -6,6 +6,6 @@ namespace drape::test {
 std::string source_dir() { return DRAPE_SOURCE_DIR; }
 std::string shared_dir() { return DRAPE_SHARED_DIR; }
 std::string program() { return DRAPE_PROGRAM; }
-std::string program_without_bullet() { return DRAPE_WITHOUT_BULLET; }
+std::string program_without_options() { return DRAPE_WITHOUT_OPTIONS; }
 
 }  // namespace drape::test

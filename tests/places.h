@@ -8,6 +8,6 @@ namespace drape::test {
 std::string source_dir();
 std::string shared_dir();  // may not be there
 std::string program();
-std::string program_without_bullet();
+std::string program_without_options();
 
 }  // namespace drape::test

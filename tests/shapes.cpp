@@ -50,9 +50,7 @@ TriangleMesh open_sheet() {
 
 MeshBody body(const TriangleMesh& m) { return std::make_shared<const SurfaceDistance>(m); }
 
-Mat3 some_rotation() {
-  return Eigen::AngleAxisd(0.7, Vec3(1, 2, -0.5).normalized()).toRotationMatrix();
-}
+Mat3 some_rotation() { return Eigen::AngleAxisd(0.7, Vec3(1, 2, -0.5).normalized()).toRotationMatrix(); }
 
 Vec3 on_bowl(const Bowl& b, Random& r) {
   const Vec3 axis = b.axis.normalized(), e = axis.unitOrthogonal(), g = axis.cross(e);

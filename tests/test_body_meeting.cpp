@@ -306,22 +306,3 @@ TEST_CASE("what stands on a table goes with it where friction holds, and stays b
       CHECK(world.body(k).centre()[0] < 0.45);
   }
 }
-
-TEST_CASE("a build without Bullet refuses bodies that would meet by it, and runs all others",
-          "[meeting][cli]") {
-  const Folder folder;
-  const auto run = [&](const std::string& words) {
-    return folder.shell("'" + program_without_bullet() + "' " + words);
-  };
-  const std::string scene = source_dir() + "/data/scenes/boxes-stack.toml";
-  const Outcome refused = run("simulate '" + scene + "' --duration 0.01 --out o");
-  CHECK(refused.exit_code == 2);
-  CHECK(refused.err.find(
-            "a box and a box, of which one has a mass: this build is without the library by which such "
-            "bodies meet") != std::string::npos);
-  CHECK(refused.err.find("apt install libbullet-dev") != std::string::npos);
-  CHECK(std::count(refused.err.begin(), refused.err.end(), '\n') == 1);
-  CHECK(folder.files().empty());
-  const std::string ball = source_dir() + "/data/scenes/sheet-torn.toml";  // a ball over a plane
-  CHECK(run("simulate '" + ball + "' --duration 0.01 --out o --quiet").exit_code == 0);
-}
