@@ -24,7 +24,8 @@ usage: ./build.sh WORD
   soak            look for a way through cloth in 1,000,000 motions and 1,000 drops of garments: an hour or two
   debug           build with assertions, for a debugger, and run the quick tests
   clang           build with clang and run the quick tests
-  odr             build the program as for debug and check, when linking, that no two source files mean different things by one name
+  odr             build the program as for debug, for any processor, and check, when linking, that no two source files mean
+                  different things by one name
   docs            make a site of the pages in docs/ and of the C++ interface, build/docs/site, and look for dead links in it
   install PREFIX  build, then install the program, the library and its headers under PREFIX
 

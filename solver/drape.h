@@ -23,6 +23,7 @@
 #include "solver/forces/rope.h"
 #include "solver/forces/soft.h"
 #include "solver/forces/stencil_force.h"
+#include "solver/forces/membrane.h"
 #include "solver/forces/woven.h"
 #include "solver/integrators/bdf.h"
 #include "solver/system/measure.h"

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "constraints/contact_step.h"
-#include "tests/folder.h"
 #include "tests/integrators.h"
 #include "tests/shapes.h"
 

@@ -1,5 +1,5 @@
-# Configures a build without the optional parts of the library, and looks whether the files that ask for these parts are those of which
-# the tests make their program without them (drape_without_options).
+# Configures a build without the optional parts of the library, and looks whether the program drape_without_options of the tests compiles
+# all files itself that ask for these parts.
 #   cmake -DSOURCE_DIR= -DWORK_DIR= -DGENERATOR= -DCXX= -DABOUT_OPTIONS= -P without_options.cmake
 execute_process(
   COMMAND ${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${WORK_DIR} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX} -DDRAPE_CHOLMOD=OFF
