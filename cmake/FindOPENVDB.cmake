@@ -4,7 +4,10 @@
 find_path(OPENVDB_INCLUDE_DIR openvdb/openvdb.h)
 find_library(OPENVDB_LIBRARY openvdb)
 find_library(OPENVDB_TBB_LIBRARY tbb)
-mark_as_advanced(OPENVDB_INCLUDE_DIR OPENVDB_LIBRARY OPENVDB_TBB_LIBRARY)
+# Its headers ask Imath for numbers of 16 bits where the processor that is compiled for cannot convert them. Old versions of OpenVDB have
+# such numbers of their own, and no Imath.
+find_library(OPENVDB_IMATH_LIBRARY NAMES Imath)
+mark_as_advanced(OPENVDB_INCLUDE_DIR OPENVDB_LIBRARY OPENVDB_TBB_LIBRARY OPENVDB_IMATH_LIBRARY)
 
 include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(OPENVDB REQUIRED_VARS OPENVDB_LIBRARY OPENVDB_TBB_LIBRARY OPENVDB_INCLUDE_DIR)
@@ -14,4 +17,7 @@ if(OPENVDB_FOUND AND NOT TARGET OPENVDB::OPENVDB)
   set_target_properties(OPENVDB::OPENVDB PROPERTIES IMPORTED_LOCATION "${OPENVDB_LIBRARY}"
                                                     INTERFACE_INCLUDE_DIRECTORIES "${OPENVDB_INCLUDE_DIR}"
                                                     INTERFACE_LINK_LIBRARIES "${OPENVDB_TBB_LIBRARY}")
+  if(OPENVDB_IMATH_LIBRARY)
+    set_property(TARGET OPENVDB::OPENVDB APPEND PROPERTY INTERFACE_LINK_LIBRARIES "${OPENVDB_IMATH_LIBRARY}")
+  endif()
 endif()

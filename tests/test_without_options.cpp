@@ -23,8 +23,8 @@ TEST_CASE("a build without optional parts offers nothing that needs them", "[cli
     CHECK(list.find(there) != std::string::npos);
   for (const std::string missing : {"cholmod", "sundials", "kinsol", "cvode", "arkode"})
     CHECK(list.find(missing) == std::string::npos);
-  for (const std::string words : {"--linear-solver cholmod", "--linear-solver sundials-pcg", "--integrator cvode-bdf",
-                                  "--integrator newton-kinsol"}) {
+  for (const std::string words : {"--linear-solver cholmod", "--linear-solver sundials-pcg",
+                                  "--integrator cvode-bdf", "--integrator newton-kinsol"}) {
     INFO(words);
     const Outcome refused = run(folder, flag + words);
     CHECK(refused.exit_code == 2);
