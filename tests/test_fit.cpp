@@ -16,18 +16,19 @@ namespace {
 
 const std::string sheets[] = {
     "area_density = \"180 gsm\"\nbending_length = { warp = \"2.1 cm\", weft = \"1.7 cm\" }\n",
-    "area_density = 0.2\noverhang = \"4 cm\"\nkes = { EMT = { warp = \"3.5 %\", weft = \"21 %\" }, G = \"0.8 "
-    "gf/(cm.deg)\", "
-    "2HB = { warp = \"0.12 gf.cm/cm\", weft = \"0.1 gf.cm/cm\" }, 2HG = \"2 gf/cm\" }\nassumed = "
-    "[\"kes.G\"]\n",
-    "description = \"a \\\"fine\\\" wool\"\narea_density = \"15 mg/cm^2\"\nfast = { C = { warp = \"19 mm\", "
-    "weft = \"16 mm\", "
-    "bias = \"17 mm\" }, E5 = \"0.4 %\", E20 = \"1.5 %\", E100 = \"4 %\", EB5 = \"3.2 %\" }\n",
-    "area_density = 0.1\nkes = { B = \"0.1 gf.cm^2/cm\" }\nstretch = { warp = 600, poisson = 0.1 "
-    "}\nviscosity = { bend = \"5 ms\" "
-    "}\nmeasured_drape = { coefficient = \"45 %\", nodes = 6 }\ndamping = 0.01\n",
-    "area_density = 0.1\nbend = { warp = 1e-5, poisson = 0.2 }\nstretch_spring = 300\nassumed = "
-    "[\"bend.poisson\", \"stretch_spring\"]\n",
+    ("area_density = 0.2\noverhang = \"4 cm\"\nkes = { EMT = { warp = \"3.5 %\", weft = \"21 %\" }, G = "
+     "\"0.8 "
+     "gf/(cm.deg)\", "
+     "2HB = { warp = \"0.12 gf.cm/cm\", weft = \"0.1 gf.cm/cm\" }, 2HG = \"2 gf/cm\" }\nassumed = "
+     "[\"kes.G\"]\n"),
+    ("description = \"a \\\"fine\\\" wool\"\narea_density = \"15 mg/cm^2\"\nfast = { C = { warp = \"19 mm\", "
+     "weft = \"16 mm\", "
+     "bias = \"17 mm\" }, E5 = \"0.4 %\", E20 = \"1.5 %\", E100 = \"4 %\", EB5 = \"3.2 %\" }\n"),
+    ("area_density = 0.1\nkes = { B = \"0.1 gf.cm^2/cm\" }\nstretch = { warp = 600, poisson = 0.1 "
+     "}\nviscosity = { bend = \"5 ms\" "
+     "}\nmeasured_drape = { coefficient = \"45 %\", nodes = 6 }\ndamping = 0.01\n"),
+    ("area_density = 0.1\nbend = { warp = 1e-5, poisson = 0.2 }\nstretch_spring = 300\nassumed = "
+     "[\"bend.poisson\", \"stretch_spring\"]\n"),
     "area_density = 0.1\n",
 };
 

@@ -269,8 +269,8 @@ TEST_CASE("check, run.json and the notes say what was given and what a model lea
   CHECK(fabric.exit_code == 0);
   for (const char* line :
        {"f.toml: of mine", "179.7 g/m^2, stretch 500 N/m, shear 44.95 N/m, bend 14.1 / 1.762 uN.m",
-        "as given: area_density = \"5.3 oz/yd^2\", bending_length = { warp = \"2 cm\", weft = \"1 cm\" }, "
-        "kes.G = ",
+        ("as given: area_density = \"5.3 oz/yd^2\", bending_length = { warp = \"2 cm\", weft = \"1 cm\" }, "
+         "kes.G = "),
         "2HB 0.9807 mN: friction of model = \"woven\" with hysteresis = true", "assumed: kes.G",
         "not said whether measured: area_density, bending_length.warp"})
     CHECK_THAT(fabric.out, Contains(line));
