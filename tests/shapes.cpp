@@ -52,6 +52,25 @@ MeshBody body(const TriangleMesh& m) { return std::make_shared<const SurfaceDist
 
 Mat3 some_rotation() { return Eigen::AngleAxisd(0.7, Vec3(1, 2, -0.5).normalized()).toRotationMatrix(); }
 
+Vec3 on_mesh(const TriangleMesh& m, Random& r) {
+  const Triangle& t = m.triangles[r.below(m.triangle_count())];
+  double u = r(0, 1), v = r(0, 1);
+  if (u + v > 1) u = 1 - u, v = 1 - v;
+  return (1 - u - v) * m.positions[t[0]] + u * m.positions[t[1]] + v * m.positions[t[2]];
+}
+
+double winding(const TriangleMesh& m, const Vec3& x) {
+  double angle = 0;
+  for (const Triangle& t : m.triangles) {
+    const Vec3 a = m.positions[t[0]] - x, b = m.positions[t[1]] - x, c = m.positions[t[2]] - x;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    angle += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return angle / (4 * pi);
+}
+
+namespace {
+
 Vec3 on_bowl(const Bowl& b, Random& r) {
   const Vec3 axis = b.axis.normalized(), e = axis.unitOrthogonal(), g = axis.cross(e);
   const double a = r(0, 2 * pi), t = r(-pi / 2, 0), half = b.thickness / 2, middle = b.radius + half;
@@ -117,6 +136,7 @@ Vec3 on_plate(const Plate& p, Random& r) {
   return p.centre + (core + p.rim * std::cos(t)) * round + (wall + p.rim * std::sin(t)) * up;
 }
 
+// Inside it is at most as far from the axis as the outline at its height.
 Case plate_case(double rim) {
   const Plate p{{0.2, -0.1, 0.1}, 0.9, 0.7, rim, {-1, 2, 0.5}};
   return {p, [p](Random& r) { return on_plate(p, r); },
@@ -130,27 +150,12 @@ Case plate_case(double rim) {
           }};
 }
 
-Vec3 on_mesh(const TriangleMesh& m, Random& r) {
-  const Triangle& t = m.triangles[r.below(m.triangle_count())];
-  double u = r(0, 1), v = r(0, 1);
-  if (u + v > 1) u = 1 - u, v = 1 - v;
-  return (1 - u - v) * m.positions[t[0]] + u * m.positions[t[1]] + v * m.positions[t[2]];
-}
-
-double winding(const TriangleMesh& m, const Vec3& x) {
-  double angle = 0;
-  for (const Triangle& t : m.triangles) {
-    const Vec3 a = m.positions[t[0]] - x, b = m.positions[t[1]] - x, c = m.positions[t[2]] - x;
-    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    angle += 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-  }
-  return angle / (4 * pi);
-}
-
 Case mesh_case(const TriangleMesh& m) {
   return {body(m), [m](Random& r) { return on_mesh(m, r); },
           [m](const Vec3& x) { return winding(m, x) > 0.5; }};
 }
+
+}  // namespace
 
 std::vector<Case> cases() {
   const Plane plane{{0.1, 0.2, 0.3}, {1, -2, 3}};

@@ -47,26 +47,11 @@ struct Case {
   std::function<bool(const Vec3&)> inside;
 };
 
-Vec3 on_bowl(const Bowl& b, Random& r);
-
-Case bowl_case();
-
-Case box_case();
-
-Case capsule_case();
-
-Vec3 on_plate(const Plate& p, Random& r);
-
-// Inside it is at most as far from the axis as the outline at its height.
-Case plate_case(double rim);
-
 Vec3 on_mesh(const TriangleMesh& m, Random& r);
 
 // Number of times the surface winds about x, from the solid angles of its triangles
 // [van Oosterom & Strackee 1983].
 double winding(const TriangleMesh& m, const Vec3& x);
-
-Case mesh_case(const TriangleMesh& m);
 
 std::vector<Case> cases();
 
