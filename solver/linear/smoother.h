@@ -5,8 +5,8 @@
 // needs no whole product with A:   A x_new = r + L (x_new - y),  the residual is -L (x_new - y).  [Eisenstat 1981]
 // From x = 0, where U x is zero, the sweeps and the residual together read one and a half times the blocks of the matrix.
 // From another x the sweeps alone read as many, and with the product it is twice the blocks.
-// Rows are cut into chunks at least as long as the bandwidth. All even chunks come before all odd ones, and
-// that order says what is L and what is U. Two chunks of one kind have no coupling, so they are swept in
+// Rows are cut into chunks of a power of two rows, at least as many as the bandwidth. All even chunks come before all odd
+// ones, and that order says what is L and what is U. Two chunks of one kind have no coupling, so they are swept in
 // parallel, and the sweep up is the adjoint of the sweep down, so that both together are symmetric, whatever the number
 // of threads.
 // L and U are kept in float. What the rounding takes from the sum of a row is added to D, which is kept in
@@ -53,32 +53,31 @@ class Smoother {
   void sweep(const VecX& r, VecX& x, VecX& change, VecX& Ax) const;
 
  private:
-  template <class F>
-  void for_rows_of(bool odd, const F& f) const;  // calls f(begin, end) for every odd or every even chunk
-  // `change` becomes x_new - y. Calls f(row), unless f is null, once all of it that L of this row meets is there.
+  template <class F>  // f(chunk, begin, end), for every odd or every even chunk
+  void for_chunks_of(bool odd, const F& f) const;
+  // `change` becomes x_new - y. Calls f(row, L change of this row), unless f is null.
   template <bool from_zero, class F>
   void down_and_up(const VecX& r, VecX& x, VecX& change, const F& f) const;
   Four solve_diagonal(int row, const Four& right) const;
-  Four of_lower(int row, const VecX& x) const { return times(lower_[row], x.data()); }
 
-  int rows_ = 0, chunk_rows_ = 1;
-  BlockRows lower_, upper_;
+  int rows_ = 0;
+  BlockRows lower_, upper_;                 // in chunks that are those of the sweeps
   std::vector<double> diagonal_, inverse_;  // D and D^-1: 9 a row, and 1 more
 };
 
 template <class Rows>
 void Smoother::build(const Rows& A) {
   rows_ = A.rows();
-  chunk_rows_ = std::max(A.bandwidth(), 256);
-  lower_.resize(rows_);
-  upper_.resize(rows_);
+  const int chunk_rows = std::max(A.bandwidth(), 256);
+  lower_.resize(rows_, chunk_rows);
+  upper_.resize(rows_, chunk_rows);
   diagonal_.resize(9 * static_cast<std::size_t>(rows_) + 1);
   inverse_.resize(diagonal_.size());
-  for_chunks<Work::heavy>(rows_, [&](int begin, int end) {
-    BlockRows::Chunk &lower = lower_.open(begin, 8), &upper = upper_.open(begin, 8);
-    for (int r = begin; r < end; ++r) {
-      const int chunk = r / chunk_rows_, first = chunk * chunk_rows_, last = first + chunk_rows_;
-      const bool odd = chunk % 2 == 1;
+  parallel_for(lower_.chunk_count(), rows_ < serial_below(Work::heavy), [&](int chunk) {
+    const bool odd = chunk % 2 == 1;
+    const int first = chunk * lower_.chunk_rows(), last = std::min(rows_, first + lower_.chunk_rows());
+    BlockRows::Chunk &lower = lower_.open(first, 8), &upper = upper_.open(first, 8);
+    for (int r = first; r < last; ++r) {
       WideBlock own, lost;
       A.each(r, [&](int c, const auto* block, bool turned) {
         if (c == r) return own.add(block);

@@ -4,6 +4,7 @@
 // matrix together, and the number of threads does not change it.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <vector>
 
@@ -52,16 +53,28 @@ class SparseRows {
     const float* value;
     const float* operator[](int k) const { return value + width * static_cast<std::ptrdiff_t>(k); }
   };
+  // The rows of a chunk, counted from its first one.
+  struct Rows {
+    const int *start, *column;
+    const float* value;
+    Row operator[](int row) const {
+      const int begin = start[row];
+      return {start[row + 1] - begin, column + begin, value + width * static_cast<std::ptrdiff_t>(begin)};
+    }
+  };
 
-  // Begins anew with this many rows. Each chunk of them is then opened and filled in order. Chunks that are not needed
-  // keep their memory for a larger matrix.
-  void resize(int rows) {
+  // Begins anew with this many rows, in chunks of at least so many. Each chunk is then opened and filled in order.
+  // Chunks that are not needed keep their memory for a larger matrix.
+  void resize(int rows, int chunk_rows = 1) {
     rows_ = rows;
-    chunk_rows_ = heavy_chunk_size(rows);
+    chunk_rows_ =
+        static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(chunk_rows, heavy_chunk_size(rows)))));
     shift_ = std::countr_zero(static_cast<unsigned>(chunk_rows_));
-    const auto needed = static_cast<std::size_t>(heavy_chunk_count(rows));
+    const auto needed = static_cast<std::size_t>(chunk_count());
     if (chunks_.size() < needed) chunks_.resize(needed);
   }
+  int chunk_rows() const { return chunk_rows_; }
+  int chunk_count() const { return (rows_ + chunk_rows_ - 1) / chunk_rows_; }
   Chunk& open(int first_row, int entries_a_row) {
     constexpr int more = 256;  // few rows may be longer than rows are on average
     Chunk& chunk = chunks_[first_row >> shift_];
@@ -82,13 +95,11 @@ class SparseRows {
   }
 
   int rows() const { return rows_; }
-  Row operator[](int row) const {
-    const Chunk& chunk = chunks_[row >> shift_];
-    const int begin = chunk.start_[row & (chunk_rows_ - 1)];
-    const int end = chunk.start_[static_cast<std::size_t>(row & (chunk_rows_ - 1)) + 1];
-    return {end - begin, chunk.column_.data() + begin,
-            chunk.value_.data() + width * static_cast<std::ptrdiff_t>(begin)};
+  Rows in_chunk(int k) const {
+    const Chunk& chunk = chunks_[k];
+    return {chunk.start_.data(), chunk.column_.data(), chunk.value_.data()};
   }
+  Row operator[](int row) const { return in_chunk(row >> shift_)[row & (chunk_rows_ - 1)]; }
 
  private:
   int rows_ = 0, chunk_rows_ = chunk_size, shift_ = 9;  // a chunk has 2^shift rows
@@ -97,20 +108,22 @@ class SparseRows {
 
 using BlockRows = SparseRows<9>;
 
-// A row of blocks times x; three of the four lanes count. Rows are taken upwards or downwards. What comes
+// A row of blocks times x; three of the four lanes count. Rows are taken upwards or downwards, and so are their
+// blocks: what the row before has just written comes last, and does not hold up the rest of the sum. What comes
 // `ahead` blocks later is fetched early, because the processor's own prefetch stops at every page.
 template <bool upwards = false>
 Four times(const BlockRows::Row& row, const double* x) {
-  constexpr std::ptrdiff_t ahead = (upwards ? -1 : 1) * 64;
-  __builtin_prefetch(row.column + ahead);
+  constexpr std::ptrdiff_t step = upwards ? -1 : 1, ahead = 64 * step;
+  const int* column = row.column + (upwards ? row.count - 1 : 0);
+  const float* a = row[upwards ? row.count - 1 : 0];
+  __builtin_prefetch(column + ahead);
   Four sum = {0, 0, 0, 0}, sum1 = sum, sum2 = sum;
-  const float* a = row.value;
-  for (int k = 0; k < row.count; ++k, a += 9) {
+  for (int k = 0; k < row.count; ++k, column += step, a += 9 * step) {
     __builtin_prefetch(a + 9 * ahead);
-    const double* xj = x + 3 * static_cast<std::ptrdiff_t>(row.column[k]);
-    sum += load(a) * xj[0];
-    sum1 += load(a + 3) * xj[1];
-    sum2 += load(a + 6) * xj[2];
+    const double* xj = x + 3 * static_cast<std::ptrdiff_t>(*column);
+    sum = multiply_add(load(a), xj[0], sum);
+    sum1 = multiply_add(load(a + 3), xj[1], sum1);
+    sum2 = multiply_add(load(a + 6), xj[2], sum2);
   }
   return sum + sum1 + sum2;
 }

@@ -105,33 +105,33 @@ void BlockMatrix::add_overlay(const VecX& x, VecX& y) const {
 // Row r of the upper triangle gives y_r += A_rj x_j and, as the block (j, r), y_j += A_rj^T x_r.
 void BlockMatrix::multiply_base(const VecX& x, VecX& y) const {
   constexpr std::ptrdiff_t ahead = 9 * 128;  // in doubles; the processor's own prefetch stops at every page
-  const int* start = pattern_->row_start().data();
-  const int* column = pattern_->column().data();
+  const int *start = pattern_->row_start().data(), *columns = pattern_->column().data();
   const int chunk_rows = pattern_->chunk_rows(), chunks = pattern_->chunks();
   const auto first_row = [&](int chunk) { return std::min(chunk * chunk_rows, rows()); };
   even_then_odd(chunks, rows() < serial_below(Work::heavy), [&](int chunk) {
     const int begin = first_row(chunk), end = first_row(chunk + 1);
     if (chunk % 2 == 0) y.segment(3 * begin, 3 * (first_row(chunk + 2) - begin)).setZero();
-    const double* a = block(start[begin]);
+    const double *a = block(start[begin]), *from = x.data();
+    double* to = y.data();  // read once: through y it would be read again after every number written
     for (int r = begin; r < end; ++r) {
-      const double* xr = x.data() + 3 * static_cast<std::ptrdiff_t>(r);
+      const double* xr = from + 3 * static_cast<std::ptrdiff_t>(r);
       const Four masked = {xr[0], xr[1], xr[2], 0};
       Four sum = load(a) * xr[0], sum1 = load(a + 3) * xr[1],
            sum2 = load(a + 6) * xr[2];  // lane 3 is never used
       a += 9;
-      for (int s = start[r] + 1; s < start[r + 1]; ++s, a += 9) {
+      const int* const last = columns + start[r + 1];
+      for (const int* column = columns + start[r] + 1; column < last; ++column, a += 9) {
         __builtin_prefetch(a + ahead);
-        __builtin_prefetch(a + ahead + 8);
-        const auto j = 3 * static_cast<std::ptrdiff_t>(column[s]);
-        const double* xj = x.data() + j;
+        const auto j = 3 * static_cast<std::ptrdiff_t>(*column);
+        const double* xj = from + j;
         const Four c0 = load(a), c1 = load(a + 3), c2 = load(a + 6);
         sum += c0 * xj[0];
         sum1 += c1 * xj[1];
         sum2 += c2 * xj[2];
-        add_sums(c0 * masked, c1 * masked, c2 * masked, y.data() + j);
+        add_sums(c0 * masked, c1 * masked, c2 * masked, to + j);
       }
       sum += sum1 + sum2;
-      double* out = y.data() + 3 * static_cast<std::ptrdiff_t>(r);
+      double* out = to + 3 * static_cast<std::ptrdiff_t>(r);
       out[0] += sum[0];
       out[1] += sum[1];
       out[2] += sum[2];
