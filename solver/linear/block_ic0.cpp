@@ -21,14 +21,6 @@
 namespace drape::internal {
 namespace {
 
-// The fourth number of each column is zero.
-void widen(const double* b, WideBlock& wide) {
-  for (int c = 0; c < 3; ++c) wide.column[c] = Four{b[3 * c], b[3 * c + 1], b[3 * c + 2], 0};
-}
-void widen_transpose(const double* b, WideBlock& wide) {
-  for (int c = 0; c < 3; ++c) wide.column[c] = Four{b[c], b[3 + c], b[6 + c], 0};
-}
-
 Mat3 narrow(const WideBlock& wide) {
   Mat3 b;
   wide.store(b.data());
@@ -152,14 +144,16 @@ class BlockIc0 final : public Preconditioner {
     for (int k = first; k < end; ++k) {
       const EliminationOrder::Block& block = order_.blocks()[k];
       const int row = order_.row(j), column = order_.row(block.column);
-      Mat3 held;
+      double held[10];
+      held[9] = 0;  // is read, but means nothing
       const double* b = A.block(block.slot);
       if (!projected.free(row) || !projected.free(column)) {
-        held = block.turned ? projected.block(block.slot, column, row)
-                            : projected.block(block.slot, row, column);
-        b = held.data();
+        Eigen::Map<Mat3>{held} = block.turned ? projected.block(block.slot, column, row)
+                                              : projected.block(block.slot, row, column);
+        b = held;
       }
-      block.turned ? widen_transpose(b, values_[k]) : widen(b, values_[k]);
+      values_[k].set(b);
+      if (block.turned) values_[k].transpose();
     }
     const Mat3 original = narrow(values_[first]);
     for (int e = 0; e < 3; ++e) values_[first].column[e][e] *= 1 + shift_;
@@ -180,12 +174,17 @@ class BlockIc0 final : public Preconditioner {
     const Mat3 pivot = narrow(values_[first]);
     if (!positive_definite(pivot) || pivot.determinant() < least * least * least * original.determinant())
       return false;
-    const Mat3 inverse = pivot.inverse();
-    store(first, inverse);
+    double inverse[10] = {};  // read four wide
+    Eigen::Map<Mat3>{inverse} = pivot.inverse();
+    factors_[first].set(inverse);
+    store(first);
     for (int k = first + 1; k < end; ++k) {
-      const Mat3 factor = narrow(values_[k]).transpose() * inverse;
-      widen(factor.data(), factors_[k]);
-      store(k, factor);
+      WideBlock turned = values_[k];
+      turned.transpose();
+      const Four* t = turned.column;
+      for (int c = 0; c < 3; ++c)
+        factors_[k].column[c] = t[0] * inverse[3 * c] + t[1] * inverse[3 * c + 1] + t[2] * inverse[3 * c + 2];
+      store(k);
     }
     return true;
   }
@@ -202,8 +201,12 @@ class BlockIc0 final : public Preconditioner {
     for (int c = 0; c < 3; ++c) diagonal.column[c] += Four{sum(0, c), sum(1, c), sum(2, c), 0};
   }
 
-  void store(int k, const Mat3& b) {
-    Eigen::Map<Eigen::Matrix3f>(lower_.data() + 9 * static_cast<std::ptrdiff_t>(k)) = b.cast<float>();
+  // Keeps a factor in float. Its last column is not written four wide, because what follows may belong to a chunk that
+  // another thread has written.
+  void store(int k) {
+    float* to = lower_.data() + 9 * static_cast<std::ptrdiff_t>(k);
+    for (int c = 0; c < 2; ++c) internal::store(internal::narrow(factors_[k].column[c]), to + 3 * c);
+    for (int r = 0; r < 3; ++r) to[6 + r] = static_cast<float>(factors_[k].column[2][r]);
   }
 
   std::uint64_t pattern_ = 0, serial_ = 0, fill_ = 0;  // of the base, of the whole matrix, and of its numbers
@@ -211,8 +214,8 @@ class BlockIc0 final : public Preconditioner {
   double shift_ = 0;
   int shifted_ = 0;                // for how many matrices the shift has stood
   std::vector<int> entry_of_row_;  // scratch of ProjectedBlocks
-  std::vector<WideBlock> values_,
-      factors_;               // scratch of the factorisation: A_jk, and L_kj beside the diagonal
+  // Scratch of the factorisation: A_jk; D_j^-1, and L_kj beside the diagonal.
+  std::vector<WideBlock> values_, factors_;
   std::vector<float> lower_;  // D_j^-1, and L_kj beside the diagonal
   std::vector<float> y_;      // four a row, the fourth is zero
 };

@@ -35,6 +35,17 @@ struct FloatBlock {
 struct alignas(32) WideBlock {
   Four column[3] = {};
 
+  void set(const double* b) {  // reads one number more than nine
+    for (int k = 0; k < 3; ++k) column[k] = load(b + 3 * k);
+  }
+  void transpose() {
+    const auto [a, b, c] = column;
+    const Four low = __builtin_shufflevector(a, b, 0, 4, 2, 6),
+               high = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    column[0] = __builtin_shufflevector(low, c, 0, 1, 4, 5);
+    column[1] = __builtin_shufflevector(high, c, 0, 1, 5, 4);
+    column[2] = __builtin_shufflevector(low, c, 2, 3, 6, 7);
+  }
   template <class Scalar>
   void add(const Scalar* b) {
     for (int k = 0; k < 3; ++k) column[k] += load(b + 3 * k);
