@@ -93,9 +93,12 @@ Names integrator_names(const std::string& text) {
   Names known;
   for (const IntegratorInfo& info : integrators()) known.emplace_back(info.name);
   Names names = parts_of("--integrators", text);
-  for (const std::string& name : names)
+  for (const std::string& name : names) {
+    if (const std::string missing = missing_integrator(name); !missing.empty())
+      refuse("--integrators", name, missing);
     if (std::find(known.begin(), known.end(), name) == known.end())
       refuse("--integrators", name, "there is no such integrator; " + suggestion(name, known));
+  }
   return names;
 }
 

@@ -13,6 +13,13 @@ Names names_of(const Infos& infos) {
   return names;
 }
 
+// A part of which this build only knows what would have to be installed for it.
+void refuse_missing(const Table& table, const std::string& key, std::string missing(std::string_view)) {
+  const Node* const given = table.find(key);
+  if (!given || given->kind != Node::Kind::text) return;
+  if (const std::string why = missing(given->text); !why.empty()) table.fail(key, why);
+}
+
 void read_step(Table& table, StepOptions& step) {
   table.read("newton_iterations", step.newton_iterations, 1, "linear solves a step");
   table.read("newton_tolerance", step.newton_tolerance, dimension::number, Range::positive,
@@ -93,6 +100,8 @@ SimulationOptions read_simulation(const Table* given) {
              "of the frames that are written: frame k is the state at k / rate, the last frame the state at "
              "the end; 0: only the last");
   table.read("gravity", options.gravity, dimension::acceleration, "acts on all that has a mass");
+  refuse_missing(table, "integrator", missing_integrator);
+  refuse_missing(table, "linear_solver", missing_linear_solver);
   table.read_part("integrator", options.integrator, names_of(integrators()), "how time goes on");
   table.read_part("linear_solver", options.linear_solver, names_of(linear_solvers()),
                   "what solves the system of a step, NAME or NAME+PRECONDITIONER");

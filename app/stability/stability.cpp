@@ -13,8 +13,10 @@ namespace drape::app {
 namespace {
 
 [[noreturn]] void refuse(const std::string& text, const std::string& name, const Names& known) {
-  throw InputError("--integrators " + text + ": there is no integrator '" + name + "'; " +
-                   suggestion(name, known));
+  const std::string missing = missing_integrator(name);
+  throw InputError(
+      "--integrators " + text + ": " +
+      (missing.empty() ? "there is no integrator '" + name + "'; " + suggestion(name, known) : missing));
 }
 
 void read(const std::string& text, const char* option, const Dimension& dimension, double& value,

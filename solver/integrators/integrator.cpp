@@ -50,6 +50,17 @@ std::vector<IntegratorInfo> integrators() {
   return all;
 }
 
+std::string missing_integrator([[maybe_unused]] std::string_view name) {
+#ifndef DRAPE_HAVE_SUNDIALS
+  for (const std::string_view missing :
+       {"newton-kinsol", "cvode-bdf", "cvode-adams", "arkode-erk", "arkode-dirk"})
+    if (name == missing)
+      return "integrator '" + std::string(name) +
+             "' is not in this build: install libsundials-dev and build again";
+#endif
+  return "";
+}
+
 ContactMode contact_mode(std::string_view integrator, std::optional<ContactMode> asked) {
   if (integrator == "pbd") {
     if (asked == ContactMode::constraint)
@@ -104,6 +115,7 @@ std::unique_ptr<Integrator> make_integrator(std::string_view name, System& syste
   for (const IntegratorInfo& info : sundials_ode_methods())
     if (name == info.name) return make_sundials_ode(name, system, constraints, std::move(solver), options);
 #endif
+  if (const std::string missing = missing_integrator(name); !missing.empty()) throw InputError(missing);
   std::string names;
   for (const IntegratorInfo& info : integrators())
     names += (names.empty() ? "" : ", ") + std::string(info.name);

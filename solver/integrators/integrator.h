@@ -129,6 +129,8 @@ ContactMode contact_mode(std::string_view integrator, std::optional<ContactMode>
 struct IntegratorInfo {
   std::string_view name, summary;
 };
-std::vector<IntegratorInfo> integrators();
+std::vector<IntegratorInfo> integrators();  // those of this build
+// Says that this build lacks the integrator of that name, and what to install for it; empty for any other name.
+std::string missing_integrator(std::string_view name);
 
 }  // namespace drape

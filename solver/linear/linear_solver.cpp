@@ -9,6 +9,8 @@ namespace drape {
 
 using namespace internal;
 
+using Make = std::unique_ptr<LinearSolver> (*)();  // null: this build lacks the solver
+
 namespace internal {
 std::unique_ptr<LinearSolver> make_auto();
 }
@@ -16,20 +18,31 @@ std::unique_ptr<LinearSolver> make_eigen_ldlt();
 std::unique_ptr<LinearSolver> make_eigen_cg();
 #ifdef DRAPE_HAVE_CHOLMOD
 std::unique_ptr<LinearSolver> make_cholmod();
+#else
+constexpr Make make_cholmod = nullptr;
 #endif
 #ifdef DRAPE_HAVE_SUNDIALS
 std::unique_ptr<LinearSolver> make_sundials_pcg(std::string name,
                                                 std::unique_ptr<Preconditioner> preconditioner);
+constexpr Make sundials_pcg = [] { return make_sundials_pcg("sundials-pcg", make_block_jacobi()); };
+constexpr Make sundials_multigrid = [] {
+  return make_sundials_pcg("sundials-pcg+multigrid", make_multigrid());
+};
+#else
+constexpr Make sundials_pcg = nullptr, sundials_multigrid = nullptr;
 #endif
 #ifdef DRAPE_HAVE_PETSC
 std::unique_ptr<LinearSolver> make_petsc();
+#else
+constexpr Make make_petsc = nullptr;
 #endif
 
 namespace {
 
 struct Entry {
   LinearSolverInfo info;
-  std::unique_ptr<LinearSolver> (*make)();
+  Make make;
+  const char* needs = "";  // what has to be installed for it
 };
 
 const std::vector<Entry>& entries() {
@@ -46,18 +59,14 @@ const std::vector<Entry>& entries() {
        [] { return make_pcg("ppcg+block-ic0", true, make_block_ic0()); }},
       {{"ppcg+multigrid", "the same with smoothed aggregation: for large meshes"},
        [] { return make_pcg("ppcg+multigrid", true, make_multigrid()); }},
-#ifdef DRAPE_HAVE_CHOLMOD
-      {{"cholmod", "sparse LL^T of SuiteSparse"}, make_cholmod},
-#endif
-#ifdef DRAPE_HAVE_SUNDIALS
-      {{"sundials-pcg", "SUNLinSol_PCG of SUNDIALS, 3x3 block-Jacobi"},
-       [] { return make_sundials_pcg("sundials-pcg", make_block_jacobi()); }},
+      {{"cholmod", "sparse LL^T of SuiteSparse"}, make_cholmod, "libsuitesparse-dev"},
+      {{"sundials-pcg", "SUNLinSol_PCG of SUNDIALS, 3x3 block-Jacobi"}, sundials_pcg, "libsundials-dev"},
       {{"sundials-pcg+multigrid", "the same with smoothed aggregation"},
-       [] { return make_sundials_pcg("sundials-pcg+multigrid", make_multigrid()); }},
-#endif
-#ifdef DRAPE_HAVE_PETSC
-      {{"petsc", "KSP CG of PETSc with its multigrid GAMG"}, make_petsc},
-#endif
+       sundials_multigrid,
+       "libsundials-dev"},
+      {{"petsc", "KSP CG of PETSc with its multigrid GAMG"},
+       make_petsc,
+       "petsc-dev, configure with -DDRAPE_PETSC=ON"},
       {{"eigen-ldlt", "sparse LDL^T of Eigen"}, make_eigen_ldlt},
       {{"eigen-cg", "conjugate gradient of Eigen with incomplete Cholesky"}, make_eigen_cg},
   };
@@ -87,8 +96,10 @@ std::string remark(const LinearReport& report) {
 }
 
 std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name) {
+  if (const std::string missing = missing_linear_solver(name); !missing.empty()) throw InputError(missing);
   std::string known;
   for (const Entry& entry : entries()) {
+    if (!entry.make) continue;
     if (entry.info.name == name) return entry.make();
     known += (known.empty() ? "" : ", ") + std::string(entry.info.name);
   }
@@ -97,8 +108,17 @@ std::unique_ptr<LinearSolver> make_linear_solver(std::string_view name) {
 
 std::vector<LinearSolverInfo> linear_solvers() {
   std::vector<LinearSolverInfo> infos;
-  for (const Entry& entry : entries()) infos.push_back(entry.info);
+  for (const Entry& entry : entries())
+    if (entry.make) infos.push_back(entry.info);
   return infos;
+}
+
+std::string missing_linear_solver(std::string_view name) {
+  for (const Entry& entry : entries())
+    if (entry.info.name == name && !entry.make)
+      return "linear solver '" + std::string(name) + "' is not in this build: install " + entry.needs +
+             " and build again";
+  return "";
 }
 
 }  // namespace drape

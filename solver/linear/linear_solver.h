@@ -68,5 +68,7 @@ struct LinearSolverInfo {
   std::string_view name, summary;
 };
 std::vector<LinearSolverInfo> linear_solvers();  // those of this build
+// Says that this build lacks the linear solver of that name, and what to install for it; empty for any other name.
+std::string missing_linear_solver(std::string_view name);
 
 }  // namespace drape

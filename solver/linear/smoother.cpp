@@ -27,7 +27,7 @@ void set(VecX& v, int row, const Four& value) {
 
 inline Four Smoother::solve_diagonal(int row, const Four& right) const {
   const double* d = inverse_.data() + 9 * static_cast<std::ptrdiff_t>(row);
-  return multiply_add(load(d), right[0], multiply_add(load(d + 3), right[1], load(d + 6) * right[2]));
+  return load(d) * right[0] + load(d + 3) * right[1] + load(d + 6) * right[2];
 }
 
 // Even chunks come first in the order. So L of an even chunk, and U of an odd one, stay within the chunk; U of an

@@ -109,8 +109,8 @@ class SparseRows {
 using BlockRows = SparseRows<9>;
 
 // A row of blocks times x; three of the four lanes count. Rows are taken upwards or downwards, and so are their
-// blocks: what the row before has just written comes last, and does not hold up the rest of the sum. What comes
-// `ahead` blocks later is fetched early, because the processor's own prefetch stops at every page.
+// blocks: where columns ascend, what the row before has just written comes last and does not hold up the rest of the
+// sum. What comes `ahead` blocks later is fetched early, because the processor's own prefetch stops at every page.
 template <bool upwards = false>
 Four times(const BlockRows::Row& row, const double* x) {
   constexpr std::ptrdiff_t step = upwards ? -1 : 1, ahead = 64 * step;
@@ -121,9 +121,9 @@ Four times(const BlockRows::Row& row, const double* x) {
   for (int k = 0; k < row.count; ++k, column += step, a += 9 * step) {
     __builtin_prefetch(a + 9 * ahead);
     const double* xj = x + 3 * static_cast<std::ptrdiff_t>(*column);
-    sum = multiply_add(load(a), xj[0], sum);
-    sum1 = multiply_add(load(a + 3), xj[1], sum1);
-    sum2 = multiply_add(load(a + 6), xj[2], sum2);
+    sum += load(a) * xj[0];
+    sum1 += load(a + 3) * xj[1];
+    sum2 += load(a + 6) * xj[2];
   }
   return sum + sum1 + sum2;
 }

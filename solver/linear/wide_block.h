@@ -56,18 +56,16 @@ struct alignas(32) WideBlock {
   }
   void add_lost(const float*, const FloatBlock&) {}
   void add_product(const double* a, const WideBlock& b) {
-    add_product(a, b.column[0], b.column[1], b.column[2]);
-  }
-  template <class A, class B>  // one number behind each block is read
-  void add_product(const A* a, const B* b) {
-    add_product(a, load(b), load(b + 3), load(b + 6));
-  }
-  template <class A>
-  void add_product(const A* a, const Four& b0, const Four& b1, const Four& b2) {
     const Four a0 = load(a), a1 = load(a + 3), a2 = load(a + 6);
-    add_multiples(a0, a1, a2, b0, column[0]);
-    add_multiples(a0, a1, a2, b1, column[1]);
-    add_multiples(a0, a1, a2, b2, column[2]);
+    for (int k = 0; k < 3; ++k) column[k] += a0 * b.column[k][0] + a1 * b.column[k][1] + a2 * b.column[k][2];
+  }
+  template <class A, class B>
+  void add_product(const A* a, const B* b) {
+    const Four a0 = load(a), a1 = load(a + 3), a2 = load(a + 6);
+    for (int k = 0; k < 3; ++k) {
+      const double b0 = b[3 * k], b1 = b[3 * k + 1], b2 = b[3 * k + 2];
+      column[k] += a0 * b0 + a1 * b1 + a2 * b2;
+    }
   }
   void store(double* to) const {
     for (int k = 0; k < 3; ++k)
@@ -75,11 +73,6 @@ struct alignas(32) WideBlock {
   }
   void store(float* to) const {  // writes one number more than nine
     for (int k = 0; k < 3; ++k) internal::store(narrow(column[k]), to + 3 * k);
-  }
-
- private:
-  static void add_multiples(const Four& a0, const Four& a1, const Four& a2, const Four& b, Four& sum) {
-    sum = multiply_add(a0, b[0], multiply_add(a1, b[1], multiply_add(a2, b[2], sum)));
   }
 };
 

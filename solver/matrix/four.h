@@ -26,14 +26,6 @@ inline Four root(const Four& v) {
   return Four{std::sqrt(v[0]), std::sqrt(v[1]), std::sqrt(v[2]), std::sqrt(v[3])};
 #endif
 }
-// a b + c, rounded once where the processor can.
-inline Four multiply_add(const Four& a, double b, const Four& c) {
-#ifdef __FMA__
-  return _mm256_fmadd_pd(a, _mm256_set1_pd(b), c);
-#else
-  return a * b + c;
-#endif
-}
 inline FourFloats narrow(const Four& v) { return __builtin_convertvector(v, FourFloats); }
 inline FourFloats floats(const float* p) { return *reinterpret_cast<const FourFloats*>(p); }
 inline FourFloats floats(const double* p) { return narrow(load(p)); }
