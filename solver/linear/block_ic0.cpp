@@ -201,8 +201,8 @@ class BlockIc0 final : public Preconditioner {
     for (int c = 0; c < 3; ++c) diagonal.column[c] += Four{sum(0, c), sum(1, c), sum(2, c), 0};
   }
 
-  // Keeps a factor in float. Its last column is not written four wide, because what follows may belong to a chunk that
-  // another thread has written.
+  // Keeps a factor in float. Its last column is not written four wide, because the next number may belong to a chunk that
+  // another thread is writing.
   void store(int k) {
     float* to = lower_.data() + 9 * static_cast<std::ptrdiff_t>(k);
     for (int c = 0; c < 2; ++c) internal::store(internal::narrow(factors_[k].column[c]), to + 3 * c);
