@@ -313,6 +313,30 @@ TEST_CASE("check and list change nothing", "[cli]") {
   CHECK(shop.files(".") == before);
 }
 
+TEST_CASE("check says which seams begin closed", "[cli]") {
+  // Two squares side by side; the second is at a distance from the first.
+  const Workshop shop;
+  const auto said = [&](double apart, const std::string& more) {
+    std::ostringstream mesh;
+    for (const double x : {0.0, 0.1, 0.1 + apart, 0.2 + apart})
+      mesh << "v " << x << " 0 0\nv " << x << " 0.1 0\n";
+    mesh << "f 1 3 4 2\nf 5 7 8 6\ng one\nl 3 4\ng two\nl 5 6\n";
+    shop.write("two.obj", mesh.str());
+    shop.write("two.toml",
+               "[[cloth]]\nmesh = \"two.obj\"\nfabric = \"cotton-poplin\"\n[[cloth.seams]]\n"
+               "curves = [\"one\", \"two\"]\ndirection = \"same\"\nclose = 2\n" +
+                   more + "[simulation]\nduration = 3\n");
+    const Outcome check = shop.drape("check two.toml");
+    INFO(check.err);
+    CHECK(check.exit_code == 0);
+    return check.out;
+  };
+  CHECK_THAT(said(0, ""),
+             Contains("2 pairs, up to 0 m apart, begins closed and is merged in the first step"));
+  CHECK_THAT(said(0, "then = \"keep\"\n"), Contains("2 pairs, up to 0 m apart, closes in 2 s and is kept"));
+  CHECK_THAT(said(0.05, ""), Contains("2 pairs, up to 0.05 m apart, closes in 2 s and is merged"));
+}
+
 TEST_CASE("check says how bodies and pins move", "[cli]") {
   const Workshop shop;
   shop.write("poses.csv", "time,x,y,z,qx,qy,qz,qw\n0.5,0,0,0,0,0,0,1\n2,0.3,0,0.4,0,0,0,1\n");

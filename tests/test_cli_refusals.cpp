@@ -29,6 +29,7 @@ TEST_CASE("bad input: one line, exit code 2, nothing written", "[cli]") {
   fs::create_directories(shop.path / "taken/sheet.obj");
   fs::create_directories(shop.path / "json/run.json");
   shop.write("unit.toml", shop.cloth + "bend = \"10 N/m\"\n");
+  shop.write("noted.toml", shop.cloth + "self_contact = true\n");  // without a thickness, which is noted
   shop.write("pin.toml", shop.cloth + "pins = [{ group = \"collar\" }]\n");
   shop.write("box.toml", shop.cloth + "pins = [{ box = [[5, 5, 5], [6, 6, 6]] }]\n");
   shop.write("body.toml", shop.cloth + "[[obstacle]]\nshape = \"mesh\"\nmesh = \"none.obj\"\n");
@@ -78,6 +79,7 @@ TEST_CASE("bad input: one line, exit code 2, nothing written", "[cli]") {
       {"simulate s.toml --set cloth.0.mesh=empty.obj", "the file is empty"},
       {"simulate s.toml --out sheet.obj", "sheet.obj: cannot be made an output folder"},
       {"simulate s.toml --out sheet.obj/x", "cannot be made an output folder"},
+      {"simulate noted.toml --out sheet.obj/x", "cannot be made an output folder"},
       {"simulate s.toml --out /proc/drape", "cannot be made an output folder"},
       {"simulate s.toml --out .", "would be overwritten"},
       {"drop none.obj", "none.obj: no such file"},

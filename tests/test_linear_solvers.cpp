@@ -302,6 +302,37 @@ TEST_CASE("nothing to do is done in no iterations", "[solvers]") {
   }
 }
 
+TEST_CASE("where all that acts is along what is locked there is nothing to do", "[solvers]") {
+  // The projections leave their round-off of it, which no iteration can lessen. With z of Problem A z acts, too.
+  for (const std::string& name : names()) {
+    for (const bool moving : {false, true}) {
+      for (const unsigned seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
+        INFO(name << ", seed " << seed << (moving ? ", moving" : ", still"));
+        Problem p(seed < 4 ? 1 : 20, seed, false);
+        VecX z = VecX::Zero(p.b.size());
+        p.b.setZero();
+        for (int i = 0; i < p.A.rows(); ++i) {
+          const Eigen::Matrix3d Q =
+              Eigen::Quaterniond(Eigen::Vector4d(random_vector(4, 1, 10 * seed + i)).normalized())
+                  .toRotationMatrix();
+          const Vec3 locked = 300 * (Q.col(0) - 2 * Q.col(1));
+          if (moving) z.segment<3>(3 * i) = 0.2 * Q.col(0) + 0.3 * Q.col(1);
+          p.filter.constrain(
+              i, Mat3::Identity() - Q.col(0) * Q.col(0).transpose() - Q.col(1) * Q.col(1).transpose(),
+              z.segment<3>(3 * i));
+          p.b.segment<3>(3 * i) = locked;
+        }
+        p.b += p.dense() * z;
+        VecX dv = random_vector(p.b.size(), 1, 6);
+        const LinearReport report = make_linear_solver(name)->solve(p.A, p.b, p.filter, {}, dv);
+        CHECK(report.reason == StopReason::converged);
+        CHECK(report.iterations == 0);
+        CHECK((dv - z).norm() < 1e-12);
+      }
+    }
+  }
+}
+
 TEST_CASE("an unknown linear solver is refused with the names there are", "[solvers]") {
   CHECK_THROWS_WITH(make_linear_solver("magic"), Catch::Contains("mpcg") && Catch::Contains("magic"));
 }

@@ -67,12 +67,16 @@ void print_cloth(const ClothEntry& entry, const Cloth& cloth) {
 }
 
 void print_seams(const Cloth& cloth, const VecX& x) {
-  for (const Cloth::Stitched& open : cloth.seams)
-    std::printf("  seam %s: %s, up to %s m apart, closes in %s s and is %s\n",
-                one_line(open.seam.name).c_str(),
-                counted(static_cast<long>(open.seam.pairs.size()), "pair").c_str(),
-                rounded(open.seam.gap(cloth.embedding, x), 3).c_str(), rounded(open.seam.close, 3).c_str(),
-                open.seam.merge ? "merged" : "kept");
+  for (const Cloth::Stitched& open : cloth.seams) {
+    const OpenSeam& seam = open.seam;
+    const std::string what =
+        seam.merge && seam.begins_closed()
+            ? "begins closed and is merged in the first step"
+            : "closes in " + rounded(seam.close, 3) + " s and is " + (seam.merge ? "merged" : "kept");
+    std::printf("  seam %s: %s, up to %s m apart, %s\n", one_line(seam.name).c_str(),
+                counted(static_cast<long>(seam.pairs.size()), "pair").c_str(),
+                rounded(seam.gap(cloth.embedding, x), 3).c_str(), what.c_str());
+  }
 }
 
 void print_soft(const SoftEntry& entry, const Cloth& cloth, const System& system) {

@@ -343,12 +343,13 @@ std::string Run::summary() const { return output_ ? app::summary(record_, *outpu
 int run(const Scene& scene, const RunOptions& options) {
   if (scene.simulation.threads > 0) set_threads(scene.simulation.threads);
   Simulation simulation = make_simulation(scene);
+  catch_interrupts();
+  simulation.keep_outgrown = false;
+  Run run(simulation,
+          options);  // a run that cannot begin ends with one line, and that is not one of these messages
   if (!options.quiet)
     for (const std::string& message : simulation.messages)
       std::fprintf(stderr, "%s\n", one_line(message).c_str());
-  catch_interrupts();
-  simulation.keep_outgrown = false;
-  Run run(simulation, options);
   march(run, [](const StepRow&) { return true; });
   if (!run.failure().empty()) std::fprintf(stderr, "error: %s\n", run.failure().c_str());
   const RunRecord& record = run.finish();

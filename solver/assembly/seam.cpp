@@ -109,6 +109,12 @@ double OpenSeam::gap(const Embedding& embedding, const VecX& x) const {
   return widest;
 }
 
+bool OpenSeam::begins_closed(std::size_t pair) const { return apart[pair] < closed_already * edge; }
+
+bool OpenSeam::begins_closed() const {
+  return std::ranges::all_of(apart, [&](double distance) { return distance < closed_already * edge; });
+}
+
 std::vector<std::pair<int, int>> OpenSeam::take_closed(const Embedding& embedding, const State& state) {
   const double near = near_enough * edge;
   if (!merge) return {};
@@ -116,7 +122,7 @@ std::vector<std::pair<int, int>> OpenSeam::take_closed(const Embedding& embeddin
   std::vector<std::pair<int, int>> closed;
   std::size_t open = 0;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    if (apart[k] < closed_already * edge && distance_of(pairs[k], embedding, state.x) <= near) {
+    if (begins_closed(k) && distance_of(pairs[k], embedding, state.x) <= near) {
       closed.push_back(pairs[k]);
       continue;
     }

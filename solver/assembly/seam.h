@@ -45,6 +45,9 @@ struct OpenSeam {
   bool merge = true;
 
   double gap(const Embedding& embedding, const VecX& x) const;  // of the pair that is farthest apart [m]
+  bool begins_closed(
+      std::size_t pair) const;  // so that the pair becomes one in the first step, if it is merged at all
+  bool begins_closed() const;   // the same of all pairs
   // Takes out the pairs that may become one: all of them when its time is over and they have met, else those that began
   // closed.
   std::vector<std::pair<int, int>> take_closed(const Embedding& embedding, const State& state);

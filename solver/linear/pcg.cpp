@@ -33,7 +33,6 @@ class Pcg final : public LinearSolver {
     {
       const Stopwatch watch(report.solve_ms);
       const double reference = reference_impulse(A, b, filter, options, z_, r_);  // leaves S (b - A z) in r
-      if (reference == 0) dv.setZero();  // no impulse acts, so there is nothing to do
       const double multiple = best_multiple(A, filter, r_, dv, q_);
       dv *= multiple;
       if (prefiltered_)
@@ -41,7 +40,7 @@ class Pcg final : public LinearSolver {
       else
         dv += z_;
       r_ -= multiple * q_;
-      iterate(A, prefiltered_ ? right_ : b, filter, options, reference, dv, report);
+      if (reference != 0) iterate(A, prefiltered_ ? right_ : b, filter, options, reference, dv, report);
       if (prefiltered_) dv += z_;
       conclude(A, b, filter, options, reference, dv, report);
     }
@@ -178,13 +177,13 @@ class Pcg final : public LinearSolver {
 
   void conclude(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
                 double reference, VecX& dv, LinearReport& report) {
-    filter.impose(dv);  // meets the constraints to the last bit
+    if (reference == 0) dv.setZero();  // no impulse acts, so there is nothing to do
+    filter.impose(dv);                 // meets the constraints to the last bit
     residual(A, b, filter, dv, r_);
     report.residual_impulse = std::sqrt(dot(r_, r_));
-    report.residual = reference > 0 ? report.residual_impulse / reference : 0;
+    report.residual = reference == 0 ? 0 : report.residual_impulse / reference;
     if (!std::isfinite(report.residual_impulse)) report.reason = StopReason::not_finite;
-    if (report.reason == StopReason::converged &&
-        report.residual_impulse > 1.01 * options.tolerance * reference)
+    if (report.reason == StopReason::converged && report.residual > 1.01 * options.tolerance)
       report.reason = StopReason::iteration_limit;
   }
 

@@ -66,7 +66,6 @@ class Petsc final : public LinearSolver {
       dv *= best_multiple(A, filter, right_, dv, scratch_);
       if (right_.allFinite() && dv.allFinite() && reference > 0)
         iterate(A.rows(), options, reference, dv, report);
-      if (reference == 0) dv.setZero();
       dv += z_;
       const StopReason stopped = report.reason;
       finish(A, b, filter, options, reference, dv, scratch_, report);
