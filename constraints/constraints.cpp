@@ -99,7 +99,8 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
   step_.work = 0;
   if (x.size() != step_.x_end.size() || x != step_.x_end) {  // the state was changed from outside
     contacts_.look_again();
-    faces_.look_again();
+    if (x.size() == step_.x_end.size())
+      faces_.look_again();  // else it knows of the other particles, and of its contacts
     self_.look_again();
   }
   step_.x = x;

@@ -156,22 +156,28 @@ void FaceContacts::add(const std::vector<ClothFace>& faces) {
 }
 
 void FaceContacts::renumber(const std::vector<int>& particle_of) {
-  for (ClothFace& face : faces_)
+  std::vector<int> number(faces_.size(), -1);  // by face before
+  std::size_t kept = 0;
+  for (std::size_t f = 0; f < number.size(); ++f) {
+    ClothFace face = faces_[f];
     for (int& i : face.particles) i = particle_of[i];
-  std::erase_if(faces_, [](const ClothFace& face) {
     const auto& [a, b, c] = face.particles;
-    return a == b || b == c || c == a;
-  });
+    if (a == b || b == c || c == a) continue;
+    number[f] = static_cast<int>(kept);
+    faces_[kept++] = face;
+  }
+  faces_.resize(kept);
   room_.clear();
   touching_.clear();
-  last_.clear();
+  std::erase_if(last_, [&](FaceContact& c) { return (c.face = number[c.face]) < 0; });
+  for (FaceContact& c : last_) c.particles = faces_[c.face].particles;
 }
 
 void FaceContacts::part(const Parting& parting) {
   for (ClothFace& face : faces_) face.particles = parting.face(face.particles);
   room_.clear();
   touching_.clear();
-  last_.clear();
+  for (FaceContact& c : last_) c.particles = faces_[c.face].particles;
 }
 
 void FaceContacts::measure_travel(const MovingBody& body, const VecX& x, const VecX& x_new) {
@@ -195,7 +201,6 @@ void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const std::
     room_.assign(bodies.size() * faces_.size(), 0.0);
     likely_.assign(room_.size(), middle);
     found_.resize(static_cast<std::size_t>(heavy_chunk_count(n)));
-    last_.clear();
   }
   touching_.clear();
   counted_ = false;
@@ -277,7 +282,8 @@ void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX
                                    : touches_still(last.nearest) ? last.nearest
                                                                  : nullptr;
   const auto touch = [&](const Vec3& weights, const Vec3& place, const FaceContact* old) {
-    FaceContact contact = make(f, body, weights, place, start.surface.normal, recovery);
+    FaceContact contact =
+        make(f, body, weights, place, start.surface.normal, recovery, old ? old : last.nearest);
     contact.active = contact.gap_at(x_new) < 0 || (old && old->active);
     if (old) contact.damper = old->rubbing();
     found.push_back(contact);
@@ -287,10 +293,12 @@ void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX
 }
 
 FaceContact FaceContacts::make(int f, const MovingBody& body, const Vec3& weights, const Vec3& place,
-                               const Vec3& normal, double recovery) const {
+                               const Vec3& normal, double recovery, const FaceContact* old) const {
   const ContactPlane plane = body.plane(place, body.at_start(place), body.carried(place));
-  const double margin = body.obstacle().margin, offset = 0.5 * margin;
-  const double depth = std::max(plane.gap + margin - offset, -std::max(recovery, offset));
+  const double margin = body.obstacle().margin, offset = 0.5 * margin, gap = plane.gap + margin - offset;
+  const double most_sunk = old ? old->sunk - recovery : begins_ ? -gap : 0.0;
+  const double sunk = std::max(std::min(most_sunk, -gap), 0.0);
+  const double depth = std::max(gap + sunk, -std::max(recovery, offset));
   const Vec3 turned = body.turned(normal);
   return {.body = body.number(),
           .face = f,
@@ -300,6 +308,7 @@ FaceContact FaceContacts::make(int f, const MovingBody& body, const Vec3& weight
           .normal = turned,
           .place = place,
           .gap = depth - turned.dot(body.carried(place)),
+          .sunk = sunk,
           .body_velocity = plane.body_velocity,
           .friction = body.obstacle().friction.kinetic};
 }
@@ -365,6 +374,7 @@ bool FaceContacts::react(const VecX& x_new, const VecX& v_new) {
 void FaceContacts::end_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new,
                             const VecX& v_new) {
   if (faces_.empty()) return;
+  begins_ = false;
   for (FaceContact& c : touching_) measure(c, x_new, v_new);
   last_ = touching_;
   for (const MovingBody& body : bodies) {

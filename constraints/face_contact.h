@@ -37,10 +37,12 @@ struct FaceContact {
   int body, face;
   std::array<int, 3> particles;
   Vec3 weights;
-  double stiffness;    // N/m
-  Vec3 normal;         // unit, points out of the body
-  Vec3 place;          // p at the start of the step [m]
-  double gap;          // the g above at x = 0, with the body as it moves [m]: g = gap + n . sum w_k x_k
+  double stiffness;  // N/m
+  Vec3 normal;       // unit, points out of the body
+  Vec3 place;        // p at the start of the step [m]
+  double gap;        // the g above at x = 0, with the body as it moves [m]: g = gap + n . sum w_k x_k
+  double sunk =
+      0;  // how much nearer to the body it still may be, because it began there [m]; g counts from there
   Vec3 body_velocity;  // m/s
   double friction;     // mu
   bool active = false;
@@ -82,7 +84,8 @@ class FaceContacts {
   const std::vector<ClothFace>& all() const { return faces_; }
 
   // x -> x_new is the predicted motion. recovery: how far a triangle that starts inside a body is brought out
-  // in this step at most [m].
+  // in this step at most [m]. What is too near to a body when a run begins is not pushed away from it: it comes out by so
+  // much in a step, with its vertices.
   // A triangle with a corner that is clamped in `contacts` goes with that corner, and touches nothing.
   void begin_step(const std::vector<MovingBody>& bodies, const std::vector<Contact>& contacts, const VecX& x,
                   const VecX& x_new, double recovery);
@@ -102,7 +105,10 @@ class FaceContacts {
   void take_impulse(double h, const VecX& x_new, const VecX& v_new);
 
   // Makes the next step look at every pair of face and body, after the particles were moved from outside.
-  void look_again() { std::fill(room_.begin(), room_.end(), 0.0); }
+  void look_again() {
+    std::fill(room_.begin(), room_.end(), 0.0);
+    begins_ = true;
+  }
 
   const std::vector<FaceContact>& touching() const { return touching_; }
 
@@ -111,8 +117,9 @@ class FaceContacts {
   double travel(const ClothFace& face) const;
   void look(int face, const MovingBody& body, const VecX& x, const VecX& x_new, double recovery,
             std::vector<FaceContact>& found);
+  // old: the contact of the step before that it goes on from; null where it is a new one.
   FaceContact make(int face, const MovingBody& body, const Vec3& weights, const Vec3& place,
-                   const Vec3& normal, double recovery) const;
+                   const Vec3& normal, double recovery, const FaceContact* old) const;
   // Of the contacts of a face in the last completed step, those whose points are nearest to these weights and
   // farthest from them. Null where it had none.
   struct Before {
@@ -130,6 +137,7 @@ class FaceContacts {
   std::vector<double> travel_;
   std::vector<char> clamped_;  // by particle
   bool counted_ = false;
+  bool begins_ = true;  // whether this is the first step since particles were moved from outside
   // Contacts of this step, and of the last completed one; sorted by body, then by face.
   std::vector<FaceContact> touching_, last_;
   std::vector<std::vector<FaceContact>> found_;  // by chunk of faces

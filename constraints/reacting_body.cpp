@@ -22,6 +22,12 @@ Mat3 turned_by(const Vec3& angle) {
   return a > 0 ? Eigen::AngleAxisd(a, angle / a).toRotationMatrix() : Mat3::Identity();
 }
 
+Mat3 cross_matrix(const Vec3& r) {
+  Mat3 cross;
+  cross << 0, -r[2], r[1], r[2], 0, -r[0], -r[1], r[0], 0;
+  return cross;
+}
+
 }  // namespace
 
 void check(const RigidBody& body) {
@@ -43,13 +49,31 @@ ReactingBody::ReactingBody(const RigidBody& body, const Pose& pose)
       radius_(std::sqrt(body.inertia.trace() / (3 * body.mass))),
       pose_(pose),
       v_(body.velocity),
-      L_(world_inertia(pose) * body.spin) {}
+      L_(world_inertia(pose.rotation) * body.spin),
+      inverse_inertia_(world_inertia(pose.rotation).inverse()) {}
 
-Mat3 ReactingBody::world_inertia(const Pose& pose) const {
-  return pose.rotation * body_.inertia * pose.rotation.transpose();
+Mat3 ReactingBody::world_inertia(const Mat3& rotation) const {
+  return rotation * body_.inertia * rotation.transpose();
 }
 
-Vec3 ReactingBody::spin() const { return world_inertia(pose_).inverse() * L_; }
+// Newton's method for the spin W of the middle, in the body's frame there: I W = M with M = exp(-h [W] / 2) R^T L. Where
+// it does not converge, because the body turns by more than half a turn or so in a step, the start stands for the middle.
+Mat3 ReactingBody::middle_inertia(double h) const {
+  constexpr int most_rounds = 30;
+  const Mat3 R = pose_.rotation, &I = body_.inertia;
+  const Vec3 start = R.transpose() * L_;
+  Vec3 W = I.inverse() * start;
+  for (int round = 0; round < most_rounds; ++round) {
+    const Vec3 M = turned_by(-0.5 * h * W) * start, wrong = I * W - M;
+    if (wrong.norm() <= 1e-14 * start.norm()) return world_inertia(R * turned_by(0.5 * h * W));
+    const Mat3 turn = cross_matrix(0.5 * h * W);  // M changes by h/2 M x (1 - turn / 2 + turn^2 / 6 ...) dW
+    const Mat3 change = Mat3::Identity() - 0.5 * turn + turn * turn / 6;
+    W -= (I - 0.5 * h * cross_matrix(M) * change).inverse() * wrong;
+  }
+  return world_inertia(R);
+}
+
+Vec3 ReactingBody::spin() const { return world_inertia(pose_.rotation).inverse() * L_; }
 
 Vec3 ReactingBody::momentum() const { return body_.mass * v_; }
 Vec3 ReactingBody::centre() const { return pose_.to_world(body_.centre); }
@@ -58,14 +82,11 @@ Vec3 ReactingBody::met_velocity() const { return meets_ ? Vec3(met_.head<3>()) :
 Vec3 ReactingBody::met_spin() const { return meets_ ? Vec3(met_.tail<3>() / radius_) : Vec3(Vec3::Zero()); }
 
 Vec3 ReactingBody::free_velocity() const { return v_ + h_ * body_.gravity + J_ / body_.mass; }
-Vec3 ReactingBody::free_spin() const { return inverse_inertia() * (L_ + T_); }
-Mat3 ReactingBody::inverse_inertia() const { return world_inertia(pose_).inverse(); }
+Vec3 ReactingBody::free_spin() const { return inverse_inertia_ * (L_ + T_); }
 
 Mat3 ReactingBody::mobility(const Vec3& place) const {
-  const Vec3 r = place - centre();
-  Mat3 cross;
-  cross << 0, -r[2], r[1], r[2], 0, -r[0], -r[1], r[0], 0;
-  return Mat3::Identity() / body_.mass - cross * world_inertia(pose_).inverse() * cross;
+  const Mat3 cross = cross_matrix(place - centre());
+  return Mat3::Identity() / body_.mass - cross * inverse_inertia_ * cross;
 }
 
 Pose ReactingBody::moved() const {
@@ -78,13 +99,14 @@ Pose ReactingBody::moved() const {
 Pose ReactingBody::begin_step(double h) {
   const double share = last_h_ > 0 ? h / last_h_ : 0;  // of the impulses of the last step
   h_ = h;
+  inverse_inertia_ = middle_inertia(h).inverse();
   meets_ = false;
   J_ = share * last_J_;
   T_ = share * last_T_;
   q_.head<3>() = v_ + h * body_.gravity + share * last_J_ / body_.mass;
-  q_.tail<3>() = radius_ * (world_inertia(pose_).inverse() * (L_ + share * last_T_));
+  q_.tail<3>() = radius_ * (inverse_inertia_ * (L_ + share * last_T_));
   q_free_.head<3>() = v_ + h * body_.gravity;
-  q_free_.tail<3>() = radius_ * (world_inertia(pose_).inverse() * L_);
+  q_free_.tail<3>() = radius_ * (inverse_inertia_ * L_);
   corrections_ = changes_ = 0;
   known_ = false;
   if (last_J_.isZero(0)) relaxation_ = 0;
@@ -121,7 +143,7 @@ void ReactingBody::push(const Vec3& impulse, const Vec3& place, double approach)
 ReactingBody::Vec6 ReactingBody::difference() const {
   Vec6 d;
   d.head<3>() = v_ + h_ * body_.gravity + J_ / body_.mass;
-  d.tail<3>() = radius_ * (world_inertia(pose_).inverse() * (L_ + T_));
+  d.tail<3>() = radius_ * (inverse_inertia_ * (L_ + T_));
   if (meets_) d += met_;
   return d - q_;
 }
@@ -130,7 +152,7 @@ void ReactingBody::meet(const Vec3& impulse, const Vec3& moment) {
   meets_ = true;
   A_ = moment;
   met_.head<3>() = impulse / body_.mass;
-  met_.tail<3>() = radius_ * (inverse_inertia() * moment);
+  met_.tail<3>() = radius_ * (inverse_inertia_ * moment);
 }
 
 Pose ReactingBody::expect(const Vec3& u, const Vec3& w) {
@@ -156,7 +178,7 @@ void ReactingBody::stay_in_reach() {
 bool ReactingBody::correct(Pose& end, double noise) {
   const Vec6 d = difference();
   if (corrections_ == 0 || meeting_ == 0) {
-    const double spun = radius_ * (world_inertia(pose_).inverse() * pulled_T_).norm();
+    const double spun = radius_ * (inverse_inertia_ * pulled_T_).norm();
     meeting_ = std::max(approach_, pulled_J_.norm() / body_.mass + spun);
   }
   const double near = close_enough * change() + noise / body_.mass + round_off * q_.norm();
@@ -165,7 +187,7 @@ bool ReactingBody::correct(Pose& end, double noise) {
     const double Z = J_.norm() / std::max(approach_, h_ * body_.gravity.norm() + 1e-12);
     // How fast the point where it is pushed gives way to a unit of the impulse: 1/m where that is the centre of mass.
     const double pushed = std::max({J_.squaredNorm(), T_.squaredNorm() / (radius_ * radius_), 1e-300});
-    const double spins = T_.dot(world_inertia(pose_).inverse() * T_) / pushed;
+    const double spins = T_.dot(inverse_inertia_ * T_) / pushed;
     relaxation_ = 1 / (1 + Z * (1 / body_.mass + spins));
   }
   if (known_) {  // the newest change comes first, and the oldest falls out
@@ -206,8 +228,9 @@ bool ReactingBody::end_step(const Pose& end) {
   const Vec6 q = converged ? Vec6(q_ + d) : q_;
   v_ = q.head<3>();
   const Vec3 T = meets_ ? Vec3(T_ + A_) : T_;
-  L_ = converged ? Vec3(L_ + T) : Vec3(world_inertia(pose_) * q.tail<3>() / radius_);
+  L_ = converged ? Vec3(L_ + T) : Vec3(inverse_inertia_.inverse() * q.tail<3>() / radius_);
   pose_ = end;
+  inverse_inertia_ = world_inertia(pose_.rotation).inverse();
   last_h_ = h_;
   last_J_ = J_;
   last_T_ = T_;

@@ -17,6 +17,8 @@
 // what the impulses of the last step would give, which is right at once for a body at rest. The body gets the
 // impulses of the last solve, so that momentum is kept; only where d has not become small it gets the motion
 // that was prescribed, and the step is not `converged`.
+// w is that of the middle of the step, R_m^T L = I R_m^T w with R_m = exp(h [w] / 2) R, where nothing pushes: so a body
+// that tumbles freely keeps its energy, too, and that inertia holds for the whole step. [Austin, Krishnaprasad & Wang 1993]
 // What other bodies do to it changes q' too: the impulse P and its moment A about c are those of
 // constraints/body_meeting.h, found for the motion that q' would be without them.
 // m [kg], I [kg m^2] about c in the body's frame, c [m], v, u [m/s], w [rad/s], J [N s], T [N m s], h [s].
@@ -84,7 +86,7 @@ class ReactingBody {
   // those of the last step before the first solve:
   Vec3 free_velocity() const;
   Vec3 free_spin() const;
-  Mat3 inverse_inertia() const;  // at the start of the step
+  const Mat3& inverse_inertia() const { return inverse_inertia_; }  // in the middle of the step [1/(kg m^2)]
   const Vec3& gravity() const { return body_.gravity; }
   // Impulse P [N s] and moment A [N m s] of the other bodies in this step.
   void meet(const Vec3& impulse, const Vec3& moment);
@@ -102,12 +104,14 @@ class ReactingBody {
   Vec6 difference() const;
   void stay_in_reach();
   double change() const;  // how much the step changes the velocity of the body [m/s]
-  Mat3 world_inertia(const Pose& pose) const;
+  Mat3 world_inertia(const Mat3& rotation) const;
+  Mat3 middle_inertia(double h) const;  // in the middle of the step, where nothing pushes
 
   RigidBody body_;
   double radius_;  // rho, the radius of gyration [m]
   Pose pose_;
   Vec3 v_, L_;
+  Mat3 inverse_inertia_;
   double last_h_ = 0;                                   // length of the last completed step [s]
   Vec3 last_J_ = Vec3::Zero(), last_T_ = Vec3::Zero();  // impulse [N s] and its moment [N m s] in that step
   Vec3 last_P_ = Vec3::Zero();                          // impulse of other bodies [N s]

@@ -168,6 +168,22 @@ TEST_CASE("quiet says nothing, a settled cloth stops a run, the last step meets 
   CHECK(shop.json("q/run.json")["steps"].get<int>() <= 22);
 }
 
+TEST_CASE("cloth that is still brought out of a body is not settled", "[cli]") {
+  const Workshop shop;
+  shop.write("under.toml", shop.cloth +
+                               "[simulation]\nduration = 3\nstop_when_settled = true\n[[obstacle]]\n"
+                               "shape = \"plane\"\npoint = [0, 0.45, 0]\n");
+  const Outcome run = shop.drape("simulate under.toml --out o --frames none");
+  CHECK(run.exit_code == 0);
+  CHECK_THAT(run.out, Contains("settled"));
+  const Json json = shop.json("o/run.json");
+  for (const Vec3& x : read_obj(shop.path / "o/sheet.obj").positions) CHECK(x[1] > 0.45);
+  CHECK(json["simulated_seconds"].get<double>() > 0.1 / 0.25);
+  CHECK(json["simulated_seconds"].get<double>() < 1);
+  const Outcome cut = shop.drape("simulate under.toml --out o --frames none --duration 0.2");
+  CHECK(shop.json("o/run.json")["state"] == "moving");
+}
+
 TEST_CASE("a settled cloth does not stop a run while a motion is still to come", "[cli]") {
   const Workshop shop;
   const std::string body = "[[obstacle]]\nshape = \"sphere\"\nradius = 0.1\ncentre = [0, 9, 0]\n";
@@ -311,6 +327,33 @@ TEST_CASE("check and list change nothing", "[cli]") {
   CHECK_THAT(list.out, Contains("cotton-poplin") && Contains("capsule") && Contains("implicit-euler") &&
                            Contains("mpcg"));
   CHECK(shop.files(".") == before);
+}
+
+TEST_CASE("what is said of a start that contact cannot take as it is", "[cli]") {
+  const Workshop shop;
+  const auto warned = [&](const std::string& text) {
+    shop.write("w.toml", shop.cloth + text + "[simulation]\nduration = 0.01\n");
+    return shop.drape("check w.toml");
+  };
+  const std::string guarded = "self_contact = true\nthickness = \"1 mm\"\n";
+  CHECK_THAT(warned(guarded).out, !Contains("from the origin"));
+  CHECK_THAT(warned(guarded + "translate = [100, 0, 0]\n").out, Contains("reaches 100 m from the origin"));
+  const Outcome far = warned(guarded + "translate = [0, 0, -5000]\n");
+  CHECK(far.exit_code == 2);
+  CHECK(lines_of(far.err) == 1);
+  CHECK_THAT(far.err, StartsWith("error: w.toml:1: cloth sheet: reaches 5e+03 m from the origin") &&
+                          Contains("move the scene nearer to the origin"));
+  CHECK(warned("translate = [0, 0, -5000]\n").exit_code == 0);
+  CHECK_THAT(warned("[[obstacle]]\nshape = \"plane\"\npoint = [0, 0.349, 0]\nmargin = \"1 cm\"\n").out,
+             Contains("note: 169 vertices of sheet start nearer to the plane than half of its margin of 10 "
+                      "mm, the nearest"));
+  CHECK_THAT(warned("[[obstacle]]\nshape = \"plane\"\npoint = [0, 0.34, 0]\nmargin = \"1 cm\"\n").out,
+             !Contains("its margin"));
+  shop.write("sheet.obj",
+             "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 1 0 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\n"
+             "f 1 3 4 2\nf 5 7 8 6\n");
+  CHECK_THAT(warned(guarded).out, Contains("4 of its vertices are at the same place as another one"));
+  CHECK_THAT(warned(guarded + "model = \"woven\"\n").out, Contains("crossings: none"));
 }
 
 TEST_CASE("check says which seams begin closed", "[cli]") {

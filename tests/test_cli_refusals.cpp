@@ -170,13 +170,24 @@ TEST_CASE("a disk that fills up leaves the results of the run before", "[cli]") 
   CHECK(content(shop.path / "o/sheet.obj") + content(shop.path / "o/run.json") == before);
 }
 
+TEST_CASE("a run that is told to outlive its terminal does", "[cli]") {
+  const Workshop shop;
+  // run.json is written when the run ends, here by SIGTERM.
+  const Outcome run = shop.shell(
+      "trap '' HUP; '" + program() +
+      "' simulate hung.toml --out o --quiet --duration 100000 --set simulation.frame_rate=1 & sleep 1; "
+      "kill -s HUP $!; sleep 1; test ! -e o/run.json || exit 9; kill -s TERM $!; wait $!");
+  CHECK(run.exit_code == 130);
+  CHECK(shop.json("o/run.json")["interrupted"] == true);
+}
+
 TEST_CASE("an interrupted run leaves complete files", "[cli]") {
   const Workshop shop;
-  for (const char* signal : {"INT", "TERM"}) {
+  for (const char* signal : {"INT", "TERM", "HUP"}) {
     INFO(signal);
     const Outcome run =
         shop.drape("simulate hung.toml --out o --duration 100000 --set simulation.frame_rate=1",
-                   std::string("timeout --preserve-status -s ") + signal + " 2");
+                   std::string("env --default-signal=HUP timeout --preserve-status -s ") + signal + " 2");
     CHECK(run.exit_code == 130);
     CHECK_THAT(run.out, Contains("interrupted after"));
     CHECK(shop.files("o") == without_bodies);

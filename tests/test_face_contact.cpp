@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "mesh/triangles/generate.h"
+#include "solver/assembly/assembly.h"
 #include "solver/forces/face_contact_force.h"
 #include "tests/same_bits.h"
 
@@ -21,13 +22,13 @@ std::vector<ClothFace> faces_of(const TriangleMesh& mesh, double stiffness = 500
 }
 
 // A cloth of coarse triangles, with its faces.
-struct Cloth {
+struct CoarseCloth {
   TriangleMesh mesh;
   System system;
   Constraints constraints;
   State state;
 
-  Cloth(TriangleMesh m, const Vec3& lift, bool with_faces = true, const Vec3& g = {0, -9.81, 0})
+  CoarseCloth(TriangleMesh m, const Vec3& lift, bool with_faces = true, const Vec3& g = {0, -9.81, 0})
       : mesh(std::move(m)), system(masses(mesh, fabric())), state(at_rest(mesh)) {
     for (int i = 0; i < state.particles(); ++i) state.x.segment<3>(3 * i) += lift;
     system.add(noh_jung(mesh, fabric()));
@@ -72,9 +73,11 @@ TEST_CASE("the force of a face's contact is the gradient of its energy, and its 
   constraints.add_faces(faces_of(one));
   system.add(face_contact_force(constraints));
   const State state = at_rest(one);
-  const VecX v = random_vector(9, 0.1, 3);
-  ContactStep contacts = constraints.begin_step(state.x, v, system.masses(), 0, 0.01);
-  system.begin_step({0, 0.01, state.x, v});
+  // It comes from above: what begins at the body is not pushed.
+  const VecX fall = stacked({{0, -1, 0}, {0, -1, 0}, {0, -1, 0}}), v = random_vector(9, 0.1, 3) + fall;
+  const VecX above = state.x - 0.01 * fall;
+  ContactStep contacts = constraints.begin_step(above, v, system.masses(), 0, 0.01);
+  system.begin_step({0, 0.01, above, v});
   REQUIRE(constraints.faces().touching().size() == 1);
   contacts.settle_faces(state.x, v);
   const FaceContact& contact = constraints.faces().touching()[0];
@@ -133,7 +136,7 @@ TEST_CASE("a corner that comes up under a coarse triangle lifts it and does not 
        {std::string("implicit-euler"), std::string("bdf2"), std::string("newton-kinsol")}) {
     for (double speed : {0.05, 1.0}) {
       INFO(name << " " << speed);
-      Cloth cloth(one, {0, 0.1, 0}, true, Vec3::Zero());
+      CoarseCloth cloth(one, {0, 0.1, 0}, true, Vec3::Zero());
       const Box cube{{0, 0, 0}, {0.1, 0.1, 0.1}, on_its_corner()};  // its corner at 0.0866
       cloth.constraints.add(Obstacle{.shape = cube,
                                      .friction = 0.5,
@@ -153,7 +156,7 @@ TEST_CASE("a corner that comes up under a coarse triangle lifts it and does not 
 
 TEST_CASE("a coarse cloth on a sharp table keeps off its rims and corners", "[faces]") {
   for (bool with_faces : {true, false}) {
-    Cloth cloth(grid(11, 11, 1, 1), {0.03, 0.12, 0.02}, with_faces);
+    CoarseCloth cloth(grid(11, 11, 1, 1), {0.03, 0.12, 0.02}, with_faces);
     cloth.constraints.add(Obstacle{.shape = Box{{0, 0, 0}, {0.57, 0.2, 0.63}}, .margin = margin});
     ImplicitEuler stepper(cloth.system, cloth.constraints, make_linear_solver("mpcg"));
     double lowest = 1,
@@ -173,8 +176,74 @@ TEST_CASE("a coarse cloth on a sharp table keeps off its rims and corners", "[fa
   }
 }
 
+TEST_CASE("a sheet that is thrown at a free body gives it what it loses, also where a step is cut short",
+          "[faces]") {
+  int rescues = 0;
+  for (const ClothModel model : {ClothModel::woven, ClothModel::noh_jung})
+    for (const int n : {7, 13, 25})
+      for (const bool equilateral : {false, true})
+        for (const double fall : {0.0, 9.81}) {
+          INFO(n << " vertices along an edge, " << (equilateral ? "equilateral, " : "squares, ")
+                 << (model == ClothModel::woven ? "woven" : "springs") << ", g = " << fall);
+          const double mass = 0.5;
+          const Vec3 centre(0.17, -0.09, 0.14), speed(0, -2, 0.5), g(0, -fall, 0);
+          Assembly both(g);
+          both.add({.mesh = equilateral ? equilateral_sheet(n, n, 0.3 / (n - 1)) : grid(n, n, 0.3, 0.3),
+                    .fabric = {.area_density = 0.2, .stretch = 500, .bend = 1e-5},
+                    .model = model});
+          both.constraints->add(Obstacle{
+              .shape = Box{centre, {0.1, 0.08, 0.1}, on_its_corner()},
+              .friction = 0.3,
+              .margin = 2e-3,
+              .rigid = RigidBody{
+                  .mass = mass, .inertia = mass / 600 * Mat3::Identity(), .centre = centre, .gravity = g}});
+          both.use("implicit-euler", "auto", {});
+          for (int i = 0; i < both.state.particles(); ++i) both.state.v.segment<3>(3 * i) = speed;
+          double cloth_mass = 0;
+          for (const double m : both.system->masses()) cloth_mass += m;
+          const auto momentum = [&] {
+            Vec3 p = both.constraints->bodies()[0].reacting()->momentum();
+            for (int i = 0; i < both.state.particles(); ++i)
+              p += both.system->masses()[i] * both.state.v.segment<3>(3 * i);
+            return p;
+          };
+          while (both.state.time < 0.0999) {
+            const StepReport report = both.advance(0.01);
+            REQUIRE(report.done);
+            CHECK(report.converged);
+            rescues += report.rescues;
+          }
+          const Vec3 expected = cloth_mass * speed + (cloth_mass + mass) * both.state.time * g;
+          CHECK((momentum() - expected).norm() < 2e-4 * cloth_mass * speed.norm());
+          CHECK(both.constraints->bodies()[0].reacting()->velocity().norm() > 0.01);
+        }
+  CHECK(rescues > 3);
+}
+
+TEST_CASE("what begins within the margin of a body comes out to it and gains no speed", "[faces]") {
+  for (const std::string integrator : {"implicit-euler", "bdf2", "newton-kinsol", "pbd"})
+    for (const int n : {4, 9, 17})
+      for (const double wide : {0.01, 0.05, 0.2}) {
+        INFO(integrator << ", " << n << " vertices along an edge, a margin of " << wide << " m");
+        CoarseCloth cloth(n == 9 ? equilateral_sheet(n, n, 0.3 / (n - 1)) : grid(n, n, 0.3, 0.3),
+                          {0, 1e-3, 0});
+        cloth.constraints.add(Obstacle{.shape = Plane{}, .margin = wide});
+        const auto stepper =
+            make_integrator(integrator, cloth.system, cloth.constraints, make_linear_solver("mpcg"));
+        const double slowly = 0.25;  // m/s, recovery_speed
+        for (int k = 0; k < 100; ++k) {
+          REQUIRE(stepper->advance(cloth.state, 0.01).done);
+          // Methods that answer contact after the motion have the last step of it as a speed.
+          CHECK(max_speed(cloth.state) < (integrator == "pbd" ? slowly + 1e-6 : 1e-6));
+          const double thrown = integrator == "pbd" ? slowly * slowly / (2 * 9.81) : 0;  // m
+          CHECK(cloth.lowest() < std::min(wide + thrown, 1e-3 + slowly * cloth.state.time) + 1e-6);
+        }
+        CHECK(cloth.lowest() > 0.99 * wide);
+      }
+}
+
 TEST_CASE("what lies flat is held by its vertices, and its faces touch nothing", "[faces]") {
-  Cloth cloth(grid(9, 9, 0.3, 0.3), {0, 0.05, 0});
+  CoarseCloth cloth(grid(9, 9, 0.3, 0.3), {0, 0.05, 0});
   cloth.constraints.add(Obstacle{.shape = Plane{}, .margin = margin});
   ImplicitEuler stepper(cloth.system, cloth.constraints, make_linear_solver("mpcg"));
   for (int n = 0; n < 150; ++n) REQUIRE(stepper.advance(cloth.state, 0.01).done);
@@ -185,7 +254,7 @@ TEST_CASE("what lies flat is held by its vertices, and its faces touch nothing",
 
 TEST_CASE("faces give the same bits with 1, 2 and 7 threads", "[faces]") {
   check_same_bits([] {
-    Cloth cloth(grid(61, 61, 1, 1), {0.03, 0.11, 0.02});
+    CoarseCloth cloth(grid(61, 61, 1, 1), {0.03, 0.11, 0.02});
     cloth.constraints.add(
         Obstacle{.shape = Box{{0, 0, 0}, {0.57, 0.2, 0.63}, rotation(0.3, {1, 1, 0})}, .margin = margin});
     ImplicitEuler stepper(cloth.system, cloth.constraints, make_linear_solver("mpcg"), {.tolerance = 1e-3});

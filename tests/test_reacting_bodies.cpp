@@ -73,6 +73,34 @@ TEST_CASE("a body that nothing touches falls, and keeps its spin", "[reacting]")
   CHECK((end.rotation.transpose() * end.rotation - Mat3::Identity()).norm() < 1e-12);
 }
 
+TEST_CASE("a body that tumbles freely keeps its energy, about whatever axis it began to spin", "[reacting]") {
+  const Vec3 brick(0.00833, 0.01667, 0.02167), stick(1e-5, 1e-2, 1e-2);  // kg m^2
+  for (const Vec3& moments : {brick, stick})
+    for (const int axis : {0, 1, 2})
+      for (const double speed : {3.0, 10.0, 30.0, 100.0})
+        for (const double step : {0.01, 0.005, 0.0025}) {
+          INFO("moments from " << moments[0] << " kg m^2, axis " << axis << ", " << speed
+                               << " rad/s, steps of " << step << " s");
+          const RigidBody spinning{.mass = 2,
+                                   .inertia = moments.asDiagonal(),
+                                   .spin = speed * (Vec3::Unit(axis) + Vec3(0.03, -0.02, 0.04)),
+                                   .gravity = Vec3::Zero()};
+          ReactingBody body(spinning, {rotation(0.4, {0, 0, 1}), {0, 0, 0}});
+          const Vec3 L = body.angular_momentum();
+          double energy = 0, most = 0;
+          for (double t = 0; t < 4; t += step) {
+            const Pose end = body.begin_step(step);
+            const double now = 0.5 * L.dot(body.inverse_inertia() * L);  // in the middle of the step
+            if (energy == 0) energy = now;
+            most = std::max(most, std::abs(now / energy - 1));
+            body.clear_impulse();
+            REQUIRE(body.end_step(end));
+          }
+          CHECK((body.angular_momentum() - L).norm() < 1e-12 * L.norm());
+          CHECK(most < 0.1 * std::pow(step * speed, 2));
+        }
+}
+
 TEST_CASE("the solid of a box mesh has the moments of the book", "[reacting]") {
   TriangleMesh mesh = sphere(4, 0.3);
   const Solid round = solid_of(mesh);

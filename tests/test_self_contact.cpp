@@ -249,10 +249,8 @@ TEST_CASE("a high pile that falls does not swing up and down for ever", "[self-c
     }
 }
 
-// How it crumples is a matter of chance, and one place or another may get stuck: so most of the runs have to be free of that.
-TEST_CASE("thin cloth on a coarse mesh crumples, and is hardly ever held up where it nearly touches",
-          "[self-contact]") {
-  int stuck = 0;
+// How it crumples is a matter of chance: one place or another is held up on the way, but none for good.
+TEST_CASE("thin cloth on a coarse mesh crumples, and nothing in it gets stuck", "[self-contact]") {
   for (int n : {12, 16, 20})
     for (double wave : {0.03, 0.0301, 0.0303}) {
       INFO(n << " vertices along an edge, waves of " << wave << " m");
@@ -262,16 +260,15 @@ TEST_CASE("thin cloth on a coarse mesh crumples, and is hardly ever held up wher
       Layers sheet({mesh}, {0, -9.81, 0}, 0.3, ClothModel::woven, 1e-4);
       sheet.constraints->add(Obstacle{.shape = Plane{}, .friction = 0.3});
       sheet.use("implicit-euler", "auto", usual());
-      int held_up = 0;
-      for (int k = 0; k < 150; ++k) {
+      for (int k = 0; k < 300; ++k) {
         const StepReport report = sheet.advance(0.01);
         REQUIRE(report.done);
-        if (k >= 130) held_up += report.self_guarded;
+        if (k % 10 == 0) CHECK(sheet.crossings() == 0);
+        if (k >= 280) CHECK(report.self_guarded <= 12);
       }
       CHECK(sheet.crossings() == 0);
-      stuck += held_up > 80 || largest_strain(sheet.cloths, sheet.state.x) > 0.1;  // in 20 steps
+      CHECK(largest_strain(sheet.cloths, sheet.state.x) < 0.06);
     }
-  CHECK(stuck <= 2);
 }
 
 TEST_CASE("sheets that collide keep their momentum and gain no energy", "[self-contact]") {

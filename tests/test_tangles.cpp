@@ -238,9 +238,10 @@ TEST_CASE("drape untangle: a mesh that crosses itself no more, all else as in th
   CHECK(early.exit_code == 1);
   CHECK_THAT(early.err, Contains("still cross"));
   for (const char* words :
-       {"untangle none.obj -o x.obj", "untangle bad.obj -o x.txt", "untangle bad.obj -o nowhere/x.obj",
-        "untangle bad.obj -o x.obj --thickness -1", "untangle bad.obj -o x.obj --duration '3 kg'",
-        "untangle bad.obj -o x.obj --fabric tweed", "untangle scene.toml -o x.obj"}) {
+       {"untangle none.obj -o x.obj", "untangle bad.obj -o ./bad.obj", "untangle bad.obj -o x.txt",
+        "untangle bad.obj -o nowhere/x.obj", "untangle bad.obj -o x.obj --thickness -1",
+        "untangle bad.obj -o x.obj --duration '3 kg'", "untangle bad.obj -o x.obj --fabric tweed",
+        "untangle scene.toml -o x.obj"}) {
     INFO(words);
     const Outcome bad = folder.drape(words);
     CHECK(bad.exit_code == 2);

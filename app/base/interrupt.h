@@ -1,12 +1,12 @@
-// Ctrl-C and SIGTERM ask a run to end after the step that it is computing; the third such signal ends the
-// program at once.
+// Ctrl-C, SIGTERM and the end of the terminal (SIGHUP, where nohup does not have it ignored) ask a run to end after the
+// step that it is computing; the third such signal ends the program at once.
 #pragma once
 
 #include <exception>
 
 namespace drape::app {
 
-// Installs the handler of both signals.
+// Installs the handler of these signals.
 void catch_interrupts();
 // True after the first such signal.
 bool interrupted();

@@ -52,10 +52,12 @@ Node& entry(Node& list, const std::string& part, const std::string& where) {
 
 }  // namespace
 
-Setting parse_setting(const std::string& text) {
+Setting parse_setting(const std::string& text, const std::string& option) {
   const std::size_t equals = text.find('=');
   if (equals == text.npos || equals == 0)
-    throw InputError("--set " + text + ": expected PATH=VALUE such as cloth.0.bend=\"5 uN.m\"");
+    throw InputError((option.empty() ? "'" + text + "' is one word too many, or a setting without a value"
+                                     : option + " " + text) +
+                     ": expected PATH=VALUE such as cloth.0.bend=\"5 uN.m\"");
   return {text.substr(0, equals), text.substr(equals + 1), "--set " + text.substr(0, equals)};
 }
 

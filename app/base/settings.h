@@ -17,7 +17,8 @@ struct Setting {
   std::string where;  // for messages: "--set cloth.0.bend", "--duration"
 };
 
-Setting parse_setting(const std::string& text);  // "PATH=VALUE"; throws InputError
+// "PATH=VALUE", as it came after this option, or after none. Throws InputError.
+Setting parse_setting(const std::string& text, const std::string& option = "--set");
 
 // Throws InputError when the path leads nowhere.
 void apply(const Setting& setting, Node& root);

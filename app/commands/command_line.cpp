@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <map>
 #include <memory>
 #include <new>
@@ -38,8 +39,8 @@ struct RunWords {
     options.out = out;
     options.quiet = quiet;
     options.frames = frames == "obj" ? Frames::obj : frames == "none" ? Frames::none : Frames::pc2;
-    for (const std::string& text : settings) options.settings.push_back(parse_setting(text));
-    for (const std::string& text : more_settings) options.settings.push_back(parse_setting(text));
+    for (const std::string& text : settings) options.settings.push_back(parse_setting(text, "--set"));
+    for (const std::string& text : more_settings) options.settings.push_back(parse_setting(text, ""));
     for (const auto& [path, value] : overrides) {
       std::string option = "--" + path.substr(path.find('.') + 1);
       for (char& c : option) c = c == '_' ? '-' : c;
@@ -461,7 +462,9 @@ int command_line(int argc, char** argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     return fail(2, error.path1().string() + ": " + error.code().message());
   } catch (const std::bad_alloc&) {
-    return fail(1, "there is not enough memory for this; use a coarser mesh");
+    fail(1, "there is not enough memory for this; use a coarser mesh");
+    std::fflush(nullptr);
+    std::_Exit(1);  // OpenBLAS, at the end of a program, waits for ever for a thread that finds no memory
   } catch (const std::exception& error) {
     return fail(1, std::string("the program failed: ") + error.what());
   }

@@ -111,6 +111,10 @@ int untangle_file(const UntangleWords& words) {
     throw InputError(words.mesh + ": expected a mesh (.obj); a scene is untangled while it runs");
   if (std::filesystem::path(words.out).extension() != ".obj")
     throw InputError(words.out + ": expected a name that ends in .obj");
+  std::error_code missing;
+  if (std::filesystem::equivalent(words.mesh, words.out, missing))
+    throw InputError(words.out +
+                     ": is the mesh itself, which would be overwritten; choose another name with -o");
   (void)AtomicFile(words.out);  // whether it can be written: now, and not when all is computed
   const Scene scene = weightless(words);
   Simulation simulation = make_simulation(scene);

@@ -88,7 +88,9 @@ void add_reports_of_steps(py::module_& m) {
       .def("__repr__", [](const StepReport& r) { return "StepReport(" + text(r) + ")"; });
   py::class_<RunStep, StepReport>(m, "RunStep",
                                   "A step of a run: its report, and the state after it in numbers.")
-      .def_readonly("step", &RunStep::step, "from 1")
+      .def_readonly("step", &RunStep::step,
+                    "from 1: in steps of this length since the time 0, or since the run began where that is "
+                    "between two")
       .def_readonly("time", &RunStep::time, "s, at its end")
       .def_readonly("kinetic_energy", &RunStep::kinetic_energy, "J")
       .def_readonly("elastic_energy", &RunStep::elastic_energy, "J, stored in the cloth: of its shape alone")

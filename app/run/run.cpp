@@ -142,6 +142,8 @@ void Run::describe_rope(const RopeEntry& entry, const Cloth& rope, const Json& p
 
 const StepRow& Run::step() {
   const State& state = simulation_.state;
+  const double started = state.time;
+  x_before_ = state.x;
   row_.report = loop_.step();
   row_.step = loop_.number();
   row_.time = state.time;
@@ -150,6 +152,11 @@ const StepRow& Run::step() {
   row_.contact_energy = row_.report.contact_energy;
   row_.gravity_energy = simulation_.system->gravity_energy(state.x);
   row_.max_speed = max_speed(state.v);
+  fastest_way_ = 0;
+  if (state.x.size() == x_before_.size() && state.time > started) {
+    x_before_ -= state.x;
+    fastest_way_ = max_speed(x_before_) / (state.time - started);
+  }
   row_.max_edge_strain = largest_strain(simulation_.cloths, state.x);
   row_.strains = triangle_strains(simulation_.cloths, state.x, strain_of_triangles_);
   if (!row_.report.done) {
@@ -174,7 +181,9 @@ void Run::watch_settling() {
 }
 
 // Nothing moves, nor is it going to.
-bool Run::at_rest(const StepRow& row) const { return slow(row.max_speed) && !(row.time < last_motion_); }
+bool Run::at_rest(const StepRow& row) const {
+  return slow(std::max(row.max_speed, fastest_way_)) && !(row.time < last_motion_);
+}
 
 // Neither cloth nor body with a mass moves. [m/s]
 bool Run::slow(double cloth_speed) const {
@@ -323,7 +332,7 @@ const RunRecord& Run::finish() {
   describe_tears();
   if (!framed_) write_frame();  // the last frame is the end
   record_.simulated_seconds = simulation_.state.time;
-  record_.settled = record_.steps > 0 && slow(record_.max_speed);
+  record_.settled = record_.steps > 0 && slow(std::max(record_.max_speed, fastest_way_));
   for (double depth : simulation_.constraints->penetration(simulation_.state.x))
     record_.max_penetration = std::max(record_.max_penetration, depth);
   record_.crossings = Sheets(simulation_.cloths, simulation_.state.x).crossings();
@@ -345,8 +354,8 @@ int run(const Scene& scene, const RunOptions& options) {
   Simulation simulation = make_simulation(scene);
   catch_interrupts();
   simulation.keep_outgrown = false;
-  Run run(simulation,
-          options);  // a run that cannot begin ends with one line, and that is not one of these messages
+  Run run(simulation, options);
+  // The messages come after this, because a run that cannot begin ends with one line.
   if (!options.quiet)
     for (const std::string& message : simulation.messages)
       std::fprintf(stderr, "%s\n", one_line(message).c_str());

@@ -69,7 +69,10 @@ class Run {
   StepRow row_;
   Clock::time_point start_ = Clock::now();
   std::vector<double> strain_of_triangles_;  // scratch
-  bool framed_ = false;                      // there is a frame of the present state
+  VecX x_before_;                            // at the start of the step [m]
+  // The longest way of a particle in the last step, over the length of the step [m/s]: moves without velocity count.
+  double fastest_way_ = 0;
+  bool framed_ = false;  // there is a frame of the present state
   bool settled_ = false;
   double last_motion_;         // s
   double settled_since_ = -1;  // s; -1: something moves

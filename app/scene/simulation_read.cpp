@@ -123,8 +123,10 @@ SimulationOptions read_simulation(const Table* given) {
              "also decides between \"settled\" and \"moving\" in run.json");
   table.finish();
   if (options.frame_rate * options.time_step > 10)
-    table.fail("frame_rate", "is more than ten frames in a step of " + rounded(options.time_step, 4) +
-                                 " s, which would be cut as often; check the units");
+    table.fail(table.has("frame_rate") ? "frame_rate" : "time_step",
+               "a frame_rate of " + rounded(options.frame_rate, 4) +
+                   " Hz is more than ten frames in a time_step of " + rounded(options.time_step, 4) +
+                   " s, which would be cut as often; check the units");
   if (options.duration / options.time_step > 1e9)
     table.fail(
         table.has("time_step") ? "time_step" : "duration",

@@ -1,10 +1,13 @@
 #include "app/simulation/warnings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "app/scene/fabric_words.h"
 #include "app/simulation/schedule.h"
+#include "mesh/base/errors.h"
 #include "mesh/distance/triangle_crossings.h"
 #include "solver/forces/choi_ko.h"
 
@@ -50,6 +53,38 @@ void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
           " m/s");
     }
   }
+}
+
+// Which of a cloth's vertices start outside a body, but nearer to it than half of its margin.
+void tell_of_vertices_within_margin(const Scene& scene, Simulation& simulation) {
+  const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
+  std::vector<char> carried(simulation.system->masses().size(), 0);  // held, or moved along a path
+  for (const MovingPin& pin : simulation.constraints->moving_pins())
+    carried[static_cast<std::size_t>(pin.particle)] = 1;
+  for (const int i : simulation.constraints->pinned()) carried[static_cast<std::size_t>(i)] = 1;
+  for (const Cloth& cloth : simulation.cloths)
+    for (const MovingBody& body : bodies) {
+      const double margin = body.obstacle().margin;
+      int within = 0, nearest = -1;
+      double least = 0.5 * margin - cloth.imperfection;
+      for (int i = cloth.first_particle; i < cloth.end_particle; ++i) {
+        if (simulation.system->masses()[i] == 0 || carried[static_cast<std::size_t>(i)]) continue;
+        const double distance =
+            body.distance(simulation.state.x.segment<3>(3 * i)) - simulation.constraints->radius_of(i);
+        if (distance < 0 || distance >= 0.5 * margin - cloth.imperfection) continue;
+        ++within;
+        if (nearest < 0 || distance < least) nearest = i, least = distance;
+      }
+      if (within == 0) continue;
+      simulation.messages.push_back(
+          "note: " + counted(within, "vertex") + " of " + cloth.name + (within == 1 ? " starts" : " start") +
+          " nearer to " + body_name(body.obstacle(), scene.obstacles[body.number()].name) +
+          " than half of its margin of " + rounded(1000 * margin, 3) + " mm, the nearest (vertex " +
+          std::to_string(cloth.embedding.vertex(nearest)) + ") " + rounded(1000 * least, 3) +
+          " mm off it; cloth comes out to the margin at " +
+          rounded(scene.simulation.contact.recovery_speed, 3) +
+          " m/s: where that stretches it, a smaller margin helps");
+    }
 }
 
 // Where a body that is a mesh comes through a cloth between its vertices. Of a cloth with vertices inside that is told already.
@@ -146,10 +181,49 @@ void warn_if_coarse_for_folds(const ClothEntry& entry, const Cloth& cloth, Names
       (wrinkles ? "" : ", or set compression = 0.1, so that it wrinkles finer than the mesh"));
 }
 
+// How many vertices are at exactly the place of another one that they are not sewn to at once.
+int coincident(const Cloth& cloth) {
+  std::vector<char> sewn(cloth.mesh.positions.size(), 0);
+  for (const Cloth::Stitched& open : cloth.seams)
+    for (std::size_t k = 0; k < open.seam.pairs.size(); ++k)
+      if (open.seam.merge && open.seam.begins_closed(k))
+        sewn[static_cast<std::size_t>(open.seam.pairs[k].second)] = 1;
+  std::vector<std::array<double, 3>> places;
+  for (std::size_t v = 0; v < sewn.size(); ++v)
+    if (const Vec3& x = cloth.mesh.positions[v]; !sewn[v]) places.push_back({x[0], x[1], x[2]});
+  std::ranges::sort(places);
+  int count = 0;
+  for (std::size_t k = 0; k < places.size(); ++k)
+    count += (k > 0 && places[k] == places[k - 1]) || (k + 1 < places.size() && places[k] == places[k + 1]);
+  return count;
+}
+
+// Frames have floats, and no layers that are nearer to each other than those can tell.
+void check_place(const ClothEntry& entry, const Cloth& cloth, const VecX& x, Names& messages) {
+  const int first = 3 * cloth.first_particle, count = 3 * (cloth.end_particle - cloth.first_particle);
+  const double far = x.segment(first, count).cwiseAbs().maxCoeff(),
+               step = far * std::numeric_limits<float>::epsilon();
+  const std::string what = "cloth " + cloth.name + ": reaches " + rounded(far, 3) +
+                           " m from the origin, where the floats of frames tell places to " +
+                           rounded(1000 * step, 2) + " mm only";
+  if (step > 0.1 * entry.self.thickness)
+    throw InputError(entry.where + ": " + what + ", too coarse for layers " +
+                     rounded(1000 * entry.self.thickness, 3) +
+                     " mm apart; move the scene nearer to the origin, or set self_contact = false");
+  if (step > 0.01 * entry.self.thickness)
+    messages.push_back("warning: " + what + ": layers " + rounded(1000 * entry.self.thickness, 3) +
+                       " mm apart may be held up; move the scene nearer to the origin");
+}
+
 // What contact of cloth with cloth takes for granted.
 void tell_of_self_contact(const ClothEntry& entry, const Cloth& cloth, Names& messages) {
   constexpr double coarse = 20;  // edges that long, in thicknesses
   if (!entry.self_contact) return;
+  if (const int count = coincident(cloth); count > 0)
+    messages.push_back(
+        "warning: cloth " + cloth.name + ": " + std::to_string(count) +
+        " of its vertices are at the same place as another one: triangles that meet there may pass "
+        "through each other, self_contact or not; weld them in a modeller");
   const std::string start = "note: cloth " + cloth.name + ": ";
   if (!entry.fabric_record.thickness)
     messages.push_back(start + "no thickness is given: layers rest " +
@@ -272,11 +346,14 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
   }
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
     warn_if_coarse_for_folds(scene.cloths[k], simulation.cloths[k], simulation.messages);
+    if (scene.cloths[k].self_contact)
+      check_place(scene.cloths[k], simulation.cloths[k], simulation.state.x, simulation.messages);
     tell_of_self_contact(scene.cloths[k], simulation.cloths[k], simulation.messages);
   }
   for (const SoftEntry& soft : scene.softs) tell_of_self_contact(soft, simulation.messages);
   for (const RopeEntry& rope : scene.ropes) tell_of_self_contact(rope, scene, simulation.messages);
   warn_of_vertices_inside(scene, simulation);
+  tell_of_vertices_within_margin(scene, simulation);
   warn_of_crossed_bodies(scene, simulation);
   warn_of_overlapping_bodies(scene, simulation);
   warn_if_coarse(scene, simulation);

@@ -1,8 +1,11 @@
 #include "solver/assembly/imperfection.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <span>
 
 #include "mesh/triangles/extent.h"
 #include "mesh/triangles/normals.h"
@@ -26,6 +29,20 @@ double waves_at(const Vec3& q) {
   return sum;
 }
 
+// Calls f(vertices) for every place, with the vertices that are at exactly this place, ascending.
+template <class F>
+void for_places(const std::vector<Vec3>& positions, const F& f) {
+  std::vector<int> order(positions.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto place = [&](int v) { return std::array{positions[v][0], positions[v][1], positions[v][2]}; };
+  std::ranges::stable_sort(order, {}, place);
+  for (auto begin = order.begin(); begin != order.end();) {
+    const auto end = std::find_if(begin, order.end(), [&](int v) { return place(v) != place(*begin); });
+    f(std::span<const int>(begin, end));
+    begin = end;
+  }
+}
+
 }  // namespace
 
 std::vector<Vec3> imperfection(const TriangleMesh& mesh, const TriangleMesh& rest, double amplitude) {
@@ -37,8 +54,14 @@ std::vector<Vec3> imperfection(const TriangleMesh& mesh, const TriangleMesh& res
   std::vector<Vec3> moved(mesh.positions.size(), Vec3::Zero());
   const double L = box.isEmpty() ? 0 : box.diagonal().norm();
   if (!(L > 0) || amplitude == 0) return moved;
-  for (std::size_t v = 0; v < moved.size(); ++v)
-    moved[v] = amplitude * waves_at((at[v] - box.min()) / L) * normals[v];
+  for_places(mesh.positions, [&](std::span<const int> here) {
+    Vec3 normal = Vec3::Zero();
+    for (const int v : here) normal += normals[v];
+    if (normal.norm() < 1e-6) return;  // they look opposite ways
+    if (here.size() > 1) normal.normalize();
+    const Vec3 way = amplitude * waves_at((at[here[0]] - box.min()) / L) * normal;
+    for (const int v : here) moved[v] = way;
+  });
   return moved;
 }
 

@@ -46,10 +46,10 @@ inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filte
     r = b;
   const double whole = std::sqrt(dot(b, b)) + std::sqrt(dot(r, r));
   filter.apply(r);
-  double acting = std::sqrt(dot(r, r));
-  if (acting < round_off * whole) {
+  const double acting = std::sqrt(dot(r, r));
+  if (std::isfinite(whole) && acting < round_off * whole) {
     r.setZero();
-    acting = 0;
+    return 0;
   }
   return std::min(std::max(acting, options.scale), options.most_scale);
 }
