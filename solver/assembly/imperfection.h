@@ -18,7 +18,8 @@ inline constexpr double woven_imperfection = 1e-6;  // m, where nothing else is 
 
 // How far each vertex of the mesh is moved [m], by at most `amplitude` [m]. Triangle k of `rest` is triangle k of
 // the mesh. A vertex whose triangles have no normal stays. Vertices at exactly the same place are moved together, along
-// the sum of their normals, so that panels that are not joined do not begin through each other; where these normals cancel they stay.
+// the sum of their normals, so that panels that are not joined do not begin through each other. Where these normals cancel
+// they stay.
 std::vector<Vec3> imperfection(const TriangleMesh& mesh, const TriangleMesh& rest, double amplitude);
 
 }  // namespace drape
