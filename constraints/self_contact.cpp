@@ -219,7 +219,7 @@ void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<Movi
       stiffen(c, step);
       const Vec3 p = c.now = c.at(ahead_);
       const double drag = c.drag_at(p).norm();
-      c.active = c.linear_push(p) > 0;
+      c.active = c.before > 0 || c.linear_push(p) > 0;  // what pushed in the last step is likely to go on
       c.share = drag > 0 ? std::min(1.0, c.friction * c.push / drag) : 1;
     }
   });

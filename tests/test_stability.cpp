@@ -206,6 +206,7 @@ TEST_CASE("drape stability: table, JSON and CSV of one search", "[stability]") {
                                        {"stability s.toml --time 0", "--time 0"},
                                        {"stability s.toml --longest 9", "--longest 9: is longer than a run"},
                                        {"stability s.toml --shortest 1", "--shortest"},
+                                       {"stability s.toml --longest 1ns", "give --shortest, too"},
                                        {"stability s.toml --precision 3", "--precision 3"}}) {
     INFO(words);
     CHECK(desk.said(desk.drape(words)) == 2);

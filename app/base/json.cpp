@@ -86,6 +86,15 @@ std::string compact_json_text(const Json& json) {
   return converted(json).dump(-1, ' ', false, Library::error_handler_t::replace);
 }
 
+bool is_utf8(std::string_view text) {
+  try {
+    Library(std::string(text)).dump();
+    return true;
+  } catch (const Library::type_error&) {
+    return false;
+  }
+}
+
 Json parse_json(std::string_view text, const std::string& name) {
   const auto not_too_deep = [&](int depth, Library::parse_event_t, Library&) {
     if (depth > deepest) throw InputError(name + ": lists are nested deeper than " + std::to_string(deepest));

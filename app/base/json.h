@@ -43,6 +43,8 @@ struct Json {
 std::string json_text(const Json& json);
 std::string compact_json_text(const Json& json);  // in one line
 
+bool is_utf8(std::string_view text);
+
 // Reads JSON from a text. Throws InputError "run.json:3: is not JSON: ...".
 Json parse_json(std::string_view text, const std::string& name);
 

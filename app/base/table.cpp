@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "mesh/base/errors.h"
 
@@ -68,6 +69,9 @@ double quantity(const Node& node, const Dimension& dimension, Range range) {
     throw InputError(expected(dimension));
   } else if (dimension.needs_unit) {
     throw InputError("has no unit; " + expected(dimension));
+  } else if (&dimension == &dimension::angle && std::abs(value) > 2 * std::numbers::pi) {
+    throw InputError("has no unit, and as radians it is " + rounded(value / (2 * std::numbers::pi), 3) +
+                     " turns; write \"" + rounded(value, 6) + " deg\" or \"" + rounded(value, 6) + " rad\"");
   }
   if (!std::isfinite(value)) throw InputError("is not a finite number; " + expected(dimension));
   const std::string noun(dimension.noun);

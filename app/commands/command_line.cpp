@@ -447,6 +447,14 @@ int parse_and_run(int argc, char** argv) {
   return exit_code;
 }
 
+// run.json names files in UTF-8, and a name in anything else could not be found again.
+void check_encoding(int argc, char** argv) {
+  for (int k = 1; k < argc; ++k)
+    if (!is_utf8(argv[k]))
+      throw InputError("word " + std::to_string(k) +
+                       " of the command is not UTF-8; give the file a name that is");
+}
+
 int fail(int exit_code, const std::string& what) {
   std::fprintf(stderr, "error: %s\n", one_line(what).c_str());
   return exit_code;
@@ -456,6 +464,7 @@ int fail(int exit_code, const std::string& what) {
 
 int command_line(int argc, char** argv) {
   try {
+    check_encoding(argc, argv);
     return parse_and_run(argc, argv);
   } catch (const InputError& error) {
     return fail(2, error.what());

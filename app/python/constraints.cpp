@@ -124,6 +124,8 @@ void add_constraints(py::module_& m) {
           [](const Constraints& constraints, const State& state) {
             require_free(&constraints);
             require_free(&state);
+            if (state.v.size() != state.x.size() || !state.x.allFinite())
+              throw py::value_error("state: its positions are not finite, or not as many as its velocities");
             return copied(constraints.penetration(state.x));
           },
           "state"_a, "(n,) [m]: how deep each particle is inside a body, 0 outside.")

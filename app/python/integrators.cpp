@@ -7,6 +7,7 @@
 #include "app/python/arrays.h"
 #include "app/python/in_use.h"
 #include "app/python/linear.h"
+#include "app/python/released.h"
 #include "app/python/reports.h"
 #include "mesh/base/threads.h"
 #include "solver/integrators/integrator.h"
@@ -82,7 +83,7 @@ struct Stepper {
     const InUse in_use({this, system.get(), constraints.get(), solver.get(), &state});
     StepReport report;
     {
-      const py::gil_scoped_release release;
+      const Released released;
       report = integrator->advance(state, h);
     }
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();  // Ctrl-C: the step is done all the same

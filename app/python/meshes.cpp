@@ -7,6 +7,7 @@
 
 #include "app/base/words.h"
 #include "app/python/arrays.h"
+#include "app/python/released.h"
 #include "mesh/obj/examine.h"
 #include "mesh/obj/obj.h"
 #include "mesh/triangles/generate.h"
@@ -77,7 +78,7 @@ void write(const fs::path& path, const TriangleMesh& mesh, const py::object& pos
   if (all.size() != mesh.positions.size())
     throw py::value_error("positions: expected an array of shape (" + std::to_string(mesh.vertex_count()) +
                           ", 3), but got (" + std::to_string(all.size()) + ", 3)");
-  py::gil_scoped_release release;
+  const Released released;
   write_obj(path, mesh, all);
 }
 
@@ -184,7 +185,7 @@ void add_meshes(py::module_& m) {
 
   m.def(
       "read_obj", [](const fs::path& path) { return read_obj(path); }, py::arg("path"),
-      py::call_guard<py::gil_scoped_release>(),
+      py::call_guard<Released>(),
       "Reads an OBJ file: polygons, uv, groups and materials are kept for write_obj.\n"
       "ValueError when it is none, or has a number that is not finite or a face beyond its vertices.");
   m.def(

@@ -1,6 +1,8 @@
 // Bodies as surfaces that answer signed distance and normal.
 #include "app/python/shapes.h"
 
+#include "app/python/released.h"
+
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -89,7 +91,7 @@ void add_mesh_bodies(py::module_& m) {
                           "A triangle mesh as a body: closed, with an inside, or a thick surface.\n"
                           "[Baerentzen & Aanaes 2005]")
       .def(py::init([](const TriangleMesh& mesh) {
-             py::gil_scoped_release release;
+             const Released released;
              return MeshSurface{std::make_shared<const SurfaceDistance>(mesh)};
            }),
            "mesh"_a, "The mesh is copied. ValueError when no triangle has an area.")
@@ -100,7 +102,7 @@ void add_mesh_bodies(py::module_& m) {
       });
   py::class_<LevelSetSurface>(m, "LevelSetBody", "A closed mesh as a grid of distances: quicker to ask.")
       .def(py::init([](const TriangleMesh& mesh, double voxel) {
-             py::gil_scoped_release release;
+             const Released released;
              return LevelSetSurface{
                  std::make_shared<const LevelSet>(LevelSet::from_mesh(mesh, {.voxel = voxel}))};
            }),

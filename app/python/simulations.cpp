@@ -7,6 +7,7 @@
 #include "app/python/arrays.h"
 #include "app/python/in_use.h"
 #include "app/python/linear.h"
+#include "app/python/released.h"
 #include "app/python/reports.h"
 #include "app/python/scenes.h"
 #include "app/run/run.h"
@@ -25,6 +26,7 @@ using namespace py::literals;
 struct Whole {
   Simulation simulation;
   SystemRecording recording;
+  int runs_begun = 0;
 
   explicit Whole(const Scene& scene) : simulation(make_simulation(scene)) {
     simulation.use([this, wanted = scene.simulation](System& system, Constraints& constraints) {
@@ -74,7 +76,7 @@ Scene scene_of(const py::object& given, const py::dict& settings, const std::opt
 
 Shared made(const py::object& given, const py::dict& settings, const std::optional<fs::path>& folder) {
   const Scene scene = scene_of(given, settings, folder);
-  const py::gil_scoped_release release;
+  const Released released;
   if (scene.simulation.threads > 0) set_threads(scene.simulation.threads);
   return std::make_shared<Whole>(scene);
 }
@@ -120,25 +122,33 @@ Frames frames_of(const std::string& word) {
   throw py::value_error("frames: there is no '" + word + "'; " + suggestion(word, {"pc2", "obj", "none"}));
 }
 
-// A run that is under way: nobody else steps the simulation until it is finished.
+// A run that is under way. Where it writes files, nobody else steps the simulation until it is finished; a run without
+// files may be left in its middle, and ends where another one begins.
 class PartialRun {
  public:
   PartialRun(Shared whole, const std::optional<fs::path>& out, const std::string& frames,
              std::optional<double> duration, std::optional<double> time_step)
-      : whole_(std::move(whole)), in_use_(std::in_place, std::vector<const void*>{whole_.get()}) {
+      : whole_(std::move(whole)) {
+    require_free(&whole_->simulation.state);
+    require_free(whole_.get());
+    if (out) in_use_.emplace(std::vector<const void*>{whole_.get()});
     const RunOptions options{out.value_or(fs::path()), frames_of(frames), true, duration, time_step};
-    const py::gil_scoped_release release;
+    const Released released;
     run_.emplace(whole_->simulation, options);
+    number_ = ++whole_->runs_begun;
   }
 
   bool over() const { return !run_ || run_->over(); }
 
   RunStep step() {
     if (over()) throw py::value_error("the run is over");
+    if (number_ != whole_->runs_begun)
+      throw std::runtime_error(
+          "this loop over the steps is over: another run of the simulation has begun since its last step");
     const InUse state(used());
     StepRow row;
     {
-      const py::gil_scoped_release release;
+      const Released released;
       row = run_->step();
     }
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();  // Ctrl-C: the step is done all the same
@@ -150,7 +160,7 @@ class PartialRun {
     if (!run_) throw py::value_error("the run is finished");
     in_use_.reset();
     const InUse all({whole_.get(), &whole_->simulation.state, this});
-    const py::gil_scoped_release release;
+    const Released released;
     const std::string json = run_json(run_->finish());
     run_.reset();
     return json;
@@ -168,6 +178,7 @@ class PartialRun {
   }
 
   Shared whole_;
+  int number_ = 0;
   std::optional<InUse> in_use_;
   std::optional<Run> run_;
 };
@@ -256,7 +267,7 @@ void add_simulations(py::module_& m) {
           },
           "the last LinearSystem that was solved while record_systems was True, a copy; or None");
   add_runs(m);
-  m.def("view_html", &view_html, "folder"_a, py::call_guard<py::gil_scoped_release>(),
+  m.def("view_html", &view_html, "folder"_a, py::call_guard<Released>(),
         "The page that plays an output folder, as `drape view` writes it.");
   m.def("has_viewer", &has_viewer, "whether the viewer is in this build");
 }

@@ -7,6 +7,7 @@
 #include "app/python/arrays.h"
 #include "app/python/in_use.h"
 #include "app/python/linear.h"
+#include "app/python/released.h"
 
 namespace drape::app::python {
 namespace {
@@ -28,8 +29,10 @@ SolveReport solve(LinearSolver& solver, const LinearSystem& system, std::optiona
                   int max_iterations) {
   if (tolerance && !(*tolerance > 0 && *tolerance < 1))
     throw py::value_error("tolerance: expected a part of the residual, greater than 0 and less than 1");
+  if (max_iterations < 0)
+    throw py::value_error("max_iterations: expected a number of iterations, or 0 for the usual limit");
   const InUse in_use({&solver});
-  const py::gil_scoped_release release;
+  const Released released;
   SolveReport report;
   LinearOptions options = system.options;
   if (tolerance) options.tolerance = *tolerance;

@@ -1,5 +1,8 @@
 #include "app/recording/output.h"
 
+#include <signal.h>
+
+#include <cerrno>
 #include <charconv>
 #include <system_error>
 #include <utility>
@@ -50,6 +53,22 @@ bool is_frame_of(const std::string& name, const fs::path& frames, const fs::path
   return file.starts_with(name + "_") && file.ends_with(".obj") && same(frames, folder);
 }
 
+// Halves of files, .NAME.PID.part, of programs that were killed.
+void remove_dead_parts(const fs::path& folder) {
+  std::error_code ignored;
+  std::vector<fs::path> dead;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(".") || !name.ends_with(".part")) continue;
+    const auto number = name.rfind('.', name.size() - 6) + 1;
+    int process = 0;
+    if (std::from_chars(name.data() + number, name.data() + name.size(), process).ec == std::errc() &&
+        process > 0 && kill(process, 0) != 0 && errno == ESRCH)
+      dead.push_back(entry.path());
+  }
+  for (const fs::path& path : dead) fs::remove(path, ignored);
+}
+
 }  // namespace
 
 void make_output_folder(const fs::path& folder, const std::vector<std::string>& files) {
@@ -64,6 +83,7 @@ void make_output_folder(const fs::path& folder, const std::vector<std::string>& 
     throw InputError(folder.string() + ": the output folder cannot be written; choose another with --out");
   }
   for (const std::string& file : files) AtomicFile(folder / file);  // not kept
+  remove_dead_parts(folder);
 }
 
 Output::Output(fs::path folder, const Scene& scene, const Simulation& simulation, Frames frames)
@@ -84,6 +104,10 @@ Output::Output(fs::path folder, const Scene& scene, const Simulation& simulation
   }
   bodies_.open();
   steps_.emplace(folder_ / "steps.csv");
+  if (frames_ != Frames::obj) return;
+  // These frames appear one by one, and must not be taken for those of an earlier run.
+  for (const char* file : {"run.json", "steps.csv"}) fs::remove(folder_ / file);
+  remove_older_frames();
 }
 
 fs::path Output::cloth_path(const Cloth& cloth, const char* extension) const {
@@ -97,15 +121,14 @@ void Output::spare_inputs(const Scene& scene) const {
   Names framed = bodies_.frame_names();
   for (const Cloth& cloth : simulation_.cloths) {
     results.push_back(cloth_path(cloth, ".obj"));
-    if (frames_ == Frames::pc2) results.push_back(cloth_path(cloth, ".pc2"));
+    results.push_back(cloth_path(cloth, ".pc2"));  // which is removed where it is not written
     framed.push_back(cloth.name);
   }
   for (const fs::path& input : inputs_of(scene)) {
     bool replaced = false;
     for (const fs::path& result : results) replaced = replaced || same(result, input);
-    if (frames_ == Frames::obj)
-      for (const std::string& name : framed)
-        replaced = replaced || is_frame_of(name, folder_ / "frames", input);
+    for (const std::string& name : framed)
+      replaced = replaced || is_frame_of(name, folder_ / "frames", input);
     if (replaced)
       throw InputError(input.string() +
                        ": the scene is made from it and it would be overwritten; choose another --out");
@@ -150,32 +173,43 @@ void Output::finish(const State& state, RunRecord& record) {
 
   for (Pc2Writer& cache : caches_) cache.keep();
   for (FrameFields& fields : fields_) fields.keep();
-  for (const Cloth& cloth : simulation_.cloths)  // an earlier run may have had another mesh of that name
-    if (frames_ != Frames::none && !has_polygons(cloth.mesh))
-      fs::remove(field_path(folder_, cloth.name, "triangles"));
   steps_->keep();
   for (AtomicFile& text : texts) text.keep();
-  if (frames_ == Frames::obj && !record.interrupted && !record.failure) remove_later_frames();
+  remove_older_caches();
+  if (frames_ != Frames::obj) remove_older_frames();
   list_written();
 }
 
-// Those of an earlier, longer run: they would go on where this one ends.
-void Output::remove_later_frames() const {
+// What an earlier run wrote of its frames and this one does not: it would show another motion beside the new mesh,
+// or belong to another mesh of that name.
+void Output::remove_older_caches() const {
+  for (const Cloth& cloth : simulation_.cloths) {
+    if (frames_ != Frames::pc2) fs::remove(cloth_path(cloth, ".pc2"));
+    if (frames_ == Frames::none)
+      for (const char* field : {"velocity", "strain", "contact"})
+        fs::remove(field_path(folder_, cloth.name, field));
+    if (frames_ == Frames::none || !has_polygons(cloth.mesh))
+      fs::remove(field_path(folder_, cloth.name, "triangles"));
+  }
+  if (!bodies_.has_poses()) fs::remove(folder_ / "bodies.csv");
+}
+
+// frames/NAME_0001.obj and so on of an earlier run.
+void Output::remove_older_frames() const {
+  if (!fs::is_directory(folder_ / "frames")) return;
   Names names = bodies_.frame_names();
   for (const Cloth& cloth : simulation_.cloths) names.push_back(cloth.name);
-  std::vector<fs::path> later;
+  std::vector<fs::path> older;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "frames"))
     for (const std::string& name : names) {
       const std::string file = entry.path().filename().string(), start = name + "_";
       int number = 0;
-      if (!file.starts_with(start) ||
-          std::from_chars(file.data() + start.size(), file.data() + file.size(), number).ec != std::errc())
-        continue;
-      if (number > frame_count() && entry.path() == frame_path(folder_, name, number) &&
-          entry.is_regular_file())
-        later.push_back(entry.path());
+      if (file.starts_with(start) &&
+          std::from_chars(file.data() + start.size(), file.data() + file.size(), number).ec == std::errc() &&
+          entry.path() == frame_path(folder_, name, number) && entry.is_regular_file())
+        older.push_back(entry.path());
     }
-  for (const fs::path& path : later) fs::remove(path);
+  for (const fs::path& path : older) fs::remove(path);
 }
 
 void Output::list_written() {

@@ -92,6 +92,7 @@ struct RunRecord {
   long torn = 0;                     // edges of cloth that were cut
   std::optional<double> first_torn;  // s, at the end of the step that cut the first
   bool settled = false, interrupted = false;
+  bool missed = false;  // cloth fell past all bodies
   std::string state_hash;
   std::string frames;               // how they were written: pc2, obj, none
   std::vector<double> frame_times;  // s, the times of the states in the frames

@@ -69,6 +69,20 @@ double last_motion(const Scene& scene, const Simulation& simulation) {
   return last;
 }
 
+Eigen::AlignedBox3d box_about(const Cloth& cloth, const VecX& x) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& place : cloth.embedding.positions(x)) box.extend(place);
+  return box;
+}
+
+// Schedules count from zero.
+double start_of(const State& state) {
+  if (!(state.time >= 0) || !std::isfinite(state.time))
+    throw InputError("the time of the state is " + rounded(state.time, 6) +
+                     " s: it is a number that is not negative");
+  return state.time;
+}
+
 StepGrid grid_of(const SimulationOptions& wanted, const std::optional<double>& time_step) {
   if (!time_step) return StepGrid(wanted.time_step, wanted.frame_rate);
   if (!(*time_step > 0) || !std::isfinite(*time_step))
@@ -82,6 +96,9 @@ double end_of(const SimulationOptions& wanted, const StepGrid& grid, double star
   if (!duration) return std::max(start, wanted.duration);
   if (!(*duration >= 0) || !std::isfinite(*duration))
     throw InputError("duration = " + rounded(*duration, 6) + " s: a duration is not negative");
+  if (*duration / grid.step() > most_steps)
+    throw InputError("duration = " + rounded(*duration, 6) + " s: would take " +
+                     rounded(*duration / grid.step(), 3) + " steps; check the units");
   return grid.rounded(start + *duration);
 }
 
@@ -91,10 +108,11 @@ Run::Run(Simulation& simulation, const RunOptions& options)
     : wanted_(simulation.scene->simulation),
       simulation_(simulation),
       grid_(grid_of(wanted_, options.time_step)),
-      end_time_(end_of(wanted_, grid_, simulation.state.time, options.duration)),
+      end_time_(end_of(wanted_, grid_, start_of(simulation.state), options.duration)),
       loop_(simulation, Schedule(grid_, simulation.state.time, end_time_)),
       progress_(end_time_, options.quiet),
       last_motion_(last_motion(*simulation.scene, simulation)) {
+  for (const Cloth& cloth : simulation_.cloths) begins_.push_back(box_about(cloth, simulation_.state.x));
   if (!options.out.empty()) output_.emplace(options.out, *simulation.scene, simulation, options.frames);
   describe();
   write_due_frame();
@@ -212,6 +230,7 @@ void Run::record_step(const StepRow& row) {
   record_.self_contacts = report.self_contacts;
   record_.self_contacts_max = std::max(record_.self_contacts_max, report.self_contacts);
   record_.self_guarded += report.self_guarded;
+  touched_ = touched_ || report.contacts > 0;
   record_.torn += report.torn;
   if (report.torn > 0 && !record_.first_torn) record_.first_torn = row.time;
   record_.pinched = report.pinched;
@@ -311,6 +330,23 @@ void Run::tell_of_open_seams() {
     }
 }
 
+// Cloth that fell past all bodies, which is most often a body in another place or in another unit.
+void Run::tell_of_misses() {
+  const Vec3 gravity = simulation_.system->gravity_acceleration();
+  if (touched_ || simulation_.constraints->bodies().empty() || gravity.isZero()) return;
+  for (std::size_t k = 0; k < simulation_.cloths.size(); ++k) {
+    const Cloth& cloth = simulation_.cloths[k];
+    const Vec3 way = box_about(cloth, simulation_.state.x).center() - begins_[k].center();
+    const double fell = way.dot(gravity.normalized());
+    bool told = !(fell > begins_[k].diagonal().norm());
+    record_.missed = record_.missed || !told;
+    tell_once(told,
+              "warning: " + one_line(cloth.name) + " fell by " + rounded(fell, 3) +
+                  " m and nothing touched a body; is a body where the cloth falls, and in the same unit? "
+                  "'drape view' shows where they are");
+  }
+}
+
 // Where a cloth tears it gets more particles and edges, and fewer diagonals.
 void Run::describe_tears() {
   for (std::size_t k = 0; k < record_.cloths.size(); ++k) {
@@ -339,6 +375,7 @@ const RunRecord& Run::finish() {
   record_.crossings_max = std::max(record_.crossings_max, record_.crossings);
   if (record_.crossings > record_.crossings_at_start) tell_of_crossings(record_.crossings);
   tell_of_open_seams();
+  tell_of_misses();
   record_.bodies = body_records(simulation_);
   record_.state_hash = state_hash(simulation_.state);
   record_.wall_seconds = seconds_since(start_);

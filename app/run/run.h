@@ -57,6 +57,7 @@ class Run {
   void note_failure(const StepFailure& failure);
   void tell_once(bool& told, const std::string& line);
   void tell_of_open_seams();
+  void tell_of_misses();
 
   const SimulationOptions& wanted_;
   Simulation& simulation_;
@@ -77,7 +78,9 @@ class Run {
   double last_motion_;         // s
   double settled_since_ = -1;  // s; -1: something moves
   bool told_cut_ = false, told_not_converged_ = false, told_crossings_ = false;
-  int first_crossings_ = 0;  // of the start, as it is written
+  int first_crossings_ = 0;                  // of the start, as it is written
+  bool touched_ = false;                     // a body, at the end of a step
+  std::vector<Eigen::AlignedBox3d> begins_;  // about each cloth [m]
   std::string failure_;
 };
 

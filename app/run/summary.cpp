@@ -50,7 +50,7 @@ std::string hints(const RunRecord& record, const Output& output) {
     text += "hint: " + counted(record.steps_not_converged, "step") +
             " ended before the solve reached its tolerance or the contacts had settled (by up to " +
             rounded(100 * record.contact_residual, 2) + " % of the weight)\n";
-  if (record.state() == "moving" && !record.interrupted)
+  if (record.state() == "moving" && !record.interrupted && !record.missed)
     text += "hint: it still moves: give it a longer duration\n";
   return text;
 }

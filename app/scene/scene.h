@@ -182,6 +182,8 @@ struct ObstacleEntry {
   std::string where;
 };
 
+constexpr double most_steps = 1e9;  // of a run
+
 struct SimulationOptions {
   double duration = 2;           // s
   double time_step = 0.01;       // s

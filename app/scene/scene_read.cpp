@@ -31,6 +31,8 @@ std::string read_name(Table& table, const fs::path& mesh) {
   const bool good =
       !name.empty() && name.front() != '.' &&
       std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < 32 || c == '/' || c == '\\'; });
+  if (!good && !table.has("name") && name.find('\\') != name.npos)
+    table.fail("mesh", "there is no such file; a path is written with /, also of Windows");
   if (!good)
     table.fail("name", "a name is used for files: it may not be empty, begin with a dot or hold a slash");
   return name;

@@ -127,9 +127,10 @@ SimulationOptions read_simulation(const Table* given) {
                "a frame_rate of " + rounded(options.frame_rate, 4) +
                    " Hz is more than ten frames in a time_step of " + rounded(options.time_step, 4) +
                    " s, which would be cut as often; check the units");
-  if (options.duration / options.time_step > 1e9)
+  constexpr double a_day = 24 * 3600;  // s
+  if (options.duration / options.time_step > most_steps)
     table.fail(
-        table.has("time_step") ? "time_step" : "duration",
+        options.duration > a_day || !table.has("time_step") ? "duration" : "time_step",
         "the run would take " + rounded(options.duration / options.time_step, 3) + " steps; check the units");
   return options;
 }

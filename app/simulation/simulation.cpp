@@ -1,6 +1,8 @@
 #include "app/simulation/simulation.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "app/simulation/obstacles.h"
 #include "app/simulation/parts.h"
@@ -21,12 +23,37 @@ void pin_down(const PinEntry& pin, const Cloth& cloth, const Scene& scene, Simul
   constraints.pin_to_body(particles, static_cast<int>(body - scene.obstacles.begin()), simulation.state.x);
 }
 
+bool move_alike(const PinEntry& a, const PinEntry& b) {
+  return a.follow == b.follow && !a.motion && !b.motion;
+}
+
+// Of two pins that hold a particle the first one counts.
+class PinsOfParticles {
+ public:
+  void add(const PinEntry& pin, const Cloth& cloth, Simulation& simulation) {
+    for (int i : pinned_particles(pin.rule, cloth, simulation.state.x)) {
+      const PinEntry* const first = first_.emplace(i, &pin).first->second;
+      if (first == &pin || move_alike(*first, pin) || !told_.emplace(first, &pin).second) continue;
+      simulation.messages.push_back("warning: " + pin.where + ": vertex " +
+                                    std::to_string(cloth.embedding.vertex(i)) + " of " +
+                                    one_line(cloth.name) + " is held by the pins of " + first->where +
+                                    " already, which move otherwise; it goes with those");
+    }
+  }
+
+ private:
+  std::map<int, const PinEntry*> first_;
+  std::set<std::pair<const PinEntry*, const PinEntry*>> told_;
+};
+
 void add_pins(const Scene& scene, Simulation& simulation) {
+  PinsOfParticles all;
   for (std::size_t k = 0; k < simulation.cloths.size(); ++k) {
     const Cloth& cloth = simulation.cloths[k];
     for (const PinEntry& pin : scene.pins_of(k)) {
       try {
         pin_down(pin, cloth, scene, simulation);
+        all.add(pin, cloth, simulation);
       } catch (const InputError& error) {
         throw InputError(pin.where + ": " + error.what());
       }

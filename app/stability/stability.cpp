@@ -64,8 +64,11 @@ StabilityOptions options_of(const StabilityWords& words, const Scene& scene) {
   if (options.longest > options.time)
     throw InputError("--longest " + words.longest + ": is longer than a run of " + rounded(options.time, 4) +
                      " s");
-  options.shortest = std::min(options.longest, options.time / 50000);
+  options.shortest = options.time / 50000;
   read(words.shortest, "--shortest", dimension::time, options.shortest);
+  if (options.shortest > options.longest && words.shortest.empty())
+    throw InputError("--longest " + words.longest + ": is shorter than the shortest step that is tried, " +
+                     rounded(options.shortest, 4) + " s; give --shortest, too");
   if (options.shortest > options.longest)
     throw InputError("--shortest: " + rounded(options.shortest, 4) + " s is longer than the longest step, " +
                      rounded(options.longest, 4) + " s");

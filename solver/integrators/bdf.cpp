@@ -56,7 +56,7 @@ class Bdf::ContactSolve {
         contacts_(contacts),
         report_(report),
         wanted_(bdf.options_.tolerance),
-        tolerance_(contacts.touches_anything() ? std::max(wanted_, 0.3 * std::sqrt(wanted_)) : wanted_) {
+        tolerance_(contacts.touches_anything() ? loose() : wanted_) {
     for (int i = 0; i < bdf.system_.particles(); ++i)
       contacts.set_inertia(i, bdf.A_.inertia(i) / bdf.k().scale[i]);
   }
@@ -107,6 +107,7 @@ class Bdf::ContactSolve {
   void changed(const ContactChange& change) {
     if (change.caught || change.faces) bdf_.history_.restart_touching(contacts_);
     if (change.met) {
+      tolerance_ = loose();  // the new contacts have to settle first
       const Stopwatch watch(report_.collide_ms);
       bdf_.system_.find_contacts({state_.time, bdf_.k().h, state_.x, state_.v, bdf_.k().h});
     }
@@ -118,6 +119,7 @@ class Bdf::ContactSolve {
   }
 
  private:
+  double loose() const { return std::max(wanted_, 0.3 * std::sqrt(wanted_)); }
   double reference() const {
     const LinearReport& linear = bdf_.linear_;
     return linear.residual > 0 ? linear.residual_impulse / linear.residual : bdf_.merit_.weight_impulse();

@@ -68,7 +68,7 @@ class Callbacks(Runs):
         self.assertEqual(simulation.time, 0.07)
 
     def test_what_is_false_and_what_is_not(self):
-        for result, steps in ((False, 1), (np.bool_(False), 1), (np.False_, 1), (np.bool_(True), 20), (None, 20)):
+        for result, steps in ((False, 1), (np.bool_(False), 1), (np.False_, 1), (np.bool_(True), 20), (None, 20), (0, 20), ("", 20)):
             with self.subTest(result=result, kind=type(result)):
                 self.assertEqual(self.simulation().run(callback=lambda step: result)["steps"], steps)
 
@@ -164,6 +164,26 @@ class Callbacks(Runs):
         simulation.run()
         self.assertEqual(simulation.time, 0.2)
 
+    def test_a_loop_left_open_does_not_bar_a_run(self):
+        for leave in (lambda s: s.run(0.05), lambda s: s.advance(), lambda s: next(iter(s))):
+            simulation = self.simulation()
+            steps = iter(simulation)
+            next(steps)
+            leave(simulation)
+            with self.assertRaisesRegex(RuntimeError, "another run of the simulation has begun"):
+                next(steps)
+            left = round((0.2 - simulation.time) / 0.01)
+            self.assertEqual(len(list(simulation)), left)
+
+    def test_a_run_that_cannot_be_is_refused(self):
+        simulation = self.simulation()
+        with self.assertRaisesRegex(ValueError, "check the units"):
+            simulation.run(1e300)
+        for time in (math.nan, -1.0):
+            simulation.state.time = time
+            with self.assertRaisesRegex(ValueError, "time of the state"):
+                simulation.run()
+
     def test_a_step_that_fails(self):
         simulation = self.simulation()
 
@@ -216,6 +236,15 @@ class Callbacks(Runs):
         self.assertGreater(counted[0], 200)
 
 
+LEFT_RUNNING = """
+import threading, time, drape
+simulation = drape.read_scene("scene.toml", {"simulation.duration": 1000})
+begun = threading.Event()
+threading.Thread(target=simulation.run, kwargs={"callback": lambda step: begun.set()}, daemon=True).start()
+begun.wait()
+time.sleep(0.05)
+"""
+
 INTERRUPTED = """
 import sys, drape
 simulation = drape.read_scene("scene.toml", {"simulation.duration": 1000})
@@ -247,6 +276,13 @@ class Interrupts(Runs):
         self.assertLessEqual(steps, record["steps"])
         self.assertLess(record["steps"], 50_000)
         self.assertEqual(record["state_hash"], said.split()[1])
+
+    def test_a_program_may_end_during_a_step(self):
+        for _ in range(3):
+            run = subprocess.run(
+                [sys.executable, "-c", LEFT_RUNNING], cwd=self.folder, capture_output=True, text=True, timeout=60
+            )
+            self.assertEqual((run.returncode, run.stderr), (0, ""))
 
 
 if __name__ == "__main__":

@@ -42,6 +42,9 @@ class Views(Workshop):
         self.assertEqual(mine.read_text(), "keep = True\n")
         drape.View(PAGE).save(mine, force=True)
         self.assertEqual(mine.read_text(encoding="utf-8"), PAGE)
+        for name in ("run.json", "steps.csv", "sheet.obj", "sheet.pc2"):
+            with self.assertRaisesRegex(ValueError, "a run's own files"):
+                drape.View(PAGE).save(self.folder / name, force=True)
         page = self.folder / "page.html"
         for height in (100, 200):  # a page of drape may be replaced
             drape.View('<meta name="generator" content="drape view">' + str(height)).save(page)

@@ -52,7 +52,10 @@ class Simulation(_drape.Simulation):
         return _drape.Run(self, None, "none", step, step).step()
 
     def __iter__(self) -> Iterator[_drape.RunStep]:
-        """The steps that are left of the scene's duration, one by one. Nothing is written."""
+        """The steps that are left of the scene's duration, one by one. Nothing is written.
+
+        The loop may be left at any step. RuntimeError in the next step when run() or advance() came in between.
+        """
         run = _drape.Run(self, None, "none")
         while not run.over:
             yield run.step()
@@ -80,7 +83,7 @@ class Simulation(_drape.Simulation):
             while not run.over:
                 step = run.step()
                 result = callback(step) if callback is not None else None
-                if result is not None and not result:
+                if isinstance(result, (bool, np.bool_)) and not result:
                     break
         except BaseException as first:
             try:

@@ -7,6 +7,8 @@ import os
 from pathlib import Path
 from typing import Union
 
+RUN_FILES = {"run.json", "steps.csv", "bodies.csv"}
+RUN_ENDINGS = {".obj", ".pc2", ".npy"}
 MARK = b'<meta name="generator" content="drape view">'  # of every page of drape
 
 
@@ -19,8 +21,11 @@ class View:
         self.height = height
 
     def save(self, path: Union[str, "os.PathLike[str]"], force: bool = False) -> None:
-        """Writes the page. ValueError when there is a file that is no page of drape, unless forced."""
+        """Writes the page. ValueError when there is a file that is no page of drape, unless forced, or when the name is
+        one of a run's own files, such as run.json or sheet.obj."""
         file = Path(path)
+        if file.name in RUN_FILES or file.suffix in RUN_ENDINGS:
+            raise ValueError(f"{file}: is a name of a run's own files, which are not replaced; choose another")
         if not force and file.exists() and MARK not in file.read_bytes()[:1000]:
             raise ValueError(f"{file}: is there already, and is no page of drape; choose another, or force=True")
         file.write_text(self.page, encoding="utf-8")

@@ -1,0 +1,30 @@
+// The interpreter goes on while one of these lives: other Python threads run during a step.
+//   At the end of the program Python ends a thread that asks for the interpreter's lock by unwinding its stack, which
+//   C++ answers by std::terminate() [CPython, PyEval_RestoreThread]. Such a thread stays where it is here instead, and the
+//   process ends with its main thread, as from Python 3.14 on.
+#pragma once
+
+#include <Python.h>
+#include <cxxabi.h>
+#include <unistd.h>
+
+namespace drape::app::python {
+
+class Released {
+ public:
+  Released() : thread_(PyEval_SaveThread()) {}
+  ~Released() {
+    try {
+      PyEval_RestoreThread(thread_);
+    } catch (const abi::__forced_unwind&) {
+      for (;;) pause();
+    }
+  }
+  Released(const Released&) = delete;
+  Released& operator=(const Released&) = delete;
+
+ private:
+  PyThreadState* thread_;
+};
+
+}  // namespace drape::app::python
