@@ -48,6 +48,7 @@ TEST_CASE("frames of a sequence are seen by the same camera", "[picture]") {
   const auto frames = shop.json("o/run.json")["frame_times"].size();
   REQUIRE(frames > 4);
   CHECK_THAT(drawn.out, StartsWith("wrote p_0001.png to p_000") && Contains("(" + std::to_string(frames)));
+  CHECK(shop.drape("picture o --frame 2,2 --size 160x120 -o twice.png").out == "wrote twice_0002.png\n");
   // The ball stands; below the sheet's reach its outline is the same in all of them.
   std::vector<int> lowest;
   Image first(1, 1, {});

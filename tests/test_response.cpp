@@ -180,14 +180,23 @@ TEST_CASE("a scene chooses the contact mode and a body its restitution", "[respo
   CHECK_THROWS_WITH(read({"simulation.contact=velocity", "simulation.integrator=bdf2"}),
                     Contains("simulation.contact") && Contains("bdf2") && Contains("symplectic-euler"));
 
-  const auto warned = [&](const std::vector<std::string>& words) {
+  const auto warned = [&](const std::vector<std::string>& words,
+                          const std::string& text = "restitution has no effect") {
     for (const std::string& message : make_simulation(read(words)).messages)
-      if (message.find("restitution has no effect") != message.npos) return true;
+      if (message.find(text) != message.npos) return true;
     return false;
   };
   CHECK(warned({"obstacle.ball.restitution=0.4"}));
   CHECK_FALSE(warned({"obstacle.ball.restitution=0.4", "simulation.contact=restitution"}));
   CHECK_FALSE(warned({}));
+
+  const std::vector<IntegratorInfo> known = integrators();
+  if (std::none_of(known.begin(), known.end(), [](const auto& one) { return one.name == "cvode-bdf"; }))
+    return;
+  const std::string momentum = "cvode-bdf does not keep its momentum";
+  CHECK(warned({"simulation.integrator=cvode-bdf", "obstacle.ball.mass=0.1"}, momentum));
+  CHECK_FALSE(warned({"simulation.integrator=cvode-bdf"}, momentum));
+  CHECK_FALSE(warned({"obstacle.ball.mass=0.1"}, momentum));
 }
 
 TEST_CASE("a step with a response allocates nothing", "[response]") {

@@ -134,6 +134,7 @@ TEST_CASE("a rope is written as a line, in every format that has lines", "[rope]
   REQUIRE(run.exit_code == 0);
   CHECK_THAT(run.out, Catch::Contains("7 particles, 1 m of rope"));
   CHECK(shop.drape("check rope.toml").exit_code == 0);
+  CHECK_THAT(shop.drape("check o").out, Catch::Contains("rope of 7 points"));
   const test::Json json = shop.json("o/run.json");
   CHECK(json["cloths"].empty());
   REQUIRE(json["ropes"].size() == 1);

@@ -25,7 +25,8 @@ struct Stage : Folder {
               const std::string& of_cloth = "") const {
     write("s.toml", "[simulation]\nframe_rate = 10\n" + of_run +
                         "\n[[cloth]]\nname = \"sheet\"\nmesh = \"sheet.obj\"\nfabric = \"cotton-poplin\"\n" +
-                        of_cloth + "\n[[obstacle]]\nshape = \"sphere\"\nradius = 0.1\ncentre = " + centre + "\n");
+                        of_cloth + "\n[[obstacle]]\nshape = \"sphere\"\nradius = 0.1\ncentre = " + centre +
+                        "\n");
     return drape("simulate s.toml --out o " + options);
   }
   std::set<std::string> of_frames() const {
@@ -65,8 +66,10 @@ TEST_CASE("halves of files of a program that was killed are taken away, and noth
   const Stage stage;
   REQUIRE(stage.run("duration = 0.1", "[3, 0, 0]", "--quiet").exit_code == 0);
   // No process has a number above 2^22 on Linux; that of this program is alive.
-  const std::string dead = "o/.sheet.pc2.99999999.part", alive = "o/.sheet.pc2." + std::to_string(getpid()) + ".part";
-  const std::set<std::string> others = {".part", ".sheet.pc2.x.part", "sheet.pc2.99999999.part", ".sheet.99999999"};
+  const std::string dead = "o/.sheet.pc2.99999999.part",
+                    alive = "o/.sheet.pc2." + std::to_string(getpid()) + ".part";
+  const std::set<std::string> others = {".part", ".sheet.pc2.x.part", "sheet.pc2.99999999.part",
+                                        ".sheet.99999999"};
   for (const std::string& name : others) stage.write("o/" + name, "mine");
   for (const std::string& name : {dead, alive}) stage.write(name, "half");
   REQUIRE(stage.run("duration = 0.1", "[3, 0, 0]", "--quiet").exit_code == 0);
@@ -89,7 +92,8 @@ TEST_CASE("of two pins that move otherwise the first one counts, which is told",
     REQUIRE(outcome.exit_code == 0);
     return has(outcome.err, "vertex 3 of sheet is held by the pins of");
   };
-  const std::string still = "{ vertices = [0, 3] }", moves = "{ vertices = [3], motion = { velocity = [1, 0, 0] } }",
+  const std::string still = "{ vertices = [0, 3] }",
+                    moves = "{ vertices = [3], motion = { velocity = [1, 0, 0] } }",
                     apart = "{ vertices = [2], motion = { velocity = [1, 0, 0] } }";
   CHECK(told(still + ", " + moves));
   CHECK(told(moves + ", " + still));
@@ -104,8 +108,7 @@ TEST_CASE("a run leaves no frames of an earlier one that it did not write itself
     REQUIRE(stage.run("duration = 0.2", "[3, 0, 0]", "--quiet --frames " + kind).exit_code == 0);
     return stage.of_frames();
   };
-  const std::set<std::string> fields = {"sheet.contact.npy", "sheet.strain.npy",
-                                        "sheet.velocity.npy"};
+  const std::set<std::string> fields = {"sheet.contact.npy", "sheet.strain.npy", "sheet.velocity.npy"};
   std::set<std::string> all = fields;
   all.insert("sheet.pc2");
   CHECK(frames("pc2") == all);

@@ -196,8 +196,13 @@ void check_folder(const std::filesystem::path& folder, const std::filesystem::pa
   const Recording recording(folder);
   std::printf("%s: %s", folder.c_str(), counted(recording.frames(), "frame").c_str());
   for (const RecordedShape& shape : recording.shapes())
-    if (!shape.body)
-      std::printf(", %s of %s", shape.name.c_str(), counted(shape.mesh.triangle_count(), "triangle").c_str());
+    if (!shape.body) {
+      const bool line = shape.mesh.triangle_count() == 0;  // a rope
+      std::printf(", %s of %s", shape.name.c_str(),
+                  (line ? counted(shape.mesh.vertex_count(), "point")
+                        : counted(shape.mesh.triangle_count(), "triangle"))
+                      .c_str());
+    }
   std::printf("\n");
   print_crossings(recording, mark);
   for (const std::string& missing : recording.missing()) std::printf("%s\n", one_line(missing).c_str());

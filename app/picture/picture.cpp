@@ -131,7 +131,9 @@ int picture(const PictureWords& words) {
   options.edges = words.edges;
   options.whole = words.whole;
   const std::vector<Subject> subjects = subjects_of(words);
-  const std::vector<PictureFile> files = files_of(words, subjects, options);
+  std::vector<PictureFile> files = files_of(words, subjects, options);
+  const auto same = [](const PictureFile& a, const PictureFile& b) { return a.path == b.path; };
+  files.erase(std::unique(files.begin(), files.end(), same), files.end());  // a frame that was named twice
   refuse_taken(files, words);
   std::size_t written = 0;
   try {

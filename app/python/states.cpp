@@ -45,7 +45,10 @@ State copy_of(const State& state) {
 void add_states(py::module_& m) {
   py::class_<State, std::shared_ptr<State>>(
       m, "State",
-      "The only thing a step changes: time [s], positions x [m] and velocities v [m/s].\n\n"
+      "What a step changes of the cloth: time [s], positions x [m] and velocities v [m/s]. What touched in "
+      "the last step and\n"
+      "where bodies with a mass are is not in it, so a run does not go on from a saved state as it would "
+      "have.\n\n"
       "x and v are views: writing into them changes the state. A state can be copied and pickled,\n"
       "to the last bit.")
       .def(py::init(&made), py::arg("x"), py::arg("v") = py::none(), py::arg("time") = 0.0,

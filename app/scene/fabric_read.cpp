@@ -34,8 +34,9 @@ void read_stretch(Table& table, Fabric& fabric) {
                       "of a strip pulled along the warp");
   both->read("weft", weave.stretch_weft, dimension::stretch, Range::positive,
              {"of a strip pulled along the weft", "as along the warp"});
-  both->read("shear", weave.shear, dimension::stretch, Range::positive,
-             {"force per width for a shear of 1 rad", "sqrt(warp weft) / (2 (1 + poisson))"});
+  both->read(
+      "shear", weave.shear, dimension::stretch, Range::positive,
+      {"force per width over the angle of a small shear [rad]", "sqrt(warp weft) / (2 (1 + poisson))"});
   both->read("poisson", weave.poisson, dimension::number, Range::any,
              "geometric mean of the Poisson's ratios of warp and weft");
   check_ratio(*both, weave.poisson);
@@ -51,11 +52,12 @@ void read_bend(Table& table, Fabric& fabric) {
   if (!both) return;
   refuse_misplaced(*both, "bend");
   Weave& weave = fabric.weave;
-  both->read_required("warp", fabric.bend, dimension::bend, Range::positive, "of a strip cut along the warp");
+  both->read_required("warp", fabric.bend, dimension::bend, Range::positive, "of cloth bent along the warp");
   both->read("weft", weave.bend_weft, dimension::bend, Range::positive,
-             {"of a strip cut along the weft", "as along the warp"});
+             {"of cloth bent along the weft", "as along the warp"});
   both->read("bias", weave.bend_bias, dimension::bend, Range::positive,
-             {"of a strip cut at 45 degrees", "as of a fabric with poisson, and equal along warp and weft"});
+             {"of wide cloth bent at 45 degrees to the threads",
+              "as of a fabric with poisson, and equal along warp and weft"});
   both->read("poisson", weave.bend_poisson, dimension::number, Range::any, "Poisson's ratio of bending");
   check_ratio(*both, weave.bend_poisson);
   both->finish();

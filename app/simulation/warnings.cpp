@@ -313,6 +313,18 @@ void warn_of_restitution(const Scene& scene, Names& messages) {
                          "\"; it needs contact = \"restitution\" and an explicit integrator");
 }
 
+// These settle contact once a step, and then an impulse that grew during the step is given back all at once.
+void warn_of_inner_steps(const Scene& scene, Names& messages) {
+  const std::string& integrator = scene.simulation.integrator;
+  if (!integrator.starts_with("cvode-") && !integrator.starts_with("arkode-")) return;
+  for (const ObstacleEntry& entry : scene.obstacles)
+    if (entry.obstacle.rigid)
+      messages.push_back(
+          "warning: " + body_name(entry.obstacle, entry.name) + ": " + integrator +
+          " does not keep its momentum with the cloth's, and may give a light body several times "
+          "the energy; implicit-euler keeps it");
+}
+
 void warn_of_time(const SimulationOptions& options, Names& messages) {
   constexpr double longest = 0.1;  // s: a fall of 5 cm within one step
   if (options.time_step > longest)
@@ -358,6 +370,7 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
   warn_of_overlapping_bodies(scene, simulation);
   warn_if_coarse(scene, simulation);
   warn_of_restitution(scene, simulation.messages);
+  warn_of_inner_steps(scene, simulation.messages);
   warn_of_time(scene.simulation, simulation.messages);
   tell_of_step(scene.simulation, simulation.messages);
   if (simulation.constraints->bodies().empty() && simulation.constraints->pinned().empty() &&
