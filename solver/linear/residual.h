@@ -51,7 +51,9 @@ inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filte
     r.setZero();
     return 0;
   }
-  return std::min(std::max(acting, options.scale), options.most_scale);
+  // No residual comes below what the projection leaves of all that acts.
+  return std::max(std::min(std::max(acting, options.scale), options.most_scale),
+                  round_off * whole / options.tolerance);
 }
 
 // The multiple of the guess at which y . S A S y / 2 - y . r, with r = S (b - A z), is least along it. Free fall, say, is right
