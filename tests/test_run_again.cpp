@@ -2,6 +2,8 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <filesystem>
 #include <set>
 #include <string>
 
@@ -33,7 +35,9 @@ struct Stage : Folder {
     std::set<std::string> found;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path / "o")) {
       const fs::path ending = entry.path().extension();
-      if (ending == ".pc2" || ending == ".npy") found.insert(entry.path().filename().string());
+      if (ending == ".pc2" || ending == ".npy" || ending == ".csv" ||
+          entry.path().parent_path().filename() == "frames")
+        found.insert(entry.path().filename().string());
     }
     return found;
   }
@@ -68,13 +72,26 @@ TEST_CASE("halves of files of a program that was killed are taken away, and noth
   // No process has a number above 2^22 on Linux; that of this program is alive.
   const std::string dead = "o/.sheet.pc2.99999999.part",
                     alive = "o/.sheet.pc2." + std::to_string(getpid()) + ".part";
-  const std::set<std::string> others = {".part", ".sheet.pc2.x.part", "sheet.pc2.99999999.part",
-                                        ".sheet.99999999"};
-  for (const std::string& name : others) stage.write("o/" + name, "mine");
-  for (const std::string& name : {dead, alive}) stage.write(name, "half");
+  const std::string young = "o/.sheet.obj.99999999.part";  // may be of another machine
+  const std::set<std::string> others = {".part",
+                                        ".5.part",
+                                        ".sheet.pc2.x.part",
+                                        "sheet.pc2.99999999.part",
+                                        ".sheet.99999999",
+                                        ".notes.99999999-draft.part"};
+  const auto hours_ago = [&](const std::string& name) {
+    fs::last_write_time(stage.path / name, fs::file_time_type::clock::now() - std::chrono::hours(2));
+  };
+  for (const std::string& name : others) {
+    stage.write("o/" + name, "mine");
+    hours_ago("o/" + name);
+  }
+  for (const std::string& name : {dead, alive, young}) stage.write(name, "half");
+  for (const std::string& name : {dead, alive}) hours_ago(name);
   REQUIRE(stage.run("duration = 0.1", "[3, 0, 0]", "--quiet").exit_code == 0);
   CHECK_FALSE(fs::exists(stage.path / dead));
   CHECK(fs::exists(stage.path / alive));
+  CHECK(fs::exists(stage.path / young));
   for (const std::string& name : others) CHECK(fs::exists(stage.path / "o" / name));
 }
 
@@ -85,7 +102,7 @@ TEST_CASE("a name that is not UTF-8 is refused", "[cli]") {
   CHECK(has(outcome.err, "word 2 of the command is not UTF-8"));
 }
 
-TEST_CASE("of two pins that move otherwise the first one counts, which is told", "[output]") {
+TEST_CASE("of two pins that may move otherwise the first one counts, which is told", "[output]") {
   const Stage stage;
   const auto told = [&](const std::string& pins) {
     const Outcome outcome = stage.run("duration = 0.1", "[3, 0, 0]", "", "pins = [" + pins + "]");
@@ -104,16 +121,51 @@ TEST_CASE("of two pins that move otherwise the first one counts, which is told",
 
 TEST_CASE("a run leaves no frames of an earlier one that it did not write itself", "[output]") {
   const Stage stage;
-  const auto frames = [&](const std::string& kind) {
-    REQUIRE(stage.run("duration = 0.2", "[3, 0, 0]", "--quiet --frames " + kind).exit_code == 0);
+  const std::string moves = "[3, 0, 0]\nmotion = { velocity = [1, 0, 0] }";
+  const auto run = [&](const std::string& kind, const std::string& ball) {
+    REQUIRE(stage.run("duration = 0.2", ball, "--quiet --frames " + kind).exit_code == 0);
     return stage.of_frames();
   };
-  const std::set<std::string> fields = {"sheet.contact.npy", "sheet.strain.npy", "sheet.velocity.npy"};
-  std::set<std::string> all = fields;
-  all.insert("sheet.pc2");
-  CHECK(frames("pc2") == all);
-  CHECK(frames("obj") == fields);
-  CHECK(frames("none").empty());
-  CHECK(frames("pc2") == all);
-  CHECK(frames("none").empty());
+  const std::set<std::string> none = {"steps.csv"};
+  std::set<std::string> fields = none, caches, objs, posed;
+  fields.insert({"sheet.contact.npy", "sheet.strain.npy", "sheet.velocity.npy"});
+  caches = objs = fields;
+  caches.insert("sheet.pc2");
+  objs.insert({"sheet_0001.obj", "sheet_0002.obj", "sheet_0003.obj"});
+  posed = caches;
+  posed.insert("bodies.csv");
+  CHECK(run("pc2", moves) == posed);
+  CHECK(run("pc2", "[3, 0, 0]") == caches);
+  CHECK(run("obj", "[3, 0, 0]") == objs);
+  CHECK(run("none", moves) == none);
+  CHECK(run("obj", "[3, 0, 0]") == objs);
+  CHECK(run("pc2", moves) == posed);
+  CHECK(run("none", "[3, 0, 0]") == none);
+}
+
+TEST_CASE("a run whose frames appear one by one begins without those of an earlier one", "[output]") {
+  const Stage stage;
+  const std::string moves = "[3, 0, 0]\nmotion = { velocity = [1, 0, 0] }";
+  REQUIRE(stage.run("duration = 0.2", moves, "--quiet").exit_code == 0);
+  REQUIRE(stage.of_frames().size() == 6);
+  stage.write("kill.toml", content(stage.path / "s.toml"));
+  stage.drape("simulate kill.toml --duration 100000 --out o --quiet --frames obj", "timeout -s KILL 1");
+  std::set<std::string> left = stage.of_frames();
+  CHECK_FALSE(fs::exists(stage.path / "o/run.json"));
+  for (const char* name : {"steps.csv", "bodies.csv", "sheet.pc2", "sheet.velocity.npy"}) {
+    INFO(name);
+    CHECK(left.count(name) == 0);
+  }
+  CHECK(left.count("sheet_0001.obj") == 1);
+}
+
+TEST_CASE("what a scene is made from is not removed with an earlier run's files", "[output]") {
+  const Stage stage;
+  fs::create_directory(stage.path / "o");
+  stage.write("o/bodies.csv", "time,x,y,z\n0,0,0,0\n1,1,0,0\n");
+  const Outcome outcome =
+      stage.run("duration = 0.1", "[3, 0, 0]\nmotion = { poses = \"o/bodies.csv\" }", "--frames none");
+  CHECK(outcome.exit_code == 2);
+  CHECK(has(outcome.err, "the scene is made from it"));
+  CHECK(fs::exists(stage.path / "o/bodies.csv"));
 }

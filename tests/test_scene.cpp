@@ -158,7 +158,7 @@ TEST_CASE("a mistake in a scene is told with its line", "[scene]") {
       {cloth + "rotate = { axis = [0, 0, 0], angle = 1 }\n", "scene.toml:3:", "axis"},
       {cloth + "rotate = { axis = [1, 0, 0] }\n", "scene.toml:3:", "'angle' is missing"},
       {cloth + "rotate = { axis = [1, 0, 0], angle = 90 }\n",
-       "scene.toml:3:", "write \"90 deg\" or \"90 rad\""},
+       "scene.toml:3:", "an angle such as \"90 deg\", or \"90 rad\""},
       {cloth + "translate = [1, 2]\n", "scene.toml:3:", "list of three"},
       {cloth + "translate = [1, \"2 s\", 0]\n", "scene.toml:3:", "expected a length"},
       {cloth + "pins = [3]\n", "scene.toml:3:", "expected tables"},

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "mesh/base/errors.h"
 
@@ -69,11 +68,13 @@ double quantity(const Node& node, const Dimension& dimension, Range range) {
     throw InputError(expected(dimension));
   } else if (dimension.needs_unit) {
     throw InputError("has no unit; " + expected(dimension));
-  } else if (&dimension == &dimension::angle && std::abs(value) > 2 * std::numbers::pi) {
-    throw InputError("has no unit, and as radians it is " + rounded(value / (2 * std::numbers::pi), 3) +
-                     " turns; write \"" + rounded(value, 6) + " deg\" or \"" + rounded(value, 6) + " rad\"");
   }
   if (!std::isfinite(value)) throw InputError("is not a finite number; " + expected(dimension));
+  if (is_number(node) && std::abs(value) > dimension.most_alone) {
+    const std::string unit(dimension.unit);
+    throw InputError("has no unit, and " + unit + " may not be meant; " + expected(dimension) + ", or \"" +
+                     written(node) + " " + unit + "\"");
+  }
   const std::string noun(dimension.noun);
   if (range == Range::positive && !(value > 0)) throw InputError("expected " + noun + " greater than zero");
   if (range == Range::not_negative && value < 0)

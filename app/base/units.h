@@ -4,6 +4,8 @@
 //          mass), fps (frames per second).
 #pragma once
 
+#include <limits>
+#include <numbers>
 #include <string>
 #include <string_view>
 
@@ -23,6 +25,8 @@ struct Dimension {
   Angle angle = Angle::any;
   // Whether a number alone is refused: it may be meant in the unit that a laboratory's sheet prints.
   bool needs_unit = false;
+  // A number alone is refused beyond this: it may be meant in another unit.
+  double most_alone = std::numeric_limits<double>::infinity();
 };
 
 namespace dimension {
@@ -31,7 +35,7 @@ inline constexpr Dimension time{"s", "a time", "10 ms"};
 inline constexpr Dimension rate{"1/s", "a rate", "25 Hz"};
 inline constexpr Dimension speed{"m/s", "a speed", "1 mm/s"};
 inline constexpr Dimension acceleration{"m/s^2", "an acceleration", "9.81 m/s^2"};
-inline constexpr Dimension angle{"rad", "an angle", "90 deg"};
+inline constexpr Dimension angle{"rad", "an angle", "90 deg", Angle::any, false, 2 * std::numbers::pi};
 inline constexpr Dimension angular_rate{"rad/s", "a rate of turning", "90 deg/s", Angle::in_it};  // or rpm
 inline constexpr Dimension mass{"kg", "a mass", "500 g"};
 inline constexpr Dimension moment_of_inertia{"kg.m^2", "a moment of inertia", "2e-3 kg.m^2"};

@@ -8,6 +8,7 @@
 #include "app/base/peak_memory.h"
 #include "app/simulation/measure.h"
 #include "mesh/base/stopwatch.h"
+#include "solver/linear/residual.h"
 
 namespace drape::app {
 namespace {
@@ -72,10 +73,9 @@ std::string difference_text(const SolverRow& row, const std::string& where, doub
 double true_residual(const LinearSystem& system, const VecX& dv) { return residual_of(system, dv).norm(); }
 
 double reference_impulse(const LinearSystem& system) {
-  VecX z = VecX::Zero(system.b.size());
-  for (const FilterEntry& e : system.filter.entries()) z.segment<3>(3 * e.particle) = e.z;
-  const LinearOptions& options = system.options;
-  return std::min(std::max(residual_of(system, z).norm(), options.scale), options.most_scale);
+  VecX z(system.b.size()), r(system.b.size());
+  const double found = internal::reference_impulse(system.A, system.b, system.filter, system.options, z, r);
+  return found > 0 ? found : residual_of(system, z).norm();  // round-off, where nothing else acts
 }
 
 double constraint_violation(const LinearSystem& system, const VecX& dv) {

@@ -129,13 +129,16 @@ class PartialRun {
   PartialRun(Shared whole, const std::optional<fs::path>& out, const std::string& frames,
              std::optional<double> duration, std::optional<double> time_step)
       : whole_(std::move(whole)) {
-    require_free(&whole_->simulation.state);
-    require_free(whole_.get());
-    if (out) in_use_.emplace(std::vector<const void*>{whole_.get()});
+    const std::vector<const void*> whole_run = {whole_.get()};
+    in_use_.emplace(whole_run);
+    const InUse state({&whole_->simulation.state});
     const RunOptions options{out.value_or(fs::path()), frames_of(frames), true, duration, time_step};
-    const Released released;
-    run_.emplace(whole_->simulation, options);
+    {
+      const Released released;
+      run_.emplace(whole_->simulation, options);
+    }
     number_ = ++whole_->runs_begun;
+    if (!out) in_use_.reset();
   }
 
   bool over() const { return !run_ || run_->over(); }

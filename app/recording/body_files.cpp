@@ -163,9 +163,17 @@ std::vector<fs::path> BodyFiles::results() const {
   std::vector<fs::path> paths;
   for (const Entry& entry : entries_) {
     if (entry.has_shape) paths.push_back(shape_path(entry));
-    if (entry.deforms && frames_ == Frames::pc2) paths.push_back(cache_path(entry));
+    if (entry.deforms) paths.push_back(cache_path(entry));
   }
-  if (has_poses()) paths.push_back(folder_ / "bodies.csv");
+  paths.push_back(folder_ / "bodies.csv");
+  return paths;
+}
+
+std::vector<fs::path> BodyFiles::not_written() const {
+  std::vector<fs::path> paths;
+  for (const Entry& entry : entries_)
+    if (!entry.deforms || frames_ != Frames::pc2) paths.push_back(cache_path(entry));
+  if (!has_poses()) paths.push_back(folder_ / "bodies.csv");
   return paths;
 }
 

@@ -43,8 +43,10 @@ class BodyFiles {
   // together with others.
   void finish(double time, std::vector<AtomicFile>& files);
 
-  // All files that are written, except the frames.
+  // All files that are written, or removed because an earlier run may have written them, except the frames.
   std::vector<std::filesystem::path> results() const;
+  // Those of them that this run does not write.
+  std::vector<std::filesystem::path> not_written() const;
   Names frame_names() const;  // each NAME of frames/NAME_0001.obj
   // Whether bodies.csv is written.
   bool has_poses() const { return any_moves_ && frames_ != Frames::none; }

@@ -2,8 +2,11 @@
 
 #include <signal.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -46,25 +49,50 @@ bool same(const fs::path& a, const fs::path& b) {
   return fs::equivalent(a, b, error) && !error;
 }
 
-// frames/NAME_0001.obj and so on: how many there will be is not known yet.
-bool is_frame_of(const std::string& name, const fs::path& frames, const fs::path& input) {
-  const std::string file = input.filename().string();
-  const fs::path folder = input.has_parent_path() ? input.parent_path() : ".";
-  return file.starts_with(name + "_") && file.ends_with(".obj") && same(frames, folder);
+// Whether the file is called NAME_0001.obj, with any number.
+bool is_frame_of(const std::string& name, const std::string& file) {
+  constexpr std::string_view ending = ".obj";
+  const auto start = name.size() + 1;
+  return file.size() > start + ending.size() && file.starts_with(name + "_") && file.ends_with(ending) &&
+         std::all_of(file.begin() + static_cast<std::ptrdiff_t>(start), file.end() - ending.size(),
+                     [](char c) { return c >= '0' && c <= '9'; });
 }
 
-// Halves of files, .NAME.PID.part, of programs that were killed.
+// 0 where it is too large for a number of a frame.
+int number_of(const std::string& name, const std::string& file) {
+  int number = 0;
+  const auto read = std::from_chars(file.data() + name.size() + 1, file.data() + file.size(), number);
+  return read.ec == std::errc() ? number : 0;
+}
+
+bool is_frame_in(const fs::path& frames, const Names& names, const fs::path& input) {
+  const fs::path folder = input.has_parent_path() ? input.parent_path() : ".";
+  return same(frames, folder) && std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+           return is_frame_of(name, input.filename().string());
+         });
+}
+
+// Whether this process is gone, on this machine.
+bool is_gone(int process) { return process > 0 && kill(process, 0) != 0 && errno == ESRCH; }
+
+// Removes halves of files, .NAME.PID.part, of programs that were killed. Those of the last hour may be of a program on
+// another machine that writes into the same folder.
 void remove_dead_parts(const fs::path& folder) {
+  constexpr std::string_view ending = ".part";
   std::error_code ignored;
   std::vector<fs::path> dead;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
     const std::string name = entry.path().filename().string();
-    if (!name.starts_with(".") || !name.ends_with(".part")) continue;
-    const auto number = name.rfind('.', name.size() - 6) + 1;
+    if (!name.starts_with(".") || !name.ends_with(ending) || !entry.is_regular_file(ignored)) continue;
+    const char* const end = name.data() + name.size() - ending.size();
+    const char* begin = end;
+    while (begin > name.data() && begin[-1] >= '0' && begin[-1] <= '9') --begin;
     int process = 0;
-    if (std::from_chars(name.data() + number, name.data() + name.size(), process).ec == std::errc() &&
-        process > 0 && kill(process, 0) != 0 && errno == ESRCH)
-      dead.push_back(entry.path());
+    if (begin[-1] != '.' || begin - 1 == name.data() ||
+        std::from_chars(begin, end, process).ec != std::errc())
+      continue;
+    const auto age = fs::file_time_type::clock::now() - entry.last_write_time(ignored);
+    if (is_gone(process) && age > std::chrono::hours(1)) dead.push_back(entry.path());
   }
   for (const fs::path& path : dead) fs::remove(path, ignored);
 }
@@ -104,10 +132,7 @@ Output::Output(fs::path folder, const Scene& scene, const Simulation& simulation
   }
   bodies_.open();
   steps_.emplace(folder_ / "steps.csv");
-  if (frames_ != Frames::obj) return;
-  // These frames appear one by one, and must not be taken for those of an earlier run.
-  for (const char* file : {"run.json", "steps.csv"}) fs::remove(folder_ / file);
-  remove_older_frames();
+  if (frames_ == Frames::obj) remove_earlier(true);
 }
 
 fs::path Output::cloth_path(const Cloth& cloth, const char* extension) const {
@@ -127,8 +152,7 @@ void Output::spare_inputs(const Scene& scene) const {
   for (const fs::path& input : inputs_of(scene)) {
     bool replaced = false;
     for (const fs::path& result : results) replaced = replaced || same(result, input);
-    for (const std::string& name : framed)
-      replaced = replaced || is_frame_of(name, folder_ / "frames", input);
+    replaced = replaced || is_frame_in(folder_ / "frames", framed, input);
     if (replaced)
       throw InputError(input.string() +
                        ": the scene is made from it and it would be overwritten; choose another --out");
@@ -175,41 +199,40 @@ void Output::finish(const State& state, RunRecord& record) {
   for (FrameFields& fields : fields_) fields.keep();
   steps_->keep();
   for (AtomicFile& text : texts) text.keep();
-  remove_older_caches();
-  if (frames_ != Frames::obj) remove_older_frames();
+  remove_earlier(false);
   list_written();
 }
 
-// What an earlier run wrote of its frames and this one does not: it would show another motion beside the new mesh,
-// or belong to another mesh of that name.
-void Output::remove_older_caches() const {
+// What an earlier run wrote of its frames and this one does not: it would show another motion beside the new mesh, or
+// belong to another mesh of that name. At the start of a run whose frames appear one by one that is all of it.
+void Output::remove_earlier(bool all) const {
+  std::vector<fs::path> earlier = bodies_.not_written();
   for (const Cloth& cloth : simulation_.cloths) {
-    if (frames_ != Frames::pc2) fs::remove(cloth_path(cloth, ".pc2"));
-    if (frames_ == Frames::none)
+    if (frames_ != Frames::pc2) earlier.push_back(cloth_path(cloth, ".pc2"));
+    if (frames_ == Frames::none || all)
       for (const char* field : {"velocity", "strain", "contact"})
-        fs::remove(field_path(folder_, cloth.name, field));
-    if (frames_ == Frames::none || !has_polygons(cloth.mesh))
-      fs::remove(field_path(folder_, cloth.name, "triangles"));
+        earlier.push_back(field_path(folder_, cloth.name, field));
+    if (frames_ == Frames::none || all || !has_polygons(cloth.mesh))
+      earlier.push_back(field_path(folder_, cloth.name, "triangles"));
   }
-  if (!bodies_.has_poses()) fs::remove(folder_ / "bodies.csv");
+  if (all)
+    for (const char* file : {"run.json", "steps.csv", "bodies.csv"}) earlier.push_back(folder_ / file);
+  if (all || frames_ != Frames::obj) add_frames(earlier);
+  for (const fs::path& path : earlier) fs::remove(path);
 }
 
-// frames/NAME_0001.obj and so on of an earlier run.
-void Output::remove_older_frames() const {
+// Adds all frames/NAME_0001.obj and so on that there are.
+void Output::add_frames(std::vector<fs::path>& paths) const {
   if (!fs::is_directory(folder_ / "frames")) return;
   Names names = bodies_.frame_names();
   for (const Cloth& cloth : simulation_.cloths) names.push_back(cloth.name);
-  std::vector<fs::path> older;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "frames"))
-    for (const std::string& name : names) {
-      const std::string file = entry.path().filename().string(), start = name + "_";
-      int number = 0;
-      if (file.starts_with(start) &&
-          std::from_chars(file.data() + start.size(), file.data() + file.size(), number).ec == std::errc() &&
-          entry.path() == frame_path(folder_, name, number) && entry.is_regular_file())
-        older.push_back(entry.path());
-    }
-  for (const fs::path& path : older) fs::remove(path);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "frames")) {
+    const std::string file = entry.path().filename().string();
+    for (const std::string& name : names)
+      if (entry.is_regular_file() && is_frame_of(name, file) &&
+          entry.path() == frame_path(folder_, name, number_of(name, file)))
+        paths.push_back(entry.path());
+  }
 }
 
 void Output::list_written() {

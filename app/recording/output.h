@@ -41,8 +41,8 @@ class Output {
  private:
   std::filesystem::path cloth_path(const Cloth& cloth, const char* extension) const;
   void spare_inputs(const Scene& scene) const;
-  void remove_older_caches() const;
-  void remove_older_frames() const;
+  void remove_earlier(bool all) const;
+  void add_frames(std::vector<std::filesystem::path>& paths) const;
   int frame_count() const { return static_cast<int>(frame_times_.size()); }
   void list_written();
 

@@ -78,8 +78,7 @@ Eigen::AlignedBox3d box_about(const Cloth& cloth, const VecX& x) {
 // Schedules count from zero.
 double start_of(const State& state) {
   if (!(state.time >= 0) || !std::isfinite(state.time))
-    throw InputError("the time of the state is " + rounded(state.time, 6) +
-                     " s: it is a number that is not negative");
+    throw InputError("the time of the state is " + rounded(state.time, 6) + " s; it has to be 0 or more");
   return state.time;
 }
 
@@ -111,7 +110,8 @@ Run::Run(Simulation& simulation, const RunOptions& options)
       end_time_(end_of(wanted_, grid_, start_of(simulation.state), options.duration)),
       loop_(simulation, Schedule(grid_, simulation.state.time, end_time_)),
       progress_(end_time_, options.quiet),
-      last_motion_(last_motion(*simulation.scene, simulation)) {
+      last_motion_(last_motion(*simulation.scene, simulation)),
+      from_start_(simulation.state.time == 0) {
   for (const Cloth& cloth : simulation_.cloths) begins_.push_back(box_about(cloth, simulation_.state.x));
   if (!options.out.empty()) output_.emplace(options.out, *simulation.scene, simulation, options.frames);
   describe();
@@ -230,7 +230,8 @@ void Run::record_step(const StepRow& row) {
   record_.self_contacts = report.self_contacts;
   record_.self_contacts_max = std::max(record_.self_contacts_max, report.self_contacts);
   record_.self_guarded += report.self_guarded;
-  touched_ = touched_ || report.contacts > 0;
+  touched_ = touched_ || report.contacts > 0 || report.self_contacts > 0 ||
+             !simulation_.constraints->faces().touching().empty();
   record_.torn += report.torn;
   if (report.torn > 0 && !record_.first_torn) record_.first_torn = row.time;
   record_.pinched = report.pinched;
@@ -333,9 +334,10 @@ void Run::tell_of_open_seams() {
 // Cloth that fell past all bodies, which is most often a body in another place or in another unit.
 void Run::tell_of_misses() {
   const Vec3 gravity = simulation_.system->gravity_acceleration();
-  if (touched_ || simulation_.constraints->bodies().empty() || gravity.isZero()) return;
+  if (touched_ || !from_start_ || simulation_.constraints->bodies().empty() || gravity.isZero()) return;
   for (std::size_t k = 0; k < simulation_.cloths.size(); ++k) {
     const Cloth& cloth = simulation_.cloths[k];
+    if (!simulation_.scene->pins_of(k).empty()) continue;
     const Vec3 way = box_about(cloth, simulation_.state.x).center() - begins_[k].center();
     const double fell = way.dot(gravity.normalized());
     bool told = !(fell > begins_[k].diagonal().norm());

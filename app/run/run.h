@@ -2,9 +2,11 @@
 // and Python both run through it.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <chrono>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/recording/output.h"
 #include "app/run/progress.h"
@@ -79,7 +81,8 @@ class Run {
   double settled_since_ = -1;  // s; -1: something moves
   bool told_cut_ = false, told_not_converged_ = false, told_crossings_ = false;
   int first_crossings_ = 0;                  // of the start, as it is written
-  bool touched_ = false;                     // a body, at the end of a step
+  const bool from_start_;                    // the run begins at time 0
+  bool touched_ = false;                     // anything, at the end of a step
   std::vector<Eigen::AlignedBox3d> begins_;  // about each cloth [m]
   std::string failure_;
 };

@@ -23,8 +23,15 @@ void pin_down(const PinEntry& pin, const Cloth& cloth, const Scene& scene, Simul
   constraints.pin_to_body(particles, static_cast<int>(body - scene.obstacles.begin()), simulation.state.x);
 }
 
-bool move_alike(const PinEntry& a, const PinEntry& b) {
+// Neither is moved by a motion of its own, and both follow the same body or none.
+bool surely_alike(const PinEntry& a, const PinEntry& b) {
   return a.follow == b.follow && !a.motion && !b.motion;
+}
+
+std::string place_of(const Cloth& cloth, int particle) {
+  const int vertex = cloth.embedding.vertex(particle);
+  return (vertex < 0 ? "a particle inside " : "vertex " + std::to_string(vertex) + " of ") +
+         one_line(cloth.name);
 }
 
 // Of two pins that hold a particle the first one counts.
@@ -33,11 +40,10 @@ class PinsOfParticles {
   void add(const PinEntry& pin, const Cloth& cloth, Simulation& simulation) {
     for (int i : pinned_particles(pin.rule, cloth, simulation.state.x)) {
       const PinEntry* const first = first_.emplace(i, &pin).first->second;
-      if (first == &pin || move_alike(*first, pin) || !told_.emplace(first, &pin).second) continue;
-      simulation.messages.push_back("warning: " + pin.where + ": vertex " +
-                                    std::to_string(cloth.embedding.vertex(i)) + " of " +
-                                    one_line(cloth.name) + " is held by the pins of " + first->where +
-                                    " already, which move otherwise; it goes with those");
+      if (first == &pin || surely_alike(*first, pin) || !told_.emplace(first, &pin).second) continue;
+      simulation.messages.push_back("warning: " + pin.where + ": " + place_of(cloth, i) +
+                                    " is held by the pins of " + first->where +
+                                    " already; it goes with those, and not with these");
     }
   }
 

@@ -115,7 +115,8 @@ std::mutex one_loop_at_a_time;
 thread_local bool inside_a_loop = false;
 
 std::unique_ptr<Helpers>& helpers_of_process() {
-  static std::unique_ptr<Helpers> helpers;
+  // They are never destroyed: at the end of the program another thread may be in the middle of a loop.
+  static std::unique_ptr<Helpers>& helpers = *new std::unique_ptr<Helpers>;
   // A forked child has none of its parent's threads, so it makes its own. The parent's helpers are released
   // and not destroyed, because their threads cannot be joined in the child.
   static const int registered = pthread_atfork(nullptr, nullptr, [] { (void)helpers.release(); });

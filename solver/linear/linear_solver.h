@@ -26,7 +26,8 @@ std::string_view name(StopReason reason);
 
 struct LinearOptions {
   double tolerance =
-      1e-6;  // of the residual, relative to the larger of |S (b - A z)| and scale, but to most_scale at most
+      1e-6;  // of the residual, relative to the larger of |S (b - A z)| and scale, but to most_scale at most, and
+             // no less than what round-off lets be reached
   int max_iterations = 0;  // 0: 1000 + 20 sqrt(rows)
   double scale = 0;        // impulse that acts even where forces cancel in b [N s]: h |m g|
   double most_scale = std::numeric_limits<double>::infinity();  // N s

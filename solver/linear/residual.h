@@ -29,7 +29,8 @@ inline int iteration_limit(const LinearOptions& options, int rows) {
 }
 
 // The norm |S (b - A z)| [N s] of the right-hand side of the projected system, or options.scale where that is
-// larger, but at most options.most_scale. Fills z, and leaves S (b - A z) in r. Where all that acts is along what is
+// larger, but at most options.most_scale; and no less than lets the tolerance be reached, since no residual comes below
+// the round-off of what the projection takes out. Fills z, and leaves S (b - A z) in r. Where all that acts is along what is
 // locked, the projection leaves its round-off, which no iteration can lessen: that counts as zero.
 inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filter& filter,
                                 const LinearOptions& options, VecX& z, VecX& r) {
@@ -51,9 +52,8 @@ inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filte
     r.setZero();
     return 0;
   }
-  // No residual comes below what the projection leaves of all that acts.
-  return std::max(std::min(std::max(acting, options.scale), options.most_scale),
-                  round_off * whole / options.tolerance);
+  const double least = options.tolerance > 0 ? round_off * whole / options.tolerance : 0;
+  return std::max(std::min(std::max(acting, options.scale), options.most_scale), least);
 }
 
 // The multiple of the guess at which y . S A S y / 2 - y . r, with r = S (b - A z), is least along it. Free fall, say, is right

@@ -236,9 +236,12 @@ class Callbacks(Runs):
         self.assertGreater(counted[0], 200)
 
 
+# A sheet that is large enough for two threads.
 LEFT_RUNNING = """
 import threading, time, drape
-simulation = drape.read_scene("scene.toml", {"simulation.duration": 1000})
+drape.set_threads(2)
+drape.write_obj("large.obj", drape.grid(61, 61, 1, 1))
+simulation = drape.read_scene({"simulation": {"duration": 1000}, "cloth": [{"mesh": "large.obj", "pins": [{"vertices": [0]}]}]})
 begun = threading.Event()
 threading.Thread(target=simulation.run, kwargs={"callback": lambda step: begun.set()}, daemon=True).start()
 begun.wait()
