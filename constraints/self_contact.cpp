@@ -37,6 +37,8 @@ constexpr double slowest_fall = 0.9;
 // again, is eased again, and the cloth swings for ever. The load has come back where it asks for 1.1 times what a contact
 // that became softer is stiff for. From then on easing ends at 1.25 times the stiffness at which the load came back.
 constexpr double comes_back = 1.1, ends_above = 1.25;
+// What pushed in the last step begins as pushing unless the free way opens it by this many times what it was compressed.
+constexpr double goes_on = 10;
 
 // How fast a contact that has become thinner than its cloth may thicken [m/s]: so slowly that, on earth, what it lifts flies no
 // farther than the contact is remembered.
@@ -219,7 +221,7 @@ void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<Movi
       stiffen(c, step);
       const Vec3 p = c.now = c.at(ahead_);
       const double drag = c.drag_at(p).norm();
-      c.active = c.before > 0 || c.linear_push(p) > 0;  // what pushed in the last step is likely to go on
+      c.active = c.linear_push(p) > -goes_on * c.before;
       c.share = drag > 0 ? std::min(1.0, c.friction * c.push / drag) : 1;
     }
   });

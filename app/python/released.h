@@ -4,27 +4,17 @@
 //   process ends with its main thread, as from Python 3.14 on.
 #pragma once
 
-#include <Python.h>
-#include <cxxabi.h>
-#include <unistd.h>
-
 namespace drape::app::python {
 
 class Released {
  public:
-  Released() : thread_(PyEval_SaveThread()) {}
-  ~Released() {
-    try {
-      PyEval_RestoreThread(thread_);
-    } catch (const abi::__forced_unwind&) {
-      for (;;) pause();
-    }
-  }
+  Released();
+  ~Released();
   Released(const Released&) = delete;
   Released& operator=(const Released&) = delete;
 
  private:
-  PyThreadState* thread_;
+  void* thread_;  // PyThreadState
 };
 
 }  // namespace drape::app::python
