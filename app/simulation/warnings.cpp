@@ -303,7 +303,7 @@ void warn_of_restitution(const Scene& scene, Names& messages) {
   const SimulationOptions& options = scene.simulation;
   const ContactMode mode = contact_mode(options.integrator, options.step.contact);
   if (mode == ContactMode::restitution) return;
-  const auto reacts = [](const ObstacleEntry& entry) { return entry.obstacle.rigid.has_value(); };
+  const auto reacts = [](const ObstacleEntry& entry) { return entry.rigid.has_value(); };
   if (scene.obstacles.size() > 1 && std::any_of(scene.obstacles.begin(), scene.obstacles.end(), reacts))
     return;  // bodies that meet spring back in any mode
   for (const ObstacleEntry& entry : scene.obstacles)
@@ -318,7 +318,7 @@ void warn_of_inner_steps(const Scene& scene, Names& messages) {
   const std::string& integrator = scene.simulation.integrator;
   if (!integrator.starts_with("cvode-") && !integrator.starts_with("arkode-")) return;
   for (const ObstacleEntry& entry : scene.obstacles)
-    if (entry.obstacle.rigid)
+    if (entry.rigid)
       messages.push_back(
           "warning: " + body_name(entry.obstacle, entry.name) + ": " + integrator +
           " does not keep its momentum with the cloth's, and may give a light body several times "
