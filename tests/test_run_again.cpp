@@ -149,7 +149,7 @@ TEST_CASE("a run whose frames appear one by one begins without those of an earli
   REQUIRE(stage.run("duration = 0.2", moves, "--quiet").exit_code == 0);
   REQUIRE(stage.of_frames().size() == 6);
   stage.write("kill.toml", content(stage.path / "s.toml"));
-  stage.drape("simulate kill.toml --duration 100000 --out o --quiet --frames obj", "timeout -s KILL 1");
+  stage.drape("simulate kill.toml --duration 100000 --out o --quiet --frames obj", "timeout -s KILL 3");
   std::set<std::string> left = stage.of_frames();
   CHECK_FALSE(fs::exists(stage.path / "o/run.json"));
   for (const char* name : {"steps.csv", "bodies.csv", "sheet.pc2", "sheet.velocity.npy"}) {
