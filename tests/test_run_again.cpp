@@ -1,4 +1,5 @@
-// What a run tells of itself at its end, and what it leaves of an earlier one in the same folder.
+// What a run tells of cloth that missed its bodies and of pins that disagree, and what it leaves of an earlier run in the
+// same folder.
 #include <unistd.h>
 
 #include <catch2/catch.hpp>

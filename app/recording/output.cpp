@@ -83,16 +83,17 @@ void remove_dead_parts(const fs::path& folder) {
   std::vector<fs::path> dead;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
     const std::string name = entry.path().filename().string();
-    if (!name.starts_with(".") || !name.ends_with(ending) || !entry.is_regular_file(ignored)) continue;
+    if (!name.starts_with(".") || !name.ends_with(ending) || name.size() == ending.size()) continue;
     const char* const end = name.data() + name.size() - ending.size();
     const char* begin = end;
-    while (begin > name.data() && begin[-1] >= '0' && begin[-1] <= '9') --begin;
+    while (begin[-1] >= '0' && begin[-1] <= '9') --begin;  // ends at the dot that the name begins with
     int process = 0;
     if (begin[-1] != '.' || begin - 1 == name.data() ||
         std::from_chars(begin, end, process).ec != std::errc())
       continue;
     const auto age = fs::file_time_type::clock::now() - entry.last_write_time(ignored);
-    if (is_gone(process) && age > std::chrono::hours(1)) dead.push_back(entry.path());
+    if (entry.is_regular_file(ignored) && is_gone(process) && age > std::chrono::hours(1))
+      dead.push_back(entry.path());
   }
   for (const fs::path& path : dead) fs::remove(path, ignored);
 }

@@ -54,7 +54,8 @@ class Simulation(_drape.Simulation):
     def __iter__(self) -> Iterator[_drape.RunStep]:
         """The steps that are left of the scene's duration, one by one. Nothing is written.
 
-        The loop may be left at any step. RuntimeError in the next step when another run came in between: run(), advance(), a second loop, view() without a run.
+        The loop may be left at any step. RuntimeError in the next step when another run came in between: run(),
+        advance(), a second loop, view() without a run.
         """
         run = _drape.Run(self, None, "none")
         while not run.over:
