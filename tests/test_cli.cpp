@@ -330,6 +330,17 @@ TEST_CASE("check and list change nothing", "[cli]") {
   CHECK(shop.files(".") == before);
 }
 
+TEST_CASE("what cannot be printed is told, but not to who stopped reading", "[cli]") {
+  const Folder folder;
+  if (fs::exists("/dev/full"))
+    for (const std::string& words : std::initializer_list<std::string>{"list", "keys", "check '" + source_dir() + "/data/scenes/sheet-on-ball.toml'"}) {
+      const Outcome full = folder.drape(words + " >/dev/full");
+      CHECK(full.exit_code == 2);
+      CHECK_THAT(full.err, Contains("could not be written: No space left on device"));
+    }
+  CHECK(folder.shell("{ '" + program() + "' keys; echo $? >&2; } | true").err == "0\n");
+}
+
 TEST_CASE("what is said of a start that contact cannot take as it is", "[cli]") {
   const Workshop shop;
   const auto warned = [&](const std::string& text) {

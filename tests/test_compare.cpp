@@ -48,6 +48,7 @@ TEST_CASE("bad input to compare: one line, exit code 2, nothing written", "[comp
       {scene + "--solvers mpcg,mpcg", "'mpcg' is there twice"},
       {scene + "--solvers mpcg@", "NAME@TOLERANCE"},
       {scene + "--solvers mpcg@-1", "greater than zero"},
+      {scene + "--solvers mpcg@1", "less than 1"},
       {scene + "--steps 0", "a whole number from 1"},
       {scene + "--steps 1.5", "a whole number from 1"},
       {scene + "--steps two", "a whole number from 1"},

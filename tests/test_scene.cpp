@@ -123,7 +123,7 @@ TEST_CASE("where the warp runs is given, chosen or refused", "[scene][woven]") {
   CHECK(entry(twill + woven).warp_is_down);
   CHECK_THROWS_WITH(read(cloth + woven + "bend = { warp = 2e-6, weft = 1e-6 }\n"),
                     Catch::Contains("warp = \"down\""));
-  CHECK_THROWS_WITH(read(cloth + twill + "warp = \"up\"\n"), Catch::Contains("warp"));
+  CHECK_THROWS_WITH(read(cloth + twill + "warp = \"up\"\n"), Contains("expected \"down\", a direction"));
 }
 
 TEST_CASE("the default value of a key of connections is no mistake beside a woven cloth", "[scene][woven]") {
@@ -292,6 +292,31 @@ TEST_CASE("a woven cloth is read, and refused where its directions are not known
       {woven + "viscosity = 3\n", "scene.toml:4:", "expected a table"},
   };
   test::check_mistakes(table, [](const std::string& text) { return read(text); });
+}
+
+TEST_CASE("what a scene gives and its integrator or model does not use is told", "[scene][warnings]") {
+  const auto idle = [](const std::string& integrator) {
+    return read("[simulation]\nintegrator = \"" + integrator +
+                "\"\nsubsteps = 7\nalpha = 0.5\ntolerance = 1e-4\nrelative_tolerance = 1e-3\n" + cloth)
+        .simulation.idle_keys;
+  };
+  CHECK(idle("implicit-euler") == Names{"substeps", "alpha", "relative_tolerance"});
+  CHECK(idle("pbd") == Names{"relative_tolerance"});
+  for (const IntegratorInfo& one : integrators())
+    if (one.name.starts_with("cvode-")) CHECK(idle(std::string(one.name)) == Names{"substeps", "alpha"});
+  CHECK(read("[simulation]\ntolerance = 1e-4\n" + cloth).simulation.idle_keys.empty());
+
+  const std::string warp = cloth + "warp = [1, 0, 0]\n";
+  CHECK(read(warp + "model = \"noh-jung\"\nviscosity = { bend = \"1 ms\" }\n").cloths[0].idle_keys ==
+        Names{"warp", "viscosity"});
+  CHECK(read(warp + "model = \"woven\"\n").cloths[0].idle_keys.empty());
+  CHECK_THROWS_WITH(read(warp), Contains("goes with model = \"woven\""));
+}
+
+TEST_CASE("a scene whose duration is no step is refused", "[scene]") {
+  for (const char* table : {"duration = \"1 ns\"", "time_step = \"10 ns\"\nframe_rate = 0\nduration = \"5e-15 s\""})
+    CHECK_THROWS_WITH(read(std::string("[simulation]\n") + table + "\n" + cloth),
+                      StartsWith("scene.toml:2: duration") || Contains("duration = \"5e-15 s\""));
 }
 
 TEST_CASE("the air of a scene is none unless there is a table", "[scene][air]") {

@@ -199,6 +199,15 @@ TEST_CASE("a surface without area is refused", "[shapes][mesh]") {
   CHECK_THROWS_AS(SurfaceDistance(m), InputError);
 }
 
+TEST_CASE("a surface with a corner nowhere is refused, and a vertex that no triangle has may be anywhere", "[shapes][mesh]") {
+  const double nowhere = std::nan("");
+  TriangleMesh box = box_mesh(Vec3::Ones());
+  box.positions.emplace_back(nowhere, 0, 0);
+  CHECK_NOTHROW(SurfaceDistance(box));
+  box.positions[3][1] = nowhere;
+  CHECK_THROWS_WITH(SurfaceDistance(box), Catch::Contains("vertex 3"));
+}
+
 TEST_CASE("a point that is not finite has no distance", "[shapes][mesh]") {
   const SurfaceDistance surface(box_mesh(Vec3::Ones()));
   CHECK(std::isnan(surface.closest({std::nan(""), 0, 0}).distance));

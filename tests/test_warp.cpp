@@ -173,7 +173,7 @@ TEST_CASE("a scene gives the warp by vector, by angle and by group", "[scene][wa
       {"warp = { left = [0, 0, 0] }\n", "a direction is not [0, 0, 0]"},
       {"warp = { left = [0, 1] }\n", "left = [0, 1]"},
       {"warp = { left = { x = 1 } }\n", "expected a direction [x, y, z], or an angle"},
-      {"warp = true\n", "expected a direction [x, y, z], or an angle"},
+      {"warp = true\n", "expected \"down\", a direction [x, y, z], or an angle"},
       {"warp = \"30 deg\"\n", "goes with rest = \"uv\""},
       {"warp = \"30 cm\"\nrest = \"uv\"\n", "expected an angle"},
       {"warp = { left = [0, 0, 1], right = [0, 1, 0] }\n", "square to the warp"}};

@@ -1,6 +1,12 @@
 #include "app/base/interrupt.h"
 
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "mesh/base/errors.h"
 
 namespace drape::app {
 namespace {
@@ -39,6 +45,11 @@ void end_if_interrupted() {
 void ignore_broken_outputs() {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void check_printed() {
+  if (std::fflush(stdout) != 0 && errno != EPIPE)
+    throw InputError(std::string("what was printed could not be written: ") + std::strerror(errno));
 }
 
 }  // namespace drape::app

@@ -20,5 +20,8 @@ void end_if_interrupted();  // throws Interrupted after the first such signal
 
 // Ignores SIGPIPE and SIGXFSZ, so that a write that fails reports its error instead of ending the program.
 void ignore_broken_outputs();
+// Throws InputError when what was printed did not arrive, as where the disk is full. Who stops reading, like `head`, has
+// what they want.
+void check_printed();
 
 }  // namespace drape::app

@@ -8,6 +8,7 @@
 #include <memory>
 #include <new>
 
+#include "app/base/interrupt.h"
 #include "app/base/words.h"
 #include "app/commands/check.h"
 #include "app/commands/commands.h"
@@ -465,7 +466,9 @@ int fail(int exit_code, const std::string& what) {
 int command_line(int argc, char** argv) {
   try {
     check_encoding(argc, argv);
-    return parse_and_run(argc, argv);
+    const int exit_code = parse_and_run(argc, argv);
+    check_printed();
+    return exit_code;
   } catch (const InputError& error) {
     return fail(2, error.what());
   } catch (const std::filesystem::filesystem_error& error) {

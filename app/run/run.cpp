@@ -98,6 +98,9 @@ double end_of(const SimulationOptions& wanted, const StepGrid& grid, double star
   if (*duration / grid.step() > most_steps)
     throw InputError("duration = " + rounded(*duration, 6) + " s: would take " +
                      rounded(*duration / grid.step(), 3) + " steps; check the units");
+  if (*duration > 0 && *duration <= least_of_a_step * grid.step())
+    throw InputError("duration = " + rounded(*duration, 6) + " s: less than a millionth of a step of " +
+                     rounded(grid.step(), 6) + " s, so that there would be none; check the units");
   return grid.rounded(start + *duration);
 }
 
@@ -313,7 +316,7 @@ void Run::note_failure(const StepFailure& failure) {
   }
   if (!noted.term.empty()) line += "; the term is '" + noted.term + "'";
   line += "; try a smaller --time-step, a lower stiffness, or look at the mesh there with 'drape check'";
-  progress_.clear();
+  progress_.end();
   failure_ = one_line(line);
   record_.failure = noted;
 }
@@ -366,6 +369,7 @@ void Run::describe_tears() {
 }
 
 const RunRecord& Run::finish() {
+  progress_.end();
   record_.interrupted = !over();
   describe_tears();
   if (!framed_) write_frame();  // the last frame is the end
@@ -382,7 +386,6 @@ const RunRecord& Run::finish() {
   record_.state_hash = state_hash(simulation_.state);
   record_.wall_seconds = seconds_since(start_);
   if (output_) output_->finish(simulation_.state, record_);
-  progress_.clear();
   return record_;
 }
 

@@ -88,6 +88,7 @@ struct ClothEntry {
   Fabric fabric;
   FabricRecord fabric_record;
   bool has_own_damping = false;  // the scene gives damping, and not only the fabric's file
+  Names idle_keys;               // what the scene gives and its model does not use
   std::vector<PinEntry> pins;
   std::string where;
 };
@@ -182,7 +183,8 @@ struct ObstacleEntry {
   std::string where;
 };
 
-constexpr double most_steps = 1e9;  // of a run
+constexpr double most_steps = 1e9;       // of a run
+constexpr double least_of_a_step = 1e-6;  // a shorter time is no step
 
 struct SimulationOptions {
   double duration = 2;           // s
@@ -198,6 +200,7 @@ struct SimulationOptions {
   bool require_clean = false;      // refuses a start in which triangles pass through each other
   bool stop_when_settled = false;  // ends the run as soon as nothing has moved for settle_time
   double settle_speed = 1e-3;      // m/s; a cloth that is slower counts as settled
+  Names idle_keys;                 // what the scene gives and its integrator does not use
 };
 
 inline constexpr double settle_time = 0.2;  // s

@@ -146,7 +146,7 @@ void read_clusters(Table& table, ClothEntry& cloth) {
 }
 
 // A woven cloth has no connections, and a cloth of connections no warp.
-void check_model(const Table& table, const ClothEntry& cloth) {
+void check_model(const Table& table, ClothEntry& cloth) {
   const bool woven = cloth.model == "woven";
   const Fabric& f = cloth.fabric;
   const std::array given = {f.stretch_spring.has_value(), f.bend_spring.has_value(),
@@ -163,7 +163,7 @@ void check_model(const Table& table, const ClothEntry& cloth) {
                "the fabric differs, wrinkles or is viscous along warp and weft; give warp = [x, y, z], the "
                "direction of the warp in the rest shape, warp = \"down\", or rest = \"uv\", whose v it is");
   for (const char* key : {"compression", "viscosity"})
-    if (table.has(key)) refuse_with_springs(table, cloth, key);
+    if (table.has(key)) take_with_woven(table, cloth, key);
 }
 
 void read_fabric_name(Table& table, const fs::path& folder, std::string& name) {

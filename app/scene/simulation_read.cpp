@@ -85,6 +85,19 @@ void read_contact(Table& table, SimulationOptions& options) {
   }
 }
 
+// A scene may have keys of several integrators, so that `--set simulation.integrator` can compare them.
+Names idle_keys(const Table& table, const std::string& integrator) {
+  Names idle;
+  const auto look = [&](bool used, std::initializer_list<const char*> keys) {
+    for (const char* key : keys)
+      if (!used && table.has(key)) idle.emplace_back(key);
+  };
+  look(integrator == "pbd", {"substeps", "iterations", "links", "alpha"});
+  look(integrator.starts_with("cvode-") || integrator.starts_with("arkode-"),
+       {"relative_tolerance", "absolute_tolerance_position", "absolute_tolerance_velocity", "max_inner_steps"});
+  return idle;
+}
+
 }  // namespace
 
 SimulationOptions read_simulation(const Table* given) {
@@ -122,6 +135,7 @@ SimulationOptions read_simulation(const Table* given) {
   table.read("settle_speed", options.settle_speed, dimension::speed, Range::positive,
              "also decides between \"settled\" and \"moving\" in run.json");
   table.finish();
+  options.idle_keys = idle_keys(table, options.integrator);
   if (options.frame_rate * options.time_step > 10)
     table.fail(table.has("frame_rate") ? "frame_rate" : "time_step",
                "a frame_rate of " + rounded(options.frame_rate, 4) +
@@ -132,6 +146,9 @@ SimulationOptions read_simulation(const Table* given) {
     table.fail(
         options.duration > a_day || !table.has("time_step") ? "duration" : "time_step",
         "the run would take " + rounded(options.duration / options.time_step, 3) + " steps; check the units");
+  if (!(options.duration > least_of_a_step * options.time_step))
+    table.fail(table.has("duration") ? "duration" : "time_step",
+               "the duration is less than a millionth of a step, so that there would be none; check the units");
   return options;
 }
 

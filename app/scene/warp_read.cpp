@@ -1,5 +1,6 @@
 #include "app/scene/warp_read.h"
 
+#include <cctype>
 #include <cmath>
 
 #include "mesh/base/errors.h"
@@ -8,14 +9,17 @@ namespace drape::app {
 namespace {
 
 // [x, y, z] in the rest shape; or an angle, counterclockwise from v of the texture coordinates, u to the right.
-Vec3 direction(const Node& node, bool rest_is_flat) {
+// or_word: what else may stand there, for the message.
+Vec3 direction(const Node& node, bool rest_is_flat, const std::string& or_word = {}) {
   if (node.kind == Node::Kind::array) {
     const Vec3 warp = vector(node, dimension::number);
     if (warp.isZero()) throw InputError("a direction is not [0, 0, 0]");
     return warp;
   }
-  if (node.kind == Node::Kind::table || node.kind == Node::Kind::boolean)
-    throw InputError("expected a direction [x, y, z], or an angle such as \"30 deg\"");
+  const bool word = node.kind == Node::Kind::text && !node.text.empty() &&
+                    std::isalpha(static_cast<unsigned char>(node.text.front()));
+  if (word || node.kind == Node::Kind::table || node.kind == Node::Kind::boolean)
+    throw InputError("expected " + or_word + "a direction [x, y, z], or an angle such as \"30 deg\"");
   const double angle = quantity(node, dimension::angle, Range::any);
   if (!rest_is_flat)
     throw InputError(
@@ -57,17 +61,19 @@ void read_warp(Table& table, ClothEntry& cloth) {
   const bool down = node ? is_down(*node) : chosen && !cloth.warp;
   cloth.warp_is_down = down && cloth.model == "woven";
   if (!node || down) return;
-  refuse_with_springs(table, cloth, "warp");
+  take_with_woven(table, cloth, "warp");
   if (node->kind == Node::Kind::table) return read_groups(table, *node, cloth);
   try {
-    cloth.warp = direction(*node, cloth.rest_is_flat);
+    cloth.warp = direction(*node, cloth.rest_is_flat, "\"down\", ");
   } catch (const InputError& error) {
     table.fail("warp", error.what());
   }
 }
 
-void refuse_with_springs(const Table& table, const ClothEntry& cloth, const char* key) {
-  if (cloth.model != "woven" && !table.has("model")) table.fail(key, "goes with model = \"woven\"");
+void take_with_woven(const Table& table, ClothEntry& cloth, const char* key) {
+  if (cloth.model == "woven") return;
+  if (!table.has("model")) table.fail(key, "goes with model = \"woven\"");
+  cloth.idle_keys.emplace_back(key);
 }
 
 }  // namespace drape::app

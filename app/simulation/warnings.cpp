@@ -127,6 +127,12 @@ void warn_of_overlapping_bodies(const Scene& scene, Simulation& simulation) {
                                   " mm inside each other: they are moved apart slowly (recovery_speed)");
 }
 
+void tell_of_idle_keys(const std::string& start, const Names& keys, const std::string& chosen, Names& messages) {
+  if (keys.empty()) return;
+  messages.push_back("note: " + start + listed(keys) + (keys.size() == 1 ? " has" : " have") +
+                     " no effect with " + chosen);
+}
+
 // Woven and knitted cloth weighs 10 to 1000 g/m^2.
 void warn_if_heavy(const ClothEntry& entry, Names& messages) {
   constexpr double heaviest = 10;  // kg/m^2
@@ -351,7 +357,11 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
     warn_if_limp(cloth, simulation.messages);
     tell_of_friction(cloth, simulation.messages);
   }
+  tell_of_idle_keys("simulation: ", scene.simulation.idle_keys,
+                    "integrator = \"" + scene.simulation.integrator + "\"", simulation.messages);
   for (const ClothEntry& cloth : scene.cloths) {
+    tell_of_idle_keys("cloth " + cloth.name + ": ", cloth.idle_keys, "model = \"" + cloth.model + "\"",
+                      simulation.messages);
     warn_if_heavy(cloth, simulation.messages);
     tell_of_damping(cloth, simulation.messages);
     tell_of_directions(cloth, simulation.messages);

@@ -44,7 +44,7 @@ struct SurfaceMotion {
 
 class SurfaceDistance {
  public:
-  // Throws InputError when no triangle has an area.
+  // Throws InputError when no triangle has an area, or a vertex of one no finite position.
   explicit SurfaceDistance(const TriangleMesh& mesh);
   ~SurfaceDistance();
   SurfaceDistance(const SurfaceDistance&) = delete;

@@ -112,6 +112,10 @@ bool has_area(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 SurfaceFaces surface_faces(const TriangleMesh& mesh) {
+  for (const Triangle& t : mesh.triangles)
+    for (const int v : t)
+      if (!mesh.positions[static_cast<std::size_t>(v)].allFinite())
+        throw InputError("vertex " + std::to_string(v) + " of the surface has no finite position");
   const std::vector<int> weld = welded(mesh.positions);
   SurfaceFaces surface;
   std::vector<Face>& faces = surface.faces = distinct_faces(mesh, weld);

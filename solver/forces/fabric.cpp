@@ -42,11 +42,14 @@ void check(const Weave& w) {
 
 double mean(double warp, const std::optional<double>& weft) { return weft ? 0.5 * (warp + *weft) : warp; }
 
+void check_density(double area_density) {
+  require(area_density > 0, "area_density", area_density, "kg/m^2", "an area density is greater than zero");
+}
+
 }  // namespace
 
 void check(const Fabric& f) {
-  require(f.area_density > 0, "area_density", f.area_density, "kg/m^2",
-          "an area density is greater than zero");
+  check_density(f.area_density);
   require(f.stretch >= 0, "stretch", f.stretch, "N/m", "a stiffness is not negative");
   require(f.bend >= 0, "bend", f.bend, "N.m", "a bending rigidity is not negative");
   if (f.stretch_spring)
@@ -71,6 +74,7 @@ double mean_stretch(const Fabric& f) { return mean(f.stretch, f.weave.stretch_we
 double mean_bend(const Fabric& f) { return mean(f.bend, f.weave.bend_weft); }
 
 std::vector<double> mass_of_areas(std::vector<double> areas, const TriangleMesh& mesh, double area_density) {
+  check_density(area_density);
   std::vector<char> used(areas.size(), 0);
   for (const Triangle& t : mesh.triangles)
     for (int i : t) used[i] = 1;

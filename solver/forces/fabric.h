@@ -61,7 +61,8 @@ double mean_bend(const Fabric& fabric);     // N m
 void check(const Fabric& fabric);
 
 // The masses [kg] of vertices with these areas [m^2]. A vertex whose faces have no area gets a thousandth of
-// the mean mass, so that it can move; a vertex without faces gets 0 and does not move.
+// the mean mass, so that it can move; a vertex without faces gets 0 and does not move. Throws InputError unless
+// area_density [kg/m^2] is greater than zero.
 std::vector<double> mass_of_areas(std::vector<double> areas, const TriangleMesh& mesh, double area_density);
 
 // The masses of the vertices [kg]: every triangle gives a third of its mass to each of its vertices.

@@ -29,12 +29,14 @@ void NewtonMatrix::assemble(const Linearisation& at, const std::vector<double>& 
     kept_b_ = b;
   }
   add(at, true, b);
+  A_->leave_out_zeros();
 }
 
 void NewtonMatrix::assemble_changing(const Linearisation& at, VecX& b) {
   A_->take_kept();
   b = kept_b_;
   add(at, true, b);
+  A_->leave_out_zeros();
 }
 
 // Adds the forces that differ between the solves of a step, which are those of contact and those whose stencils come and

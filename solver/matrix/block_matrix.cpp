@@ -34,6 +34,20 @@ void BlockMatrix::clear_overlay() {
   values_.resize(base + 9 * static_cast<std::size_t>(overlay_->blocks()) + 3);
   std::fill(values_.begin() + static_cast<std::ptrdiff_t>(base), values_.end(), 0.0);
   assembled_.clear();
+  acting_end_.clear();
+}
+
+void BlockMatrix::leave_out_zeros() {
+  acting_.resize(overlay_->entries().size());
+  acting_end_.resize(static_cast<std::size_t>(overlay_->row_count()));
+  for_chunks<Work::heavy>(overlay_->row_count(), [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) {
+      int& to = acting_end_[static_cast<std::size_t>(k)] = overlay_->row_begin(k);
+      overlay_->in_row(k, [&](const BlockOverlay::Entry& e) {
+        if (!at(e.slot).isZero(0)) acting_[static_cast<std::size_t>(to++)] = e;
+      });
+    }
+  });
 }
 
 void BlockMatrix::keep() {
@@ -79,23 +93,26 @@ void BlockMatrix::multiply(const VecX& x, VecX& y) const {
   add_overlay(x, y);
 }
 
-// Each row gathers its own blocks.
+// Each row gathers its own blocks: first those of columns before it, which are stored as their transposes.
 void BlockMatrix::add_overlay(const VecX& x, VecX& y) const {
+  const bool all = acting_end_.empty();
+  const BlockOverlay::Entry* const entries = all ? overlay_->entries().data() : acting_.data();
   for_chunks<Work::heavy>(overlay_->row_count(), [&](int begin, int end) {
     for (int k = begin; k < end; ++k) {
-      Four sum = {0, 0, 0, 0};
+      const BlockOverlay::Entry* e = entries + overlay_->row_begin(k);
+      const BlockOverlay::Entry* const last =
+          entries + (all ? overlay_->row_begin(k + 1) : acting_end_[static_cast<std::size_t>(k)]);
       double turned[3] = {0, 0, 0};
-      overlay_->in_row(k, [&](const BlockOverlay::Entry& e) {
-        const double* a = block(e.slot);
-        const double* xj = x.data() + 3 * static_cast<std::ptrdiff_t>(e.column);
-        const Four c0 = load(a), c1 = load(a + 3), c2 = load(a + 6);
-        if (e.transposed) {
-          const Four masked = {xj[0], xj[1], xj[2], 0};
-          add_sums(c0 * masked, c1 * masked, c2 * masked, turned);
-        } else {
-          sum += c0 * xj[0] + c1 * xj[1] + c2 * xj[2];
-        }
-      });
+      for (; e < last && e->transposed; ++e) {
+        const double *a = block(e->slot), *xj = x.data() + 3 * static_cast<std::ptrdiff_t>(e->column);
+        const Four masked = {xj[0], xj[1], xj[2], 0};
+        add_sums(load(a) * masked, load(a + 3) * masked, load(a + 6) * masked, turned);
+      }
+      Four sum = {0, 0, 0, 0};
+      for (; e < last; ++e) {
+        const double *a = block(e->slot), *xj = x.data() + 3 * static_cast<std::ptrdiff_t>(e->column);
+        sum += load(a) * xj[0] + load(a + 3) * xj[1] + load(a + 6) * xj[2];
+      }
       double* out = y.data() + 3 * static_cast<std::ptrdiff_t>(overlay_->row(k));
       for (int c = 0; c < 3; ++c) out[c] += sum[c] + turned[c];
     }

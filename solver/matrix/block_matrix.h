@@ -56,6 +56,10 @@ class BlockMatrix {
   // differs by the additions to the diagonal alone.
   std::uint64_t fill() const { return fill_; }
 
+  // To be called when all has been assembled: products leave out the blocks of the overlay that are zero, which half of
+  // them are, because what is near enough to meet mostly does not push.
+  void leave_out_zeros();
+
   void multiply(const VecX& x, VecX& y) const;     // y = A x, in row order
   void add_overlay(const VecX& x, VecX& y) const;  // y += what the overlay's blocks give of A x
 
@@ -68,6 +72,10 @@ class BlockMatrix {
   std::uint64_t fill_ = 0;
   std::vector<double> values_;  // 9 a block, and 3 more, so that the last column can be read four wide
   std::vector<double> kept_;    // the base
+  // Where the entries of each row of the overlay end that are not left out; they stand in `acting_` where the row begins
+  // in the overlay.
+  std::vector<BlockOverlay::Entry> acting_;
+  std::vector<int> acting_end_;
   // The slots of the diagonal blocks that have additions, and these blocks without them.
   std::vector<std::pair<int, Mat3>> assembled_;
 };

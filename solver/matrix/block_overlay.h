@@ -36,6 +36,8 @@ class BlockOverlay {
   // The rows that have blocks, ascending, and their entries with columns ascending.
   int row_count() const { return static_cast<int>(rows_.size()); }
   int row(int k) const { return rows_[k]; }
+  int row_begin(int k) const { return start_[k]; }  // in entries()
+  const std::vector<Entry>& entries() const { return entries_; }
   template <class F>  // f(entry)
   void in_row(int k, const F& f) const {
     for (int e = start_[k]; e < start_[k + 1]; ++e) f(entries_[e]);

@@ -42,6 +42,11 @@ void System::add(std::vector<std::unique_ptr<Force>> forces) {
   for (auto& force : forces) add(std::move(force));
 }
 
+void System::add(const Gravity& gravity) {
+  if (!gravity.g.allFinite()) throw InputError("gravity: an acceleration is three finite numbers");
+  gravity_ = gravity.g;
+}
+
 const std::shared_ptr<const BlockPattern>& System::bind() {
   if (!pattern_) {
     std::vector<ParticlePair> pairs;

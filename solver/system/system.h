@@ -22,7 +22,7 @@ class System {
 
   void add(std::unique_ptr<Force> force);
   void add(std::vector<std::unique_ptr<Force>> forces);
-  void add(const Gravity& gravity) { gravity_ = gravity.g; }
+  void add(const Gravity& gravity);  // throws InputError when it is not finite
 
   int particles() const { return static_cast<int>(masses_.size()); }
   const std::vector<double>& masses() const { return masses_; }

@@ -134,6 +134,13 @@ class Refusals(Workshop):
                      np.zeros((8, 3)))
         self.refuses("a vector: expected an array of shape (3,), but got (2,)", drape.Sphere, [0, 0])
         self.refuses("masses: expected an array of shape (n,), but got (2, 2)", drape.System, np.eye(2))
+        self.refuses("gravity: an acceleration is three finite numbers", drape.System([1]).add,
+                     drape.gravity([0, np.nan, 0]))
+        self.refuses("area_density = -1 kg/m", drape.masses, sheet, -1)
+        hollow = drape.sphere(1, 0.1)
+        hollow.positions[5] = np.nan
+        for body in (drape.MeshBody, drape.LevelSetBody):
+            self.refuses("vertex 5 of the surface has no finite position", body, hollow)
         self.refuses("nx: expected 2 or more, but got 1", drape.grid, 1, 3, 1, 1)
 
     def test_what_no_particle_is(self):
