@@ -13,16 +13,18 @@
 #include <limits>
 #include <optional>
 
+#include "constraints/convex_faces.h"
 #include "constraints/touch.h"
 
 namespace drape {
+
+using namespace internal;
+
 namespace {
 
 // Faces within this angle of the direction between the bodies lie on each other: cos 8 degrees.
 constexpr double facing = 0.99;
-// Shares of the size of the hulls: how far a vertex of a flat face may be beside its plane, and how exactly the
-// nearest points are known.
-constexpr double flatness = 1e-9, exactness = 1e-7;
+constexpr double exactness = 1e-7;  // share of the size of the hulls to which the nearest points are known
 
 btVector3 to_bullet(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
@@ -33,15 +35,26 @@ btMatrix3x3 to_bullet(const Mat3& m) {
 
 }  // namespace
 
-// The hull stands about its own middle, so that no digits are lost where the body was drawn far from the origin.
+// The hull stands about its own middle, so that no digits are lost where the body was drawn far from the origin. Its faces
+// are ours: Bullet's own are of corners that it rounds to a ten-thousandth of the size, and does not find to lie in planes.
 struct Hull::Shape {
   btConvexHullShape hull;
+  btConvexPolyhedron polyhedron;  // without faces where the hull was made of points alone
   Vec3 middle = Vec3::Zero();
-  double size = 0;         // m
-  std::vector<bool> flat;  // by face: its vertices lie in one plane
+  double size = 0;  // m
 
-  const btConvexPolyhedron* polyhedron() const { return hull.getConvexPolyhedron(); }
+  explicit Shape(const std::vector<Vec3>& points);
 };
+
+Hull::Shape::Shape(const std::vector<Vec3>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : points) box.extend(p);
+  middle = box.center();
+  size = box.diagonal().norm();
+  for (const Vec3& p : points) hull.addPoint(to_bullet(Vec3(p - middle)), false);
+  hull.recalcLocalAabb();
+  hull.setMargin(0);
+}
 
 namespace {
 
@@ -50,31 +63,20 @@ btTransform transform(const PlacedHull& placed) {
                      to_bullet(placed.pose.to_world(placed.hull.shape().middle)));
 }
 
-bool is_flat(const btConvexPolyhedron& polyhedron, const btFace& face, double size) {
-  const btVector3 n(face.m_plane[0], face.m_plane[1], face.m_plane[2]);
-  for (int k = 0; k < face.m_indices.size(); ++k)
-    if (std::abs(n.dot(polyhedron.m_vertices[face.m_indices[k]]) + face.m_plane[3]) > flatness * size)
-      return false;
-  return true;
-}
-
 // The face that looks along d [world] best.
 struct Facing {
   double cosine = -1;
   Vec3 normal = Vec3::Zero();
-  bool flat = false;
-  bool lies_on_the_other() const { return flat && cosine > facing; }
+  bool lies_on_the_other() const { return cosine > facing; }
 };
 
 Facing facing_along(const PlacedHull& placed, const Vec3& d) {
   Facing best;
-  const Hull::Shape& shape = placed.hull.shape();
-  if (!shape.polyhedron()) return best;
-  const btAlignedObjectArray<btFace>& faces = shape.polyhedron()->m_faces;
+  const btAlignedObjectArray<btFace>& faces = placed.hull.shape().polyhedron.m_faces;
   for (int k = 0; k < faces.size(); ++k) {
     const Vec3 n =
         placed.pose.direction_to_world(Vec3(faces[k].m_plane[0], faces[k].m_plane[1], faces[k].m_plane[2]));
-    if (n.dot(d) > best.cosine) best = {n.dot(d), n, shape.flat[static_cast<std::size_t>(k)]};
+    if (n.dot(d) > best.cosine) best = {n.dot(d), n};
   }
   return best;
 }
@@ -98,11 +100,11 @@ struct Corners : btDiscreteCollisionDetectorInterface::Result {
 void add_polygon(const PlacedHull& base, const PlacedHull& other, const Vec3& normal, double sign,
                  double reach, std::vector<Touch>& found) {
   const Hull::Shape &b = base.hull.shape(), &o = other.hull.shape();
-  if (!o.polyhedron()) return;
+  if (o.polyhedron.m_faces.size() == 0) return;
   thread_local btVertexArray face, cut;  // scratch: a face in the world, and what clipping leaves of it
   Corners corners(normal, sign, found);
   btPolyhedralContactClipping::clipHullAgainstHull(
-      to_bullet(Vec3(-normal)), *b.polyhedron(), *o.polyhedron(), transform(base), transform(other),
+      to_bullet(Vec3(-normal)), b.polyhedron, o.polyhedron, transform(base), transform(other),
       -std::numeric_limits<double>::max(), reach, face, cut, corners);
 }
 
@@ -127,21 +129,21 @@ std::optional<Touch> nearest(const PlacedHull& a, const PlacedHull& b) {
 
 bool Hull::available() { return true; }
 
-Hull::Hull(const std::vector<Vec3>& points) {
-  const auto shape = std::make_shared<Shape>();
-  Eigen::AlignedBox3d box;
-  for (const Vec3& p : points) box.extend(p);
-  shape->middle = box.center();
-  shape->size = box.diagonal().norm();
-  for (const Vec3& p : points) shape->hull.addPoint(to_bullet(Vec3(p - shape->middle)), false);
-  shape->hull.recalcLocalAabb();
-  shape->hull.setMargin(0);
+Hull::Hull(const std::vector<Vec3>& points) : shape_(std::make_shared<Shape>(points)) {}
+
+Hull::Hull(const TriangleMesh& convex) {
+  const auto shape = std::make_shared<Shape>(convex.positions);
+  btConvexPolyhedron& polyhedron = shape->polyhedron;
+  for (const Vec3& p : convex.positions)
+    polyhedron.m_vertices.push_back(to_bullet(Vec3(p - shape->middle)));
+  for (const ConvexFace& f : convex_faces(convex)) {
+    btFace face;
+    for (const int v : f.corners) face.m_indices.push_back(v);
+    for (int k = 0; k < 3; ++k) face.m_plane[k] = f.normal[k];
+    face.m_plane[3] = f.normal.dot(shape->middle) - f.offset;
+    polyhedron.m_faces.push_back(face);
+  }
   shape_ = shape;
-  if (points.size() < 4) return;  // a point or a segment has no faces
-  shape->hull.initializePolyhedralFeatures();
-  const btConvexPolyhedron& polyhedron = *shape->polyhedron();
-  for (int k = 0; k < polyhedron.m_faces.size(); ++k)
-    shape->flat.push_back(is_flat(polyhedron, polyhedron.m_faces[k], shape->size));
 }
 
 void add_touches(const PlacedHull& a, const PlacedHull& b, double reach, std::vector<Touch>& found) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "constraints/pose.h"
+#include "mesh/triangles/triangle_mesh.h"
 
 namespace drape {
 
@@ -18,7 +19,8 @@ class Hull {
   static bool available();
 
   Hull() = default;
-  explicit Hull(const std::vector<Vec3>& points);  // m, in the body's frame; one point or more
+  explicit Hull(const std::vector<Vec3>& points);  // m, in the body's frame; one point or more, without faces
+  explicit Hull(const TriangleMesh& convex);       // closed, and bulges everywhere
 
   struct Shape;  // in Bullet's words: hull.cpp
   const Shape& shape() const { return *shape_; }

@@ -6,6 +6,7 @@ namespace drape {
 bool Hull::available() { return false; }
 
 Hull::Hull(const std::vector<Vec3>&) {}
+Hull::Hull(const TriangleMesh&) {}
 
 void add_touches(const PlacedHull&, const PlacedHull&, double, std::vector<Touch>&) {}
 

@@ -37,6 +37,7 @@ struct ContactReport {
   double deepest = 0;       // how deep the deepest particle was inside a body when the step began [m]
   int self_contacts = 0;    // pairs of cloth and cloth that push each other
   int self_guarded = 0;     // particles that were pushed or stopped so that no cloth passes through cloth
+  int stood_still = 0;      // particles of pieces that the guard left where they began
   int tangled = 0;          // particles where cloth passes through cloth
   int pinched = 0;          // particles that a body could not be kept off, or that bodies hold between them
   int body_contacts = 0;    // points at which bodies press on each other

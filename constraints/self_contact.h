@@ -226,6 +226,8 @@ class SelfContacts {
   int pushing() const { return pushing_; }  // how many of them pushed at its end
   // Whether the guard of the last step pushed or stopped the particle.
   bool is_stopped(int particle) const { return any() && !stopped_.empty() && stopped_[particle] != 0; }
+  // How many particles the last guard left where they began, with all of their piece, since nothing else kept it apart.
+  int stood_still() const { return stood_still_; }
   // Whether the cloth passed through itself when the step began.
   bool crossing() const;
   int tangled() const;  // particles near triangles that pass through each other at the end of the last step
@@ -250,6 +252,9 @@ class SelfContacts {
   void find_relief(const StepMotion& step, const std::vector<Contact>& on_bodies);
   int go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX& v_new);
   void shorten(const StepMotion& step, const VecX& x_new, bool in_common);
+  void let_pieces_stand(const StepMotion& step);
+  void mark_farthest(const StepMotion& step, std::vector<char>& pieces) const;
+  bool stand_still(const StepMotion& step, const std::vector<char>& pieces);
   double share_of_way(double slope, double curvature, const VecX& x_new) const;
   bool is_on_body(const Encounter& e) const;
   bool may_pass(const Encounter& e) const;
@@ -295,7 +300,7 @@ class SelfContacts {
   double recovery_ = 0;                // m, by which tangles move in a step at most
   int touched_body_ = 0;               // not 0: the same of cloth and a body
   int touched_ = 0;  // not 0: a pair touched at the start of the step, and may have crossed in it
-  int pushing_ = 0;
+  int pushing_ = 0, stood_still_ = 0;
   // By particle, those of bodies included.
   std::vector<double> thickness_, friction_;     // m, mu
   std::vector<int> piece_, sheet_;               // the connected piece, and the sheet, that it belongs to

@@ -17,7 +17,7 @@ namespace {
 
 // What fails is pushed apart in so many rounds at most. What still fails is stopped: so often the way of a particle is shortened
 // by shares, and then given up. After so many rounds what is stopped has no way in common any more, and after the last round
-// everything stands still.
+// whole pieces stand still.
 constexpr int rounds_of_pushes = 40, stops_by_shares = 8, rounds_in_common = 40, most_rounds = 64;
 
 // No two things end a step nearer than this, or come nearer than half of it on the way [m]: places that are written as
@@ -297,9 +297,57 @@ void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_co
     stop_tangles(growing);
     go_shares(step, x_new, together);
   }
-  std::fill(way_.begin(), way_.end(), 0.0);
-  ahead_.head(3 * cloth_particles()) = step.x.head(3 * cloth_particles());
-  if (surfaces_->any() && follow_all(step.x, ahead_)) let_bodies_yield(meetings(step.x, ahead_));
+  let_pieces_stand(step);
+}
+
+// Leaves the pieces to which what still fails belongs where they began; and the one that goes farthest where so much is near
+// that there is no list of what fails. Other pieces go on, unless they meet these.
+void SelfContacts::let_pieces_stand(const StepMotion& step) {
+  std::vector<char> stands(way_.size(), 0);  // by piece
+  while (true) {
+    if (!follow_all(step.x, ahead_)) {
+      mark_farthest(step, stands);
+      if (!stand_still(step, stands)) return;
+      continue;
+    }
+    const std::vector<Meeting>& failing = meetings(step.x, ahead_);
+    for (const Meeting& meeting : failing)
+      for (const int v : meeting.who.v)
+        if (v < cloth_particles()) stands[piece_[v]] = 1;
+    bool passes = failing.empty();
+    if (passes && crossing()) {
+      const std::vector<int>& growing = tangles_->growing(ahead_);
+      passes = growing.empty();
+      for (int i = 0; i < cloth_particles() && !passes; ++i)
+        if (std::ranges::binary_search(growing, tangles_->tangle(i))) stands[piece_[i]] = 1;
+    }
+    if (passes) return;
+    if (!stand_still(step, stands) && !let_bodies_yield(failing)) return;
+  }
+}
+
+// Marks the piece with the particle that goes farthest.
+void SelfContacts::mark_farthest(const StepMotion& step, std::vector<char>& pieces) const {
+  double most = 0;
+  int farthest = -1;
+  for (int i = 0; i < cloth_particles(); ++i) {
+    const double way = (ahead_.segment<3>(3 * i) - step.x.segment<3>(3 * i)).squaredNorm();
+    if (way > most) most = way, farthest = i;
+  }
+  if (farthest >= 0) pieces[piece_[farthest]] = 1;
+}
+
+// Returns whether any particle of these pieces had a way left.
+bool SelfContacts::stand_still(const StepMotion& step, const std::vector<char>& pieces) {
+  int count = 0;
+  for (int i = 0; i < cloth_particles(); ++i) {
+    if (pieces[piece_[i]] == 0 || ahead_.segment<3>(3 * i) == step.x.segment<3>(3 * i)) continue;
+    way_[i] = 0;
+    ahead_.segment<3>(3 * i) = step.x.segment<3>(3 * i);
+    ++count;
+  }
+  stood_still_ += count;
+  return count > 0;
 }
 
 // Takes the particles to ahead_, and changes their velocity by what changes of their way; relief is none of it. Returns of how
@@ -324,6 +372,7 @@ int SelfContacts::go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX
 
 int SelfContacts::guard(const std::vector<MovingBody>& bodies, const std::vector<Contact>& on_bodies,
                         bool in_common, VecX& x_new, VecX& v_new) {
+  stood_still_ = 0;
   if (!any() || (is_proven_ && !crossing() && x_new == proven_) || !x_new.allFinite()) return 0;
   const StepMotion& step = surfaces_->step();
   bodies_ = &bodies;

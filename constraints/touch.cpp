@@ -51,6 +51,7 @@ TouchForm::TouchForm(const Shape& shape) : kind_(Kind::any) {
     reach_ = std::numeric_limits<double>::infinity();
     return;
   }
+  TriangleMesh mesh;
   if (const Sphere* const sphere = std::get_if<Sphere>(&shape)) {
     kind_ = Kind::sphere;
     radius_ = sphere->radius;
@@ -60,7 +61,7 @@ TouchForm::TouchForm(const Shape& shape) : kind_(Kind::any) {
     radius_ = capsule->radius;
     corners_ = {capsule->a, capsule->b};
   } else {
-    const TriangleMesh mesh = mesh_of(shape);
+    mesh = mesh_of(shape);
     corners_ = mesh.positions.empty() ? points_on(shape) : mesh.positions;
     const bool solid =
         !deforming(shape) && mesh.vertex_count() <= most_convex_corners && uniform_solid(shape, 1);
@@ -70,7 +71,7 @@ TouchForm::TouchForm(const Shape& shape) : kind_(Kind::any) {
   const Eigen::AlignedBox3d box = bounds_of(shape);
   middle_ = box.center();
   reach_ = box.diagonal().norm() / 2;
-  if (kind_ == Kind::convex && Hull::available()) hull_ = Hull(corners_);
+  if (kind_ == Kind::convex && Hull::available()) hull_ = mesh.triangles.empty() ? Hull(corners_) : Hull(mesh);
 }
 
 bool needs_hulls(const TouchForm& a, const TouchForm& b) {

@@ -144,6 +144,23 @@ TEST_CASE("a run leaves no frames of an earlier one that it did not write itself
   CHECK(run("none", "[3, 0, 0]") == none);
 }
 
+TEST_CASE("a run takes nothing away from a folder in which there was no run", "[output]") {
+  for (const std::string frames : {"pc2", "obj", "none"}) {
+    const Stage stage;
+    const std::set<std::string> mine = {"bodies.csv", "steps.txt", "frames/sheet_0007.obj",
+                                        "fields/sheet.velocity.npy"};
+    fs::create_directories(stage.path / "o/frames");
+    fs::create_directories(stage.path / "o/fields");
+    for (const std::string& file : mine) stage.write("o/" + file, "mine");
+    REQUIRE(stage.run("duration = 0.1", "[0, -5, 0]", "--quiet --frames " + frames).exit_code == 0);
+    for (const std::string& file : mine) {
+      INFO(frames << ", " << file);
+      const bool written = frames != "none" && file == "fields/sheet.velocity.npy";
+      CHECK((content(stage.path / "o" / file) == "mine") == !written);
+    }
+  }
+}
+
 TEST_CASE("a run whose frames appear one by one begins without those of an earlier one", "[output]") {
   const Stage stage;
   const std::string moves = "[3, 0, 0]\nmotion = { velocity = [1, 0, 0] }";

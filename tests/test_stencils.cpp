@@ -375,3 +375,43 @@ TEST_CASE("what is added to the diagonal replaces what was added before, to the 
   CHECK(A.at(A.pattern().diagonal(7)) ==
         Mat3(system.masses()[A.pattern().particle_of()[7]] * Mat3::Identity()));
 }
+
+TEST_CASE("products leave out the far blocks that are zero, with the same bits", "[solvers]") {
+  const TriangleMesh mesh = grid(12, 12, 1, 1);
+  const int n = mesh.vertex_count();
+  System system(lumped_mass(mesh, 0.2));
+  system.add(noh_jung(mesh, {}));
+  int round = 0;
+  using Springs = StencilForce<AlongDistance<LinearSpring>>;
+  system.add(std::make_unique<Springs>([&](const StepStart&, std::vector<Springs::Element>& found) {
+    found.clear();
+    for (int i = 0; i < n; ++i)
+      if (const int j = (i * 37 + 11) % n; j != i)
+        found.push_back({{i, j}, {0.1, (i + round) % 3 == 0 ? 200.0 : 0.0}});
+    return true;
+  }));
+  const State state = at_rest(mesh);
+  const VecX x = random_vector(3 * n, 1, 9), still = VecX::Zero(3 * n);
+  BlockMatrix A = system.matrix();
+  for (; round < 3; ++round) {
+    system.begin_step({0, 0.01, state.x, state.v});
+    BlockMatrix fresh = system.matrix();
+    for (BlockMatrix* matrix : {&A, &fresh}) {
+      VecX unused = still;
+      matrix->set_to_mass(system.masses());
+      for (const auto& force : system.forces())
+        force->add_linearised(state.x, state.v, still, 0.01, Stiffness::tangent, *matrix, unused);
+    }
+    int zero = 0;
+    for (int k = 0; k < A.overlay().blocks(); ++k) zero += A.at(A.pattern().blocks() + k).isZero(0);
+    REQUIRE(zero > A.overlay().blocks() / 3);
+    REQUIRE(zero < A.overlay().blocks());
+    VecX whole(3 * n), before(3 * n), after(3 * n);
+    fresh.multiply(x, whole);
+    A.multiply(x, before);
+    A.leave_out_zeros();
+    A.multiply(x, after);
+    CHECK(before == whole);
+    CHECK(after == whole);
+  }
+}

@@ -64,6 +64,9 @@ void add_reports_of_steps(py::module_& m) {
                     "pairs of cloth and cloth that push each other")
       .def_readonly("self_guarded", &StepReport::self_guarded,
                     "particles that were pushed or stopped so that no cloth passes through cloth")
+      .def_readonly("stood_still", &StepReport::stood_still,
+                    "particles of pieces that were left where they began, since nothing else kept cloth from "
+                    "passing through cloth")
       .def_readonly("tangled", &StepReport::tangled,
                     "particles where cloth passes through cloth, and is brought apart")
       .def_readonly("pinched", &StepReport::pinched,

@@ -98,6 +98,17 @@ void remove_dead_parts(const fs::path& folder) {
   for (const fs::path& path : dead) fs::remove(path, ignored);
 }
 
+// Whether a run wrote here, or was killed while it did. Only then are files gone that this run does not write.
+bool was_run_in(const fs::path& folder) {
+  if (fs::exists(folder / "run.json")) return true;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(".steps.csv.") && name.ends_with(".part")) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void make_output_folder(const fs::path& folder, const std::vector<std::string>& files) {
@@ -119,6 +130,7 @@ Output::Output(fs::path folder, const Scene& scene, const Simulation& simulation
     : folder_(std::move(folder)),
       simulation_(simulation),
       frames_(frames),
+      was_run_before_(was_run_in(folder_)),
       bodies_(folder_, simulation, frames) {
   spare_inputs(scene);
   std::vector<std::string> last = {"run.json"};  // written when the run is over
@@ -207,6 +219,7 @@ void Output::finish(const State& state, RunRecord& record) {
 // What an earlier run wrote of its frames and this one does not: it would show another motion beside the new mesh, or
 // belong to another mesh of that name. At the start of a run whose frames appear one by one that is all of it.
 void Output::remove_earlier(bool all) const {
+  if (!was_run_before_) return;
   std::vector<fs::path> earlier = bodies_.not_written();
   for (const Cloth& cloth : simulation_.cloths) {
     if (frames_ != Frames::pc2) earlier.push_back(cloth_path(cloth, ".pc2"));

@@ -49,6 +49,7 @@ class Output {
   std::filesystem::path folder_;
   const Simulation& simulation_;
   Frames frames_;
+  bool was_run_before_;  // in this folder
   BodyFiles bodies_;
   std::vector<double> frame_times_;  // s
   std::vector<Pc2Writer> caches_;

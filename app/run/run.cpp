@@ -134,9 +134,8 @@ void Run::describe() {
   record_.numerics = numerics_json(wanted_);
   record_.settings = settings_json(simulation_.scene->settings);
   record_.warnings = simulation_.messages;
-  record_.crossings_at_start = Sheets(simulation_.cloths, simulation_.state.x).crossings();
-  record_.crossings_max = record_.crossings_at_start;
-  first_crossings_ = row_.crossings = crossings_as_written(simulation_);
+  row_.crossings = crossings_as_written(simulation_);
+  record_.crossings_at_start = record_.crossings_max = row_.crossings;
   const Scene& scene = *simulation_.scene;
   for (std::size_t k = 0; k < simulation_.cloths.size(); ++k) {
     const Cloth& c = simulation_.cloths[k];
@@ -185,11 +184,11 @@ const StepRow& Run::step() {
     return row_;
   }
   framed_ = false;
+  watch_settling();
   count_crossings();
   record_step(row_);
   write_due_frame();
   progress_.show(row_);
-  watch_settling();
   return row_;
 }
 
@@ -203,7 +202,8 @@ void Run::watch_settling() {
 
 // Nothing moves, nor is it going to.
 bool Run::at_rest(const StepRow& row) const {
-  return slow(std::max(row.max_speed, fastest_way_)) && !(row.time < last_motion_);
+  return row.report.stood_still == 0 && slow(std::max(row.max_speed, fastest_way_)) &&
+         !(row.time < last_motion_);
 }
 
 // Neither cloth nor body with a mass moves. [m/s]
@@ -258,6 +258,11 @@ void Run::record_step(const StepRow& row) {
     tell_once(told_cut_, at + "failed whole and was taken in " + std::to_string(report.substeps) +
                              " pieces; further ones are counted in run.json (steps_cut)");
   }
+  if (report.stood_still > 0)
+    tell_once(told_still_, at + "left " + counted(report.stood_still, "particle") +
+                               " of cloth where they were, since nothing else kept cloth from passing through "
+                               "cloth: their motion is lost; is the cloth stretched or crumpled at the start, or "
+                               "the time step too long?");
   if (!report.converged) {
     ++record_.steps_not_converged;
     tell_once(
@@ -268,10 +273,10 @@ void Run::record_step(const StepRow& row) {
 }
 
 void Run::count_crossings() {
-  if (!loop_.schedule().frame()) return;
+  if (!loop_.schedule().frame() && !over()) return;  // the end is a frame, too
   row_.crossings = crossings_as_written(simulation_);
   record_.crossings_max = std::max(record_.crossings_max, row_.crossings);
-  if (row_.crossings > first_crossings_) tell_of_crossings(row_.crossings);
+  if (row_.crossings > record_.crossings_at_start) tell_of_crossings(row_.crossings);
 }
 
 void Run::tell_of_crossings(int crossings) {
@@ -374,10 +379,10 @@ const RunRecord& Run::finish() {
   describe_tears();
   if (!framed_) write_frame();  // the last frame is the end
   record_.simulated_seconds = simulation_.state.time;
-  record_.settled = record_.steps > 0 && slow(std::max(record_.max_speed, fastest_way_));
+  record_.settled = record_.steps > 0 && row_.report.stood_still == 0 && slow(std::max(record_.max_speed, fastest_way_));
   for (double depth : simulation_.constraints->penetration(simulation_.state.x))
     record_.max_penetration = std::max(record_.max_penetration, depth);
-  record_.crossings = Sheets(simulation_.cloths, simulation_.state.x).crossings();
+  record_.crossings = crossings_as_written(simulation_);
   record_.crossings_max = std::max(record_.crossings_max, record_.crossings);
   if (record_.crossings > record_.crossings_at_start) tell_of_crossings(record_.crossings);
   tell_of_open_seams();

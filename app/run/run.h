@@ -79,8 +79,7 @@ class Run {
   bool settled_ = false;
   double last_motion_;         // s
   double settled_since_ = -1;  // s; -1: something moves
-  bool told_cut_ = false, told_not_converged_ = false, told_crossings_ = false;
-  int first_crossings_ = 0;                  // of the start, as it is written
+  bool told_cut_ = false, told_not_converged_ = false, told_still_ = false, told_crossings_ = false;
   const bool from_start_;                    // the run begins at time 0
   bool touched_ = false;                     // anything, at the end of a step
   std::vector<Eigen::AlignedBox3d> begins_;  // about each cloth [m]

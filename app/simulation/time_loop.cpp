@@ -20,11 +20,19 @@ const StepReport& TimeLoop::step() {
   State& state = simulation_.state;
   before_ = state;
   number_ = schedule_.number() + 1;
-  report_ = simulation_.advance(schedule_.next_step());
-  if (const int bad = first_not_finite(state); bad >= 0) {  // out of the range of numbers
-    if (report_.done) report_.failure = {"a position or velocity is not a finite number", bad, {}};
+  const auto fail = [&](int particle) {
+    if (report_.done) report_.failure = {"a position or velocity is not a finite number", particle, {}};
     report_.done = false;
-    state = before_;
+  };
+  report_ = {};
+  if (const int bad = first_not_finite(state); bad >= 0) {  // set from outside
+    fail(bad);
+  } else {
+    report_ = simulation_.advance(schedule_.next_step());
+    if (const int late = first_not_finite(state); late >= 0) {  // out of the range of numbers
+      fail(late);
+      state = before_;
+    }
   }
   failed_ = !report_.done;
   if (failed_) return report_;

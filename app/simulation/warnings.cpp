@@ -288,13 +288,15 @@ void warn_if_long(const Cloth& cloth, Names& messages) {
                      "along; use a grid of squares, or model = \"noh-jung\"");
 }
 
-// Contact holds vertices: an edge as long as a body is wide lets it through.
+// Contact holds vertices: an edge as long as a body is wide lets it through. Of a mesh cloth with self_contact meets all.
 void warn_if_coarse(const Scene& scene, Simulation& simulation) {
   const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
-  for (const Cloth& cloth : simulation.cloths) {
+  for (std::size_t part = 0; part < simulation.cloths.size(); ++part) {
+    const Cloth& cloth = simulation.cloths[part];
+    const bool meets = part < scene.cloths.size() && scene.cloths[part].self_contact;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       const double radius = longest_edge(bodies[k].obstacle().shape);
-      if (cloth.report.median_edge <= radius) continue;
+      if (cloth.report.median_edge <= radius || (meets && bodies[k].surface())) continue;
       simulation.messages.push_back(
           std::string("warning: ") + (cloth.rope ? "rope " : "cloth ") + cloth.name + " is too coarse for " +
           body_name(bodies[k].obstacle(), scene.obstacles[k].name) + ": its edges (median " +

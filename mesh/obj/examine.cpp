@@ -222,7 +222,8 @@ void Examiner::edge_defects() {
   if (many > 0) {
     add(Severity::warning,
         count(many, "edge has", "edges have") +
-            " more than two triangles; each pair of them will bend as one hinge",
+            " more than two triangles: springs bend there as a hinge for each pair of them, woven cloth bends "
+                "freely there",
         at_many);
   }
   if (inconsistent > 0) {

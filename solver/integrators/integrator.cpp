@@ -29,11 +29,12 @@ void end_step(ContactStep& contacts, VecX& x, VecX& v, StepReport& report) {
   report.guarded += contact.guarded;
   report.self_contacts = contact.self_contacts;
   report.self_guarded += contact.self_guarded;
+  report.stood_still = std::max(report.stood_still, contact.stood_still);
   report.tangled = contact.tangled;
   report.pinched = contact.pinched;
   report.body_contacts = contact.body_contacts;
   report.body_overlap = std::max(report.body_overlap, contact.body_overlap);
-  report.converged = report.converged && contact.converged;
+  report.converged = report.converged && contact.converged && contact.stood_still == 0;
   report.penetration = std::max(report.penetration, contact.deepest);
 }
 

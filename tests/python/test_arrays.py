@@ -136,7 +136,6 @@ class Refusals(Workshop):
         self.refuses("masses: expected an array of shape (n,), but got (2, 2)", drape.System, np.eye(2))
         self.refuses("gravity: an acceleration is three finite numbers", drape.System([1]).add,
                      drape.gravity([0, np.nan, 0]))
-        self.refuses("area_density = -1 kg/m", drape.masses, sheet, -1)
         hollow = drape.sphere(1, 0.1)
         hollow.positions[5] = np.nan
         for body in (drape.MeshBody, drape.LevelSetBody):

@@ -196,9 +196,47 @@ class Callbacks(Runs):
         with self.assertRaises(drape.StepError) as caught:
             simulation.run(out=self.folder / "o", callback=spoil)
         self.assertIn("step 5 (from 0.04 s) failed: ", str(caught.exception))
-        self.assertIn(" of sheet (at ", str(caught.exception))
+        self.assertIn("worst at vertex 7 of sheet (at ", str(caught.exception))
         self.assertEqual(self.complete("o")["steps"], 4)
         self.assertEqual(self.record("o")["state"], "failed")
+
+    def test_only_the_piece_that_cannot_be_kept_apart_stands_still(self):
+        sheet = str(self.folder / "sheet.obj")
+        fine = drape.grid(31, 31, 1, 1)
+        drape.write_obj(self.folder / "fine.obj", fine)
+        simulation = drape.read_scene({
+            "simulation": {"duration": 0.15, "tolerance": 1e-4},
+            "cloth": [{"mesh": str(self.folder / "fine.obj"), "name": "stretched", "self_contact": True,
+                       "fabric": "cotton-poplin", "model": "noh-jung"},
+                      {"mesh": sheet, "name": "far", "self_contact": True, "translate": [20, 0, 0]}],
+            "obstacle": [{"shape": "plane", "point": [0, -30, 0]}]})
+        simulation.cloths[0].positions[:] *= 5
+        far, stood = simulation.cloths[1], []
+
+        def look(step):
+            stood.append(step.stood_still)
+            self.assertFalse(step.stood_still > 0 and step.converged)
+            self.assertAlmostEqual(far.velocities[:, 1].mean(), -9.81 * step.time, places=3)
+
+        record = simulation.run(callback=look)
+        self.assertEqual(set(stood), {0, 961})
+        self.assertTrue([w for w in record["warnings"] if "left 961 particles of cloth where they were" in w])
+        self.assertGreaterEqual(record["steps_not_converged"], sum(n > 0 for n in stood))
+
+    def test_the_end_is_a_frame_that_crossings_are_counted_in(self):
+        sheet = str(self.folder / "sheet.obj")
+        for rate in (0, 25):
+            simulation = drape.read_scene({
+                "simulation": {"duration": 0.11, "frame_rate": rate, "gravity": [0, -98.1, 0]},
+                "cloth": [{"mesh": sheet, "name": "above"},
+                          {"mesh": sheet, "name": "below", "translate": [0.01, -0.5, 0.02], "pins": [
+                              {"vertices": list(range(169))}], "rotate": {"axis": [1, 0, 0], "angle": "30 deg"}}]})
+            record = simulation.run(out=self.folder / "o")
+            crossings = record["crossings"]
+            self.assertGreater(crossings["end"], 0)
+            last = self.rows("o")[-1]["crossings"]
+            self.assertEqual(int(last), crossings["end"])
+            self.assertGreaterEqual(crossings["max"], crossings["end"])
 
     def test_a_folder_that_cannot_be(self):
         (self.folder / "file").write_text("")
