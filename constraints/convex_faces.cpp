@@ -47,8 +47,8 @@ struct FlatSide {
 
 // The mean plane of the triangles that lie about as the first of these does. One of them alone would not say where the far
 // end of the side is.
-FlatSide mean_plane(const TriangleMesh& mesh, const std::vector<Vec3>& across, const std::vector<std::size_t>& of,
-                    double near) {
+FlatSide mean_plane(const TriangleMesh& mesh, const std::vector<Vec3>& across,
+                    const std::vector<std::size_t>& of, double near) {
   const auto corner = [&](std::size_t k) -> const Vec3& { return mesh.positions[mesh.triangles[k][0]]; };
   const Vec3 n = across[of.front()].normalized();
   const double offset = n.dot(corner(of.front()));
@@ -82,9 +82,8 @@ std::vector<ConvexFace> convex_faces(const TriangleMesh& mesh) {
   // The largest triangle that is left says where the next plane is, because its normal is known best.
   std::vector<std::size_t> left(count);
   std::iota(left.begin(), left.end(), 0);
-  std::ranges::stable_sort(left, [&](std::size_t a, std::size_t b) {
-    return across[a].squaredNorm() > across[b].squaredNorm();
-  });
+  std::ranges::stable_sort(
+      left, [&](std::size_t a, std::size_t b) { return across[a].squaredNorm() > across[b].squaredNorm(); });
   std::vector<ConvexFace> faces;
   while (!left.empty() && across[left.front()].norm() > tolerance * tolerance) {
     const auto [normal, middle] = mean_plane(mesh, across, left, 100 * tolerance);

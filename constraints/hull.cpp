@@ -134,8 +134,7 @@ Hull::Hull(const std::vector<Vec3>& points) : shape_(std::make_shared<Shape>(poi
 Hull::Hull(const TriangleMesh& convex) {
   const auto shape = std::make_shared<Shape>(convex.positions);
   btConvexPolyhedron& polyhedron = shape->polyhedron;
-  for (const Vec3& p : convex.positions)
-    polyhedron.m_vertices.push_back(to_bullet(Vec3(p - shape->middle)));
+  for (const Vec3& p : convex.positions) polyhedron.m_vertices.push_back(to_bullet(Vec3(p - shape->middle)));
   for (const ConvexFace& f : convex_faces(convex)) {
     btFace face;
     for (const int v : f.corners) face.m_indices.push_back(v);

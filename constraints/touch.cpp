@@ -71,7 +71,8 @@ TouchForm::TouchForm(const Shape& shape) : kind_(Kind::any) {
   const Eigen::AlignedBox3d box = bounds_of(shape);
   middle_ = box.center();
   reach_ = box.diagonal().norm() / 2;
-  if (kind_ == Kind::convex && Hull::available()) hull_ = mesh.triangles.empty() ? Hull(corners_) : Hull(mesh);
+  if (kind_ == Kind::convex && Hull::available())
+    hull_ = mesh.triangles.empty() ? Hull(corners_) : Hull(mesh);
 }
 
 bool needs_hulls(const TouchForm& a, const TouchForm& b) {

@@ -333,7 +333,8 @@ TEST_CASE("check and list change nothing", "[cli]") {
 TEST_CASE("what cannot be printed is told, but not to who stopped reading", "[cli]") {
   const Folder folder;
   if (fs::exists("/dev/full"))
-    for (const std::string& words : std::initializer_list<std::string>{"list", "keys", "check '" + source_dir() + "/data/scenes/sheet-on-ball.toml'"}) {
+    for (const std::string& words : std::initializer_list<std::string>{
+             "list", "keys", "check '" + source_dir() + "/data/scenes/sheet-on-ball.toml'"}) {
       const Outcome full = folder.drape(words + " >/dev/full");
       CHECK(full.exit_code == 2);
       CHECK_THAT(full.err, Contains("could not be written: No space left on device"));

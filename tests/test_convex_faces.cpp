@@ -40,7 +40,8 @@ TriangleMesh subdivided(TriangleMesh mesh, int times) {
 std::vector<Mat3> turns(int count) {
   std::vector<Mat3> all = {Mat3::Identity()};
   for (int k = 1; k < count; ++k) {
-    const Eigen::Quaterniond q(std::cos(1.3 * k), std::sin(2.1 * k), std::cos(3.7 * k + 1), std::sin(0.7 * k));
+    const Eigen::Quaterniond q(std::cos(1.3 * k), std::sin(2.1 * k), std::cos(3.7 * k + 1),
+                               std::sin(0.7 * k));
     all.push_back(q.normalized().toRotationMatrix());
   }
   return all;
@@ -58,7 +59,8 @@ TriangleMesh turned(TriangleMesh mesh, const Mat3& R, double digits) {
 
 }  // namespace
 
-TEST_CASE("a box of triangles has six faces of four corners, however it is turned and divided", "[shapes][meeting]") {
+TEST_CASE("a box of triangles has six faces of four corners, however it is turned and divided",
+          "[shapes][meeting]") {
   const Vec3 size(0.2, 0.15, 0.3);
   for (const Mat3& R : turns(8))
     for (const int times : {0, 2, 3})
@@ -74,7 +76,9 @@ TEST_CASE("a box of triangles has six faces of four corners, however it is turne
           CHECK(face.offset == Approx(size[axis] / 2).margin(1e-6));
           if (digits == 0) REQUIRE(face.corners.size() == 4);
           Vec3 area = Vec3::Zero();
-          const auto at = [&](std::size_t k) { return mesh.positions[face.corners[k % face.corners.size()]]; };
+          const auto at = [&](std::size_t k) {
+            return mesh.positions[face.corners[k % face.corners.size()]];
+          };
           for (std::size_t k = 0; k < face.corners.size(); ++k) area += at(k).cross(at(k + 1)) / 2;
           CHECK(area.dot(face.normal) == Approx(size.prod() / size[axis]).epsilon(1e-4));
         }
@@ -99,10 +103,12 @@ TEST_CASE("a brick rests on a ground that is turned in any way as on one that li
         Constraints constraints;
         const TriangleMesh mesh = turned(subdivided(box_mesh(slab), std::max(times, 0)), R, 6);
         if (times < 0)
-          constraints.add({.shape = Box{.centre = Vec3::Zero(), .size = slab, .rotation = R}, .friction = 0.3});
+          constraints.add(
+              {.shape = Box{.centre = Vec3::Zero(), .size = slab, .rotation = R}, .friction = 0.3});
         else
           constraints.add({.shape = body(mesh), .friction = 0.3});
-        const Vec3 up = R.col(1), start = (slab[1] + brick[1] + 0.002) / 2 * up + 0.15 * R.col(0) + 0.013 * R.col(2);
+        const Vec3 up = R.col(1),
+                   start = (slab[1] + brick[1] + 0.002) / 2 * up + 0.15 * R.col(0) + 0.013 * R.col(2);
         Obstacle falling{.shape = Box{.centre = start, .size = brick, .rotation = R}, .friction = 0.3};
         falling.rigid = RigidBody{.mass = 0.5,
                                   .inertia = uniform_solid(falling.shape, 0.5)->inertia,

@@ -314,7 +314,8 @@ TEST_CASE("what a scene gives and its integrator or model does not use is told",
 }
 
 TEST_CASE("a scene whose duration is no step is refused", "[scene]") {
-  for (const char* table : {"duration = \"1 ns\"", "time_step = \"10 ns\"\nframe_rate = 0\nduration = \"5e-15 s\""})
+  for (const char* table :
+       {"duration = \"1 ns\"", "time_step = \"10 ns\"\nframe_rate = 0\nduration = \"5e-15 s\""})
     CHECK_THROWS_WITH(read(std::string("[simulation]\n") + table + "\n" + cloth),
                       StartsWith("scene.toml:2: duration") || Contains("duration = \"5e-15 s\""));
 }

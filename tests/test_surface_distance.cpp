@@ -199,7 +199,8 @@ TEST_CASE("a surface without area is refused", "[shapes][mesh]") {
   CHECK_THROWS_AS(SurfaceDistance(m), InputError);
 }
 
-TEST_CASE("a surface with a corner nowhere is refused, and a vertex that no triangle has may be anywhere", "[shapes][mesh]") {
+TEST_CASE("a surface with a corner nowhere is refused, and a vertex that no triangle has may be anywhere",
+          "[shapes][mesh]") {
   const double nowhere = std::nan("");
   TriangleMesh box = box_mesh(Vec3::Ones());
   box.positions.emplace_back(nowhere, 0, 0);

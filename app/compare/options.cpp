@@ -65,12 +65,12 @@ SolverChoice solver(const std::string& text) {
   SolverChoice choice{text, text.substr(0, text.find('@')), {}};
   check_solver(text, choice.name);
   if (choice.name.size() < text.size()) {
-    const std::string expected = "NAME@TOLERANCE with a tolerance greater than zero and less than 1, such as mpcg@1e-3";
+    const std::string expected =
+        "NAME@TOLERANCE with a tolerance greater than zero and less than 1, such as mpcg@1e-3";
     const std::string given = text.substr(choice.name.size() + 1);
     double tolerance = 0;
     const auto [end, error] = std::from_chars(given.data(), given.data() + given.size(), tolerance);
-    if (error != std::errc() || end != given.data() + given.size() || !(tolerance > 0) ||
-        !(tolerance < 1))
+    if (error != std::errc() || end != given.data() + given.size() || !(tolerance > 0) || !(tolerance < 1))
       refuse("--solvers", text, "expected " + expected);
     choice.tolerance = tolerance;
   }

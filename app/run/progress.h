@@ -43,7 +43,7 @@ class Progress {
   std::condition_variable changed_;
   bool over_ = false, bar_drawn_ = false;
   int tenths_shown_ = 0;
-  std::optional<StepRow> last_;  // the step that ended last
+  std::optional<StepRow> last_;                                               // the step that ended last
   Clock::time_point start_ = Clock::now(), drawn_ = start_, since_ = start_;  // since_: when that was
   Clock::duration wait_;  // from since_ on, until the step that goes on is told
   std::thread watch_;

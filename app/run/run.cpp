@@ -259,10 +259,11 @@ void Run::record_step(const StepRow& row) {
                              " pieces; further ones are counted in run.json (steps_cut)");
   }
   if (report.stood_still > 0)
-    tell_once(told_still_, at + "left " + counted(report.stood_still, "particle") +
-                               " of cloth where they were, since nothing else kept cloth from passing through "
-                               "cloth: their motion is lost; is the cloth stretched or crumpled at the start, or "
-                               "the time step too long?");
+    tell_once(told_still_,
+              at + "left " + counted(report.stood_still, "particle") +
+                  " of cloth where they were, since nothing else kept cloth from passing through "
+                  "cloth: their motion is lost; is the cloth stretched or crumpled at the start, or "
+                  "the time step too long?");
   if (!report.converged) {
     ++record_.steps_not_converged;
     tell_once(
@@ -379,7 +380,8 @@ const RunRecord& Run::finish() {
   describe_tears();
   if (!framed_) write_frame();  // the last frame is the end
   record_.simulated_seconds = simulation_.state.time;
-  record_.settled = record_.steps > 0 && row_.report.stood_still == 0 && slow(std::max(record_.max_speed, fastest_way_));
+  record_.settled =
+      record_.steps > 0 && row_.report.stood_still == 0 && slow(std::max(record_.max_speed, fastest_way_));
   for (double depth : simulation_.constraints->penetration(simulation_.state.x))
     record_.max_penetration = std::max(record_.max_penetration, depth);
   record_.crossings = crossings_as_written(simulation_);

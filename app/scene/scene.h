@@ -183,7 +183,7 @@ struct ObstacleEntry {
   std::string where;
 };
 
-constexpr double most_steps = 1e9;       // of a run
+constexpr double most_steps = 1e9;        // of a run
 constexpr double least_of_a_step = 1e-6;  // a shorter time is no step
 
 struct SimulationOptions {

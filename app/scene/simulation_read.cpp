@@ -94,7 +94,8 @@ Names idle_keys(const Table& table, const std::string& integrator) {
   };
   look(integrator == "pbd", {"substeps", "iterations", "links", "alpha"});
   look(integrator.starts_with("cvode-") || integrator.starts_with("arkode-"),
-       {"relative_tolerance", "absolute_tolerance_position", "absolute_tolerance_velocity", "max_inner_steps"});
+       {"relative_tolerance", "absolute_tolerance_position", "absolute_tolerance_velocity",
+        "max_inner_steps"});
   return idle;
 }
 
@@ -147,8 +148,9 @@ SimulationOptions read_simulation(const Table* given) {
         options.duration > a_day || !table.has("time_step") ? "duration" : "time_step",
         "the run would take " + rounded(options.duration / options.time_step, 3) + " steps; check the units");
   if (!(options.duration > least_of_a_step * options.time_step))
-    table.fail(table.has("duration") ? "duration" : "time_step",
-               "the duration is less than a millionth of a step, so that there would be none; check the units");
+    table.fail(
+        table.has("duration") ? "duration" : "time_step",
+        "the duration is less than a millionth of a step, so that there would be none; check the units");
   return options;
 }
 

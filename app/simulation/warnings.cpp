@@ -127,7 +127,8 @@ void warn_of_overlapping_bodies(const Scene& scene, Simulation& simulation) {
                                   " mm inside each other: they are moved apart slowly (recovery_speed)");
 }
 
-void tell_of_idle_keys(const std::string& start, const Names& keys, const std::string& chosen, Names& messages) {
+void tell_of_idle_keys(const std::string& start, const Names& keys, const std::string& chosen,
+                       Names& messages) {
   if (keys.empty()) return;
   messages.push_back("note: " + start + listed(keys) + (keys.size() == 1 ? " has" : " have") +
                      " no effect with " + chosen);

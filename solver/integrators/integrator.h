@@ -66,14 +66,15 @@ struct StepReport {
   int rescues = 0;           // iterations or steps taken again, because the potential rose or energy was made
   int guarded = 0;           // particles that were stopped at a surface outside the equations
   double residual = 0;       // relative: the worst of the solves that the substeps ended with
-  bool converged = true;     // every solve reached its tolerance, the contacts have settled, and no piece stood still
-  int contacts = 0;          // particles in contact at the end
-  int self_contacts = 0;     // pairs of cloth and cloth that push each other at the end
-  int self_guarded = 0;      // particles that were pushed or stopped so that no cloth passes through cloth
+  bool converged =
+      true;          // every solve reached its tolerance, the contacts have settled, and no piece stood still
+  int contacts = 0;  // particles in contact at the end
+  int self_contacts = 0;  // pairs of cloth and cloth that push each other at the end
+  int self_guarded = 0;   // particles that were pushed or stopped so that no cloth passes through cloth
   // Particles of pieces that stood still, at the cost of their momentum, since nothing else kept cloth from passing
   // through cloth.
   int stood_still = 0;
-  int tangled = 0;           // particles where cloth passes through cloth, and is brought apart
+  int tangled = 0;  // particles where cloth passes through cloth, and is brought apart
   // Particles that a body may pass, because it could not be kept off them, or that two bodies hold between them.
   int pinched = 0;
   int body_contacts = 0;        // points at which bodies press on each other at the end
