@@ -10,6 +10,12 @@ namespace {
 constexpr double flatness = 1e-6;  // of the size of the mesh
 constexpr double straight = 1e-9;  // the sine of an angle below which a side does not turn
 
+// Whether the way from a over b to c turns to the left by more than `least`, a sine.
+bool turns_left(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c, double least) {
+  const Eigen::Vector2d first = b - a, then = c - b;
+  return first[0] * then[1] - first[1] * then[0] > least * first.norm() * then.norm();
+}
+
 // The corners of the polygon that holds all of these points, counterclockwise about the normal.       [Andrew 1979]
 std::vector<int> outline(const TriangleMesh& mesh, std::vector<int> points, const Vec3& normal) {
   const Vec3 t = normal.unitOrthogonal(), s = normal.cross(t);
@@ -26,17 +32,23 @@ std::vector<int> outline(const TriangleMesh& mesh, std::vector<int> points, cons
   const auto go = [&](auto begin, auto end) {
     const std::size_t from = polygon.size();
     for (auto v = begin; v != end; ++v) {
-      while (polygon.size() > from + 1) {
-        const Eigen::Vector2d a = at(polygon[polygon.size() - 2]), b = at(polygon.back()) - a, c = at(*v) - a;
-        if (b[0] * c[1] - b[1] * c[0] > straight * b.norm() * c.norm()) break;
+      while (polygon.size() > from + 1 &&
+             !turns_left(at(polygon[polygon.size() - 2]), at(polygon.back()), at(*v), 0))
         polygon.pop_back();
-      }
       polygon.push_back(*v);
     }
     polygon.pop_back();  // the way on begins with it
   };
   go(points.begin(), points.end());
   go(points.rbegin(), points.rend());
+  // What lies along a side turns by rounding alone.
+  for (std::size_t k = 0; k < polygon.size() && polygon.size() > 3;) {
+    const std::size_t n = polygon.size();
+    if (turns_left(at(polygon[(k + n - 1) % n]), at(polygon[k]), at(polygon[(k + 1) % n]), straight))
+      ++k;
+    else
+      polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(k));
+  }
   return polygon;
 }
 
@@ -86,8 +98,9 @@ std::vector<ConvexFace> convex_faces(const TriangleMesh& mesh) {
       left, [&](std::size_t a, std::size_t b) { return across[a].squaredNorm() > across[b].squaredNorm(); });
   std::vector<ConvexFace> faces;
   while (!left.empty() && across[left.front()].norm() > tolerance * tolerance) {
-    const auto [normal, middle] = mean_plane(mesh, across, left, 100 * tolerance);
-    ConvexFace face{normal, middle, {}};
+    const FlatSide side = mean_plane(mesh, across, left, 100 * tolerance);
+    const double middle = side.offset;
+    ConvexFace face{side.normal, middle, {}};
     std::vector<int> points;
     const std::size_t before = left.size();
     std::erase_if(left, [&](std::size_t k) {

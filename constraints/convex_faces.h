@@ -7,7 +7,7 @@
 
 namespace drape::internal {
 
-// n . x = offset is the plane of the face. No corner is beyond it.
+// n . x = offset is the plane of the face. No vertex of its triangles is beyond it.
 struct ConvexFace {
   Vec3 normal;               // unit vector, out of the body
   double offset;             // m

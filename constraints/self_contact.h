@@ -238,6 +238,7 @@ class SelfContacts {
   void begin_anew();
   void prepare(const StepMotion& step, const std::vector<MovingBody>& bodies);
   void set_particles(const StepMotion& step);
+  void find_pieces_to_stand();
   int cloth_particles() const;
   int zone_of(int particle);
   void find_common(const StepMotion& step, const VecX& x_new, bool in_common);
@@ -253,6 +254,8 @@ class SelfContacts {
   int go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX& v_new);
   void shorten(const StepMotion& step, const VecX& x_new, bool in_common);
   void let_pieces_stand(const StepMotion& step);
+  bool pieces_part(const StepMotion& step, std::vector<char>& stands);
+  bool is_marked(const std::vector<char>& pieces, int particle) const;
   void mark_farthest(const StepMotion& step, std::vector<char>& pieces) const;
   bool stand_still(const StepMotion& step, const std::vector<char>& pieces);
   double share_of_way(double slope, double curvature, const VecX& x_new) const;
@@ -302,13 +305,15 @@ class SelfContacts {
   int touched_ = 0;  // not 0: a pair touched at the start of the step, and may have crossed in it
   int pushing_ = 0, stood_still_ = 0;
   // By particle, those of bodies included.
-  std::vector<double> thickness_, friction_;     // m, mu
-  std::vector<int> piece_, sheet_;               // the connected piece, and the sheet, that it belongs to
-  std::vector<char> stopped_;                    // is_stopped(), by particle of the cloth
-  std::vector<int> stops_;                       // how often its way was shortened in this step
-  std::vector<char> sewn_, pass_;                // sew(): all of its particles, and those that may pass
-  VecX rest_;                                    // places of the cloth when the faces were added [m]
-  std::vector<char> tangled_;                    // whether it was in a tangle there, or is beside a cut
+  std::vector<double> thickness_, friction_;  // m, mu
+  std::vector<int> piece_, sheet_;            // the connected piece, and the sheet, that it belongs to
+  std::vector<int>
+      piece_to_stand_;             // the same with ropes and what is inside soft bodies; -1: it meets nothing
+  std::vector<char> stopped_;      // is_stopped(), by particle of the cloth
+  std::vector<int> stops_;         // how often its way was shortened in this step
+  std::vector<char> sewn_, pass_;  // sew(): all of its particles, and those that may pass
+  VecX rest_;                      // places of the cloth when the faces were added [m]
+  std::vector<char> tangled_;      // whether it was in a tangle there, or is beside a cut
   std::vector<SelfContact> touching_, last_;     // of this step and of the last one, sorted
   std::vector<Encounter> last_ones_;             // scratch: the pairs of last_, in its order
   std::vector<SelfContact> met_;                 // scratch

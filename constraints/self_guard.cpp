@@ -303,27 +303,37 @@ void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_co
 // Leaves the pieces to which what still fails belongs where they began; and the one that goes farthest where so much is near
 // that there is no list of what fails. Other pieces go on, unless they meet these.
 void SelfContacts::let_pieces_stand(const StepMotion& step) {
-  std::vector<char> stands(way_.size(), 0);  // by piece
-  while (true) {
-    if (!follow_all(step.x, ahead_)) {
-      mark_farthest(step, stands);
-      if (!stand_still(step, stands)) return;
-      continue;
-    }
-    const std::vector<Meeting>& failing = meetings(step.x, ahead_);
-    for (const Meeting& meeting : failing)
-      for (const int v : meeting.who.v)
-        if (v < cloth_particles()) stands[piece_[v]] = 1;
-    bool passes = failing.empty();
-    if (passes && crossing()) {
-      const std::vector<int>& growing = tangles_->growing(ahead_);
-      passes = growing.empty();
-      for (int i = 0; i < cloth_particles() && !passes; ++i)
-        if (std::ranges::binary_search(growing, tangles_->tangle(i))) stands[piece_[i]] = 1;
-    }
-    if (passes) return;
-    if (!stand_still(step, stands) && !let_bodies_yield(failing)) return;
+  std::vector<char> stands(way_.size(), 0);  // by piece_to_stand_
+  while (!pieces_part(step, stands)) {
   }
+  for (int i = 0; i < cloth_particles(); ++i) stood_still_ += is_marked(stands, i);
+}
+
+// True when nothing fails, or nothing more can stand; else more pieces stand than before.
+bool SelfContacts::pieces_part(const StepMotion& step, std::vector<char>& stands) {
+  if (!follow_all(step.x, ahead_)) {
+    mark_farthest(step, stands);
+    return !stand_still(step, stands);
+  }
+  const std::vector<Meeting>& failing = meetings(step.x, ahead_);
+  const auto mark = [&](int v) {
+    if (piece_to_stand_[v] >= 0) stands[piece_to_stand_[v]] = 1;
+  };
+  for (const Meeting& meeting : failing)
+    for (const int v : meeting.who.v)
+      if (v < cloth_particles()) mark(v);
+  bool passes = failing.empty();
+  if (passes && crossing()) {
+    const std::vector<int>& growing = tangles_->growing(ahead_);
+    passes = growing.empty();
+    for (int i = 0; i < cloth_particles() && !passes; ++i)
+      if (std::ranges::binary_search(growing, tangles_->tangle(i))) mark(i);
+  }
+  return passes || (!stand_still(step, stands) && !let_bodies_yield(failing));
+}
+
+bool SelfContacts::is_marked(const std::vector<char>& pieces, int particle) const {
+  return piece_to_stand_[particle] >= 0 && pieces[piece_to_stand_[particle]] != 0;
 }
 
 // Marks the piece with the particle that goes farthest.
@@ -332,22 +342,21 @@ void SelfContacts::mark_farthest(const StepMotion& step, std::vector<char>& piec
   int farthest = -1;
   for (int i = 0; i < cloth_particles(); ++i) {
     const double way = (ahead_.segment<3>(3 * i) - step.x.segment<3>(3 * i)).squaredNorm();
-    if (way > most) most = way, farthest = i;
+    if (piece_to_stand_[i] >= 0 && way > most) most = way, farthest = i;
   }
-  if (farthest >= 0) pieces[piece_[farthest]] = 1;
+  if (farthest >= 0) pieces[piece_to_stand_[farthest]] = 1;
 }
 
 // Returns whether any particle of these pieces had a way left.
 bool SelfContacts::stand_still(const StepMotion& step, const std::vector<char>& pieces) {
-  int count = 0;
+  bool any = false;
   for (int i = 0; i < cloth_particles(); ++i) {
-    if (pieces[piece_[i]] == 0 || ahead_.segment<3>(3 * i) == step.x.segment<3>(3 * i)) continue;
+    if (!is_marked(pieces, i) || ahead_.segment<3>(3 * i) == step.x.segment<3>(3 * i)) continue;
     way_[i] = 0;
     ahead_.segment<3>(3 * i) = step.x.segment<3>(3 * i);
-    ++count;
+    any = true;
   }
-  stood_still_ += count;
-  return count > 0;
+  return any;
 }
 
 // Takes the particles to ahead_, and changes their velocity by what changes of their way; relief is none of it. Returns of how

@@ -1,6 +1,8 @@
 // Which particles, triangles and segments take part in contact of cloth and cloth, and what becomes of them when particles are
 // numbered anew (constraints/self_contact.h).
 #include <algorithm>
+#include <map>
+#include <numeric>
 
 #include "constraints/encounters.h"
 #include "constraints/rope_rest.h"
@@ -147,10 +149,42 @@ void SelfContacts::set_particles(const StepMotion& step) {
       on_bodies_->set(mesh.triangles, {}, static_cast<int>(n), faces_.size(), step.x);
   }
   piece_ = connected_pieces(mesh);
+  find_pieces_to_stand();
   ropes_->set(segments_, faces_, rest_, static_cast<int>(n));
   way_.assign(n, 1);
   nearest_.assign(n, 0);
   has_edge_.assign(n, 0);
+}
+
+// Pieces hang together by faces, and by the segments of ropes. A particle inside a soft body has neither, and is numbered
+// between those of its surface.
+void SelfContacts::find_pieces_to_stand() {
+  std::vector<int> root(piece_.size());  // by piece
+  std::iota(root.begin(), root.end(), 0);
+  const auto root_of = [&](int piece) {
+    while (root[piece] != piece) piece = root[piece] = root[root[piece]];
+    return piece;
+  };
+  piece_to_stand_.assign(piece_.size(), -1);
+  std::map<int, std::pair<int, int>> range;  // of each sheet, its first and its last particle
+  const auto take = [&](const auto& element) {
+    for (const int v : element.particles) {
+      root[root_of(piece_[v])] = root_of(piece_[element.particles[0]]);
+      const auto at = range.try_emplace(element.sheet, v, v).first;
+      at->second = {std::min(at->second.first, v), std::max(at->second.second, v)};
+      piece_to_stand_[v] = 0;
+    }
+  };
+  for (const SelfFace& face : faces_) take(face);
+  for (const SelfSegment& segment : segments_) take(segment);
+  for (int v = 0; v < cloth_particles(); ++v) {
+    if (piece_to_stand_[v] == 0) {
+      piece_to_stand_[v] = root_of(piece_[v]);
+      continue;
+    }
+    for (const auto& [sheet, ends] : range)
+      if (ends.first < v && v < ends.second) piece_to_stand_[v] = root_of(piece_[ends.first]);
+  }
 }
 
 }  // namespace drape

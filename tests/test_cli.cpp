@@ -339,7 +339,7 @@ TEST_CASE("what cannot be printed is told, but not to who stopped reading", "[cl
       CHECK(full.exit_code == 2);
       CHECK_THAT(full.err, Contains("could not be written: No space left on device"));
     }
-  CHECK(folder.shell("{ '" + program() + "' keys; echo $? >&2; } | true").err == "0\n");
+  CHECK(folder.shell("{ sleep 0.3; '" + program() + "' keys; echo $? >&2; } | true").err == "0\n");
 }
 
 TEST_CASE("what is said of a start that contact cannot take as it is", "[cli]") {

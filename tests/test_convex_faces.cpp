@@ -39,6 +39,10 @@ TriangleMesh subdivided(TriangleMesh mesh, int times) {
 
 std::vector<Mat3> turns(int count) {
   std::vector<Mat3> all = {Mat3::Identity()};
+  // Faces with sides that are square to the x axis of their plane but for rounding.
+  for (const auto& [z, x] : {std::pair(5.0, 5.0), {10, 10}, {45, 30}, {30, 20}})
+    all.emplace_back(Eigen::AngleAxisd(z * M_PI / 180, Vec3::UnitZ()) *
+                     Eigen::AngleAxisd(x * M_PI / 180, Vec3::UnitX()));
   for (int k = 1; k < count; ++k) {
     const Eigen::Quaterniond q(std::cos(1.3 * k), std::sin(2.1 * k), std::cos(3.7 * k + 1),
                                std::sin(0.7 * k));

@@ -48,7 +48,7 @@ void ignore_broken_outputs() {
 }
 
 void check_printed() {
-  if (std::fflush(stdout) != 0 && errno != EPIPE)
+  if (std::fflush(stdout) != 0 && errno != EPIPE && errno != EBADF)
     throw InputError(std::string("what was printed could not be written: ") + std::strerror(errno));
 }
 

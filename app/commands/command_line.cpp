@@ -467,7 +467,7 @@ int command_line(int argc, char** argv) {
   try {
     check_encoding(argc, argv);
     const int exit_code = parse_and_run(argc, argv);
-    check_printed();
+    if (exit_code == 0) check_printed();
     return exit_code;
   } catch (const InputError& error) {
     return fail(2, error.what());

@@ -98,15 +98,13 @@ void remove_dead_parts(const fs::path& folder) {
   for (const fs::path& path : dead) fs::remove(path, ignored);
 }
 
-// Whether a run wrote here, or was killed while it did. Only then are files gone that this run does not write.
+// In a folder whose frames appear one by one, until there is a run.json: so the next run knows them, should this one fail.
+constexpr const char* unfinished = ".unfinished-run";
+
+// Whether a run wrote here. Only then are files taken away that this run does not write.
 bool was_run_in(const fs::path& folder) {
-  if (fs::exists(folder / "run.json")) return true;
   std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(".steps.csv.") && name.ends_with(".part")) return true;
-  }
-  return false;
+  return fs::exists(folder / "run.json", ignored) || fs::exists(folder / "frames" / unfinished, ignored);
 }
 
 }  // namespace
@@ -145,7 +143,11 @@ Output::Output(fs::path folder, const Scene& scene, const Simulation& simulation
   }
   bodies_.open();
   steps_.emplace(folder_ / "steps.csv");
-  if (frames_ == Frames::obj) remove_earlier(true);
+  if (frames_ != Frames::obj) return;
+  remove_earlier(true);
+  AtomicFile mark(folder_ / "frames" / unfinished);
+  mark.write("");
+  mark.keep();
 }
 
 fs::path Output::cloth_path(const Cloth& cloth, const char* extension) const {
@@ -213,6 +215,8 @@ void Output::finish(const State& state, RunRecord& record) {
   steps_->keep();
   for (AtomicFile& text : texts) text.keep();
   remove_earlier(false);
+  std::error_code ignored;
+  fs::remove(folder_ / "frames" / unfinished, ignored);
   list_written();
 }
 

@@ -266,10 +266,10 @@ void Run::record_step(const StepRow& row) {
                   "the time step too long?");
   if (!report.converged) {
     ++record_.steps_not_converged;
-    tell_once(
-        told_not_converged_,
-        at + "had a solve that ended before it reached its tolerance, or contacts that had not settled "
-             "(contact_residual of steps.csv); further ones are counted in run.json (steps_not_converged)");
+    tell_once(told_not_converged_,
+              at + "had a solve that ended before it reached its tolerance, contacts that had not settled "
+                   "(contact_residual of steps.csv), or cloth that had to stand still; further ones are "
+                   "counted in run.json (steps_not_converged)");
   }
 }
 

@@ -289,7 +289,8 @@ void warn_if_long(const Cloth& cloth, Names& messages) {
                      "along; use a grid of squares, or model = \"noh-jung\"");
 }
 
-// Contact holds vertices: an edge as long as a body is wide lets it through. Of a mesh cloth with self_contact meets all.
+// Contact holds vertices: an edge as long as a body is wide lets it through. Cloth with self_contact meets all
+// of a body that is a mesh.
 void warn_if_coarse(const Scene& scene, Simulation& simulation) {
   const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
   for (std::size_t part = 0; part < simulation.cloths.size(); ++part) {

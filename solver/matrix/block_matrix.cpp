@@ -38,6 +38,7 @@ void BlockMatrix::clear_overlay() {
 }
 
 void BlockMatrix::leave_out_zeros() {
+  acting_serial_ = overlay_->serial();
   acting_.resize(overlay_->entries().size());
   acting_end_.resize(static_cast<std::size_t>(overlay_->row_count()));
   for_chunks<Work::heavy>(overlay_->row_count(), [&](int begin, int end) {
@@ -95,7 +96,7 @@ void BlockMatrix::multiply(const VecX& x, VecX& y) const {
 
 // Each row gathers its own blocks: first those of columns before it, which are stored as their transposes.
 void BlockMatrix::add_overlay(const VecX& x, VecX& y) const {
-  const bool all = acting_end_.empty();
+  const bool all = acting_end_.empty() || acting_serial_ != overlay_->serial();
   const BlockOverlay::Entry* const entries = all ? overlay_->entries().data() : acting_.data();
   for_chunks<Work::heavy>(overlay_->row_count(), [&](int begin, int end) {
     for (int k = begin; k < end; ++k) {

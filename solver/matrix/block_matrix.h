@@ -56,7 +56,7 @@ class BlockMatrix {
   // differs by the additions to the diagonal alone.
   std::uint64_t fill() const { return fill_; }
 
-  // To be called when all has been assembled: products leave out the blocks of the overlay that are zero, which half of
+  // To be called when all has been assembled, and again after anything is added to the overlay: products leave out the blocks of the overlay that are zero, which half of
   // them are, because what is near enough to meet mostly does not push.
   void leave_out_zeros();
 
@@ -76,6 +76,7 @@ class BlockMatrix {
   // in the overlay.
   std::vector<BlockOverlay::Entry> acting_;
   std::vector<int> acting_end_;
+  std::uint64_t acting_serial_ = 0;  // of the overlay that these are of
   // The slots of the diagonal blocks that have additions, and these blocks without them.
   std::vector<std::pair<int, Mat3>> assembled_;
 };
