@@ -120,8 +120,8 @@ TEST_CASE("a brick rests on a ground that is turned in any way as on one that li
                                   .gravity = -9.81 * up};
         constraints.add(falling);
         State state;
-        for (int step = 0; step < std::lround(0.5 / h); ++step) {
-          ContactStep contacts = constraints.begin_step(state.x, state.v, {}, step * h, h);
+        for (int done = 0; done < std::lround(0.5 / h); ++done) {
+          ContactStep contacts = constraints.begin_step(state.x, state.v, {}, done * h, h);
           do {
             contacts.receive(state.v, state.v, state.x);
           } while (contacts.move_bodies(0));
