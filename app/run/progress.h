@@ -18,7 +18,8 @@ class Progress {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // duration of the run [s]. patience: a step that has taken that long is told, and again when it has taken twice as long.
+  // duration of the run [s]. patience: a step that has taken that long is told, and again when it has taken twice as long,
+  // or on a terminal a second later.
   Progress(double duration, bool quiet, Clock::duration patience = std::chrono::seconds(10),
            std::FILE* to = stderr);
   ~Progress() { end(); }

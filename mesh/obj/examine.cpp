@@ -222,9 +222,8 @@ void Examiner::edge_defects() {
   if (many > 0) {
     add(Severity::warning,
         count(many, "edge has", "edges have") +
-            " more than two triangles: springs bend there as a hinge for each pair of them, woven cloth "
-            "bends "
-            "freely there",
+            " more than two triangles: there springs bend as a hinge for each pair of them, and woven "
+            "cloth bends freely",
         at_many);
   }
   if (inconsistent > 0) {
