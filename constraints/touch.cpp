@@ -43,6 +43,22 @@ std::vector<Vec3> points_on(const Shape& shape) {
   return points;
 }
 
+// A vertex that belongs to no triangle is no part of the surface. Returns the numbers that those which are left had.
+std::vector<int> leave_out_what_is_no_corner(TriangleMesh& mesh) {
+  std::vector<int> kept, place(mesh.positions.size(), 0);
+  for (const Triangle& t : mesh.triangles) kept.insert(kept.end(), t.begin(), t.end());
+  std::ranges::sort(kept);
+  kept.erase(std::ranges::unique(kept).begin(), kept.end());
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    place[static_cast<std::size_t>(kept[k])] = static_cast<int>(k);
+    mesh.positions[k] = mesh.positions[static_cast<std::size_t>(kept[k])];
+  }
+  mesh.positions.resize(kept.size());
+  for (Triangle& t : mesh.triangles)
+    for (int& v : t) v = place[static_cast<std::size_t>(v)];
+  return kept;
+}
+
 }  // namespace
 
 TouchForm::TouchForm(const Shape& shape) : kind_(Kind::any) {
@@ -62,6 +78,7 @@ TouchForm::TouchForm(const Shape& shape) : kind_(Kind::any) {
     corners_ = {capsule->a, capsule->b};
   } else {
     mesh = mesh_of(shape);
+    vertices_ = leave_out_what_is_no_corner(mesh);
     corners_ = mesh.positions.empty() ? points_on(shape) : mesh.positions;
     const bool solid =
         !deforming(shape) && mesh.vertex_count() <= most_convex_corners && uniform_solid(shape, 1);
@@ -91,7 +108,7 @@ struct Side {
   const Shape& shape() const { return body.obstacle().shape; }
   std::size_t corners() const { return form.corners().size(); }
   Vec3 corner(std::size_t k) const {
-    if (deforming(shape())) return body.vertex_at_start(static_cast<int>(k));
+    if (deforming(shape())) return body.vertex_at_start(form.vertex(k));
     return body.start().to_world(form.corners()[k]);
   }
   Vec3 middle() const { return body.start().to_world(form.middle()); }

@@ -31,8 +31,9 @@ class TouchForm {
   enum class Kind { plane, sphere, convex, any };
   Kind kind() const { return kind_; }
   double radius() const { return radius_; }  // m: of what lies round the corners and the hull
-  const std::vector<Vec3>& corners() const { return corners_; }  // in the body's frame [m]
-  const Hull& hull() const { return hull_; }                     // only of a convex body
+  const std::vector<Vec3>& corners() const { return corners_; }       // in the body's frame [m]
+  int vertex(std::size_t corner) const { return vertices_[corner]; }  // of a mesh, which corner it is
+  const Hull& hull() const { return hull_; }                          // only of a convex body
   // A ball round the body; its radius is infinite for a plane.
   const Vec3& middle() const { return middle_; }  // m, in the body's frame
   double reach() const { return reach_; }         // m
@@ -41,6 +42,7 @@ class TouchForm {
   Kind kind_;
   double radius_ = 0;
   std::vector<Vec3> corners_;
+  std::vector<int> vertices_;
   Hull hull_;
   Vec3 middle_ = Vec3::Zero();
   double reach_ = 0;

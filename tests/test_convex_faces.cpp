@@ -61,6 +61,14 @@ TriangleMesh turned(TriangleMesh mesh, const Mat3& R, double digits) {
   return mesh;
 }
 
+// With a vertex that belongs to no triangle.
+TriangleMesh with_stray_vertex(TriangleMesh mesh, const Vec3& x) {
+  mesh.positions.insert(mesh.positions.begin(), x);
+  for (Triangle& t : mesh.triangles)
+    for (int& v : t) ++v;
+  return mesh;
+}
+
 }  // namespace
 
 TEST_CASE("a box of triangles has six faces of four corners, however it is turned and divided",
@@ -106,11 +114,12 @@ TEST_CASE("a brick rests on a ground that is turned in any way as on one that li
         INFO("ground divided " << times << " times, step " << h << " s, turned by\n" << R);
         Constraints constraints;
         const TriangleMesh mesh = turned(subdivided(box_mesh(slab), std::max(times, 0)), R, 6);
+        const Vec3 under_brick = (slab[1] / 2 + 0.01) * R.col(1) + 0.15 * R.col(0);
         if (times < 0)
           constraints.add(
               {.shape = Box{.centre = Vec3::Zero(), .size = slab, .rotation = R}, .friction = 0.3});
         else
-          constraints.add({.shape = body(mesh), .friction = 0.3});
+          constraints.add({.shape = body(with_stray_vertex(mesh, under_brick)), .friction = 0.3});
         const Vec3 up = R.col(1),
                    start = (slab[1] + brick[1] + 0.002) / 2 * up + 0.15 * R.col(0) + 0.013 * R.col(2);
         Obstacle falling{.shape = Box{.centre = start, .size = brick, .rotation = R}, .friction = 0.3};

@@ -117,6 +117,16 @@ TEST_CASE("an end that is not where it has to be is told by how far it is off", 
   refused("[[rope]]\nmesh = \"lines.obj\"\n" + of_file, "1:", "has 2 lines; expected the name of one: a, b");
   refused("[[rope]]\nmesh = \"lines.obj\"\nline = \"c\"\n" + of_file, "1:", "no line 'c'");
   refused("[[rope]]\nmesh = \"faces.obj\"\n" + of_file, "1:", "has no lines");
+  shop.write("beyond.obj", "v 0 0 0\nv 1 0 0\nl 1 2 9\n");
+  refused("[[rope]]\nmesh = \"beyond.obj\"\n" + of_file, "1:", "beyond.obj:3: ");
+  const std::string points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 2 1 0\nv 3 1 0\n";
+  for (const char* const apart : {"l 1 2\nl 3 4\n", "l 1 2\nl 3 2\nl 2 4\n", "l 1 2\nl 3 1\nl 2 3\n"}) {
+    shop.write("apart.obj", points + apart);
+    refused("[[rope]]\nmesh = \"apart.obj\"\n" + of_file, "1:", "pieces that meet end to end");
+  }
+  shop.write("edges.obj", points + "l 3 4\nl 1 2\nl 5 4\nl 3 2\n");
+  const Simulation of_edges = make_simulation(read("[[rope]]\nmesh = \"edges.obj\"\n" + of_file, shop.path));
+  CHECK(of_edges.cloths[0].mesh.positions == parse_obj(points + "f 1 2 3\n", "points.obj").positions);
   const Simulation s = make_simulation(
       read("[[rope]]\nmesh = \"lines.obj\"\nline = \"b\"\nspacing = 0.3\n" + of_file, shop.path));
   CHECK(s.cloths[0].mesh.vertex_count() == 4);

@@ -60,7 +60,8 @@ void choose_warp(const ClothEntry& entry, ClothPart& part, Names& messages) {
   messages.push_back("note: cloth " + entry.name +
                      ": no direction of the warp is given: it runs down the cloth, along " +
                      (stands ? "y, for the mesh stands" : "z, for the mesh lies") +
-                     "; set warp = [x, y, z] if it runs otherwise, or rest = \"uv\" if it is v of the uv");
+                     "; set warp = [x, y, z] if it runs otherwise" +
+                     (entry.rest_is_flat ? "" : ", or rest = \"uv\" if it is v of the uv"));
 }
 
 // As the file has it, its panels placed; the rest shape is the flat pattern, or what the file has.

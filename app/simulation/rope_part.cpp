@@ -2,6 +2,8 @@
 // fastened to bodies.
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include "app/scene/load_mesh.h"
 #include "app/simulation/parts.h"
@@ -18,6 +20,36 @@ std::string in_words(const Vec3& x) {
 }
 std::string end_of(bool last) { return last ? "its last end" : "its first end"; }
 
+// Pieces that meet end to end, in any order, as one line, which goes as the first of them goes: programs write an 'l' for
+// each edge. Nothing where they branch, close a ring or are apart.
+std::optional<Polyline> end_to_end(const std::vector<const Polyline*>& pieces) {
+  std::map<int, std::vector<std::size_t>> at;  // vertex -> the pieces that end there
+  for (std::size_t k = 0; k < pieces.size(); ++k)
+    for (const int v : {pieces[k]->vertices.front(), pieces[k]->vertices.back()}) at[v].push_back(k);
+  const auto free_end = [&](int v) { return at[v].size() == 1; };
+  const auto first = std::ranges::find_if(pieces, [&](const Polyline* piece) {
+    return free_end(piece->vertices.front()) || free_end(piece->vertices.back());
+  });
+  if (first == pieces.end()) return std::nullopt;
+  Polyline line{(*first)->name, {}};
+  int end = free_end((*first)->vertices.front()) ? (*first)->vertices.front() : (*first)->vertices.back();
+  std::size_t used = 0;
+  for (std::vector<std::size_t>* next = &at[end]; next->size() == 1; next = &at[end]) {
+    const std::size_t k = next->front();
+    std::vector<int> vertices = pieces[k]->vertices;
+    if (vertices.front() != end) std::ranges::reverse(vertices);
+    line.vertices.insert(line.vertices.end(), vertices.begin() + (used > 0), vertices.end());
+    for (const int v : {vertices.front(), vertices.back()}) std::erase(at[v], k);
+    end = vertices.back();
+    ++used;
+  }
+  if (used != pieces.size()) return std::nullopt;
+  const auto place = [&](int v) { return std::ranges::find(line.vertices, v); };
+  if (place(pieces.front()->vertices.front()) > place(pieces.front()->vertices.back()))
+    std::ranges::reverse(line.vertices);
+  return line;
+}
+
 // The one line of this name, or of any name when there is none.
 Polyline line_of(const RopeEntry& entry, const TriangleMesh& mesh) {
   const std::vector<Polyline> lines = polylines(mesh);
@@ -28,13 +60,25 @@ Polyline line_of(const RopeEntry& entry, const TriangleMesh& mesh) {
     if (entry.line.empty() || line.name == entry.line) found.push_back(&line);
   }
   const std::string start = entry.where + ": line: " + entry.mesh.string() + " has ";
-  if (lines.empty()) throw InputError(start + "no lines ('l'); expected one that the rope goes along");
+  if (lines.empty()) {
+    const std::vector<std::string>& left_out = mesh.document->warnings;
+    throw InputError(start + "no lines ('l'); expected one that the rope goes along" +
+                     (left_out.empty() ? "" : " (" + left_out.front() + ")"));
+  }
   if (found.empty())
     throw InputError(start + "no line '" + one_line(entry.line) + "'; " + suggestion(entry.line, names));
+  const bool of_one_name =
+      std::ranges::all_of(found, [&](const Polyline* line) { return line->name == found.front()->name; });
+  if (found.size() > 1 && of_one_name)
+    if (std::optional<Polyline> line = end_to_end(found)) return *line;
+  if (found.size() > 1 && of_one_name)
+    throw InputError(
+        start + counted(static_cast<long>(found.size()), "line") +
+        (found.front()->name.empty() ? " without a name" : " named '" + one_line(found.front()->name) + "'") +
+        "; expected one, or pieces that meet end to end");
   if (found.size() > 1)
     throw InputError(start + counted(static_cast<long>(found.size()), "line") +
-                     (entry.line.empty() ? "" : " of that name") + "; expected " +
-                     (entry.line.empty() ? "the name of one: " + listed(names) : "one"));
+                     "; expected the name of one: " + listed(names));
   if (found.front()->vertices.size() < 2)
     throw InputError(start + "a line of one vertex; a rope goes through two points at least");
   return *found.front();

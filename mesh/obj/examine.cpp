@@ -294,7 +294,7 @@ void Examiner::isolated_vertices() {
   }
   if (isolated.empty()) return;
   add(Severity::warning,
-      count(isolated.size(), "vertex belongs", "vertices belong") + " to no triangle and will stay in place",
+      count(isolated.size(), "vertex belongs", "vertices belong") + " to no triangle and will take no part",
       isolated);
 }
 

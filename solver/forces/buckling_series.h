@@ -33,9 +33,9 @@ constexpr Series make_series() {
 inline constexpr Series series = make_series();
 
 // A first guess of y = u^2 for a given delta: y / delta by a polynomial, with a relative error of 1.7e-6 over [0, 1].
-inline constexpr std::array<double, 11> first_guess = {6.00000987,  1.79775804,  0.906505409, -0.761262068,
-                                                       9.09424265,  -36.9159818, 95.0077116,  -150.586427,
-                                                       145.215122,  -77.9596806, 18.0715896};
+inline constexpr std::array<double, 11> first_guess = {6.00000987, 1.79775804,  0.906505409, -0.761262068,
+                                                       9.09424265, -36.9159818, 95.0077116,  -150.586427,
+                                                       145.215122, -77.9596806, 18.0715896};
 
 template <class Number>
 Number first_squared_angle(const Number& delta) {

@@ -62,6 +62,15 @@ std::vector<Vec3> for_all(const TriangleMesh& rest, const std::optional<Vec3>& w
   return std::vector<Vec3>(rest.triangles.size(), warp.value_or(Vec3::Zero()));
 }
 
+// By its number and by where it is: a file of polygons numbers its faces otherwise.
+std::string describe(std::size_t triangle, const Vec3& corner) {
+  std::ostringstream text;
+  text.precision(4);
+  text << "triangle " << triangle + 1 << ", at (" << corner.x() << ", " << corner.y() << ", " << corner.z()
+       << ") m in the rest shape,";
+  return text.str();
+}
+
 }  // namespace
 
 std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::vector<Vec3>& warps) {
@@ -78,7 +87,7 @@ std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::vect
     const bool known = !warp.isZero(0);
     Vec3 u = known ? Vec3(warp - normal.dot(warp) * normal) : one;
     if (known && !normal.isZero() && u.norm() < 1e-6 * warp.norm())
-      throw InputError("triangle " + std::to_string(all.size() + 1) +
+      throw InputError(describe(all.size(), at(0)) +
                        " is square to the warp: give a direction that lies in the cloth, or uv");
     u.normalize();
     const Vec3 v = normal.cross(u);
