@@ -175,6 +175,30 @@ test("both sides of the cloth are seen, in two tones", async () => {
   assert.ok(Math.abs(ratio(above) / ratio(below) - 1) > 0.05, `${above} and ${below}`);
 });
 
+test("what lies beneath the cloth does not show through", async () => {
+  await page.keyboard.press("End"); // corners of the sheet lie on the floor
+  const [inside, through] = await page.evaluate(async () => {
+    const { stage } = window.drape, { middle, radius } = stage.box, gl = stage.renderer.getContext();
+    stage.camera.position.set(middle[0] + 0.01 * radius, middle[1] + 4 * radius, middle[2]);
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    const across = gl.drawingBufferWidth, high = gl.drawingBufferHeight, [sheet, ...others] = [...stage.drawn, ...stage.floors];
+    const seen = (cloth, beneath) => {
+      sheet.mesh.visible = cloth;
+      for (const { mesh } of others) mesh.visible = beneath;
+      stage.renderer.render(stage.scene, stage.camera);
+      const pixels = new Uint8Array(4 * across * high);
+      gl.readPixels(0, 0, across, high, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      return new Int32Array(pixels.buffer);
+    };
+    const nothing = seen(false, false), alone = seen(true, false), all = seen(true, true);
+    const around = [-1, 0, 1].flatMap((row) => [-1, 0, 1].map((column) => row * across + column));
+    const cloth = [...alone.keys()].filter((k) => around.every((to) => alone[k + to] !== nothing[k + to]));
+    return [cloth.length, cloth.filter((k) => alone[k] !== all[k]).length];
+  });
+  assert.ok(inside > 5000, `${inside}`);
+  assert.ok(through < 0.005 * inside, `${through} of ${inside} pixels`); // at rims, where pixels are half covered
+});
+
 test("a click takes a vertex, and it is where the PC2 file has it", async () => {
   const pc2 = read_pc2(join(folder, "sheet.pc2"));
   await seek(10);

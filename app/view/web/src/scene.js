@@ -47,7 +47,7 @@ class Drawn {
     this.geometry.setIndex(new BufferAttribute(triangles, 1));
     this.geometry.boundingSphere = sphere;
     if (!shape.body) this.geometry.setAttribute("color", (this.colour = dynamic(count)));
-    const material = new MeshLambertMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 2 });
+    const material = new MeshLambertMaterial({ side: DoubleSide, polygonOffsetFactor: 2, polygonOffsetUnits: 2 });
     this.mesh = new Mesh(this.geometry, shape.body ? material : two_tones(material));
     this.mesh.frustumCulled = false;
     this.lines = this.#wireframe();
@@ -71,6 +71,9 @@ class Drawn {
   set_look({ painted = this.painted, wireframe = this.wireframe }) {
     if (painted === this.painted && wireframe === this.wireframe) return;
     Object.assign(this, { painted, wireframe });
+    // Faces lie behind the lines on them, and only then: a steep face is put farther back than a flat one close beneath it,
+    // which would show through.
+    this.mesh.material.polygonOffset = wireframe;
     for (const { material } of [this.mesh, this.lines]) {
       const grey = wireframe && material === this.mesh.material;
       material.vertexColors = painted && !grey;
