@@ -330,6 +330,18 @@ TEST_CASE("check and list change nothing", "[cli]") {
   CHECK(shop.files(".") == before);
 }
 
+TEST_CASE("what a run writes is the same where standard streams are closed", "[cli]") {
+  const Folder folder;
+  const std::string run =
+      "simulate '" + source_dir() + "/data/scenes/sheet-on-ball.toml' --duration 0.1 --out ";
+  REQUIRE(folder.drape(run + "open").exit_code == 0);
+  for (const std::string& closed : std::initializer_list<std::string>{"2>&-", ">&-", "<&-", "<&- >&- 2>&-"}) {
+    INFO(closed);
+    CHECK(folder.drape(run + "closed " + closed).exit_code == 0);
+    CHECK(content(folder.path / "closed/sheet.pc2") == content(folder.path / "open/sheet.pc2"));
+  }
+}
+
 TEST_CASE("what cannot be printed is told, but not to who stopped reading", "[cli]") {
   const Folder folder;
   if (fs::exists("/dev/full"))

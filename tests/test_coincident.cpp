@@ -1,4 +1,5 @@
 // Layers that start at exactly one place: they come apart, and never pass through each other.
+#include <array>
 #include <catch2/catch.hpp>
 
 #include "mesh/distance/triangle_crossings.h"
@@ -36,7 +37,84 @@ struct Copies : Assembly {
   TriangleMesh all;
 };
 
+// The sheet cut along the middle, its two sides joined by triangles of no area, as programs leave them that take seams
+// apart.
+TriangleMesh with_joined_cut(TriangleMesh mesh) {
+  const std::vector<Triangle> whole = mesh.triangles;
+  const auto right = [&](const Triangle& t) {
+    return mesh.positions[t[0]][0] + mesh.positions[t[1]][0] + mesh.positions[t[2]][0] > 1e-9;
+  };
+  std::vector<int> copy(mesh.positions.size(), -1);
+  std::vector<char> on_the_left(mesh.positions.size(), 0);
+  for (const Triangle& t : whole)
+    if (!right(t))
+      for (int v : t) on_the_left[v] = 1;
+  for (Triangle& t : mesh.triangles) {
+    if (!right(t)) continue;
+    for (int& v : t) {
+      if (!on_the_left[v]) continue;
+      if (copy[v] < 0) {
+        copy[v] = mesh.vertex_count();
+        mesh.positions.push_back(Vec3(mesh.positions[v]));
+      }
+      v = copy[v];
+    }
+  }
+  for (const Triangle& t : whole)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = t[k], b = t[(k + 1) % 3];
+      if (right(t) || copy[a] < 0 || copy[b] < 0) continue;
+      mesh.triangles.push_back({b, a, copy[a]});
+      mesh.triangles.push_back({b, copy[a], copy[b]});
+    }
+  return mesh;
+}
+
 }  // namespace
+
+TEST_CASE("vertices that edges of no length join are one point of a cloth that meets cloth",
+          "[self-contact]") {
+  for (const ClothModel model : {ClothModel::noh_jung, ClothModel::woven})
+    for (const Kind kind : kinds)
+      for (const int n : {7, 11, 16}) {
+        INFO(n << " vertices along an edge, kind " << static_cast<int>(kind) << ", model "
+               << static_cast<int>(model));
+        const TriangleMesh sheet = bent(n, kind, 0.2, [](double, double) { return 0.02; }),
+                           cut = with_joined_cut(sheet);
+        std::array<double, 2> energy{}, heaviest{};
+        for (const bool joined : {false, true}) {
+          Assembly all;
+          all.constraints->add(Obstacle{.shape = Sphere{{0, -0.05, 0}, 0.06}, .friction = 0.3});
+          all.add(ClothPart{.mesh = joined ? cut : sheet,
+                            .fabric = {.area_density = 0.2, .stretch = 500, .bend = 1e-5, .damping = 0.002},
+                            .model = model,
+                            .imperfection = 0,
+                            .self_contact = SelfContactOptions{.thickness = r, .friction = 0.3}});
+          all.use("implicit-euler", "auto", {.tolerance = 1e-4});
+          REQUIRE(all.state.particles() == sheet.vertex_count());
+          const auto largest_mass = [&] {
+            const std::vector<double>& masses = all.system->masses();
+            return *std::max_element(masses.begin(), masses.end());
+          };
+          heaviest[joined] = largest_mass();
+          VecX moved = all.state.x;
+          for (int i = 0; i < all.state.particles(); ++i) {
+            const Vec3 x = all.state.x.segment<3>(3 * i);
+            moved.segment<3>(3 * i) =
+                x + 0.01 * Vec3(std::sin(30 * x[2]), std::sin(40 * x[0]), std::cos(35 * x[0]));
+          }
+          energy[joined] = all.system->stored_energy(moved);
+          for (int k = 0; k < 15; ++k) REQUIRE(all.advance(0.01).done);
+          CHECK(largest_strain(all.cloths, all.state.x) < 0.05);
+          const std::vector<Vec3> end = all.cloths[0].embedding.positions(all.state.x);
+          CHECK(crossing_count(crossing_contours(end, all.cloths[0].mesh.triangles)) == 0);
+        }
+        CHECK(cut.vertex_count() > sheet.vertex_count());
+        CHECK(heaviest[1] == Approx(heaviest[0]).epsilon(1e-12));
+        CHECK(energy[0] > 1e-6);
+        CHECK(energy[1] == Approx(energy[0]).epsilon(1e-9));
+      }
+}
 
 TEST_CASE("copies of a sheet at exactly one place come apart in order and never cross", "[self-contact]") {
   for (const bool one_mesh : {false, true})

@@ -1,5 +1,8 @@
 #include "app/base/interrupt.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -40,6 +43,14 @@ bool interrupted() { return asked_to_end != 0; }
 
 void end_if_interrupted() {
   if (interrupted()) throw Interrupted();
+}
+
+void open_closed_streams() {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
+    if (fcntl(stream, F_GETFD) == -1 && errno == EBADF) {
+      // The lowest number that is free, which is this one. A program without a null device goes on without.
+      [[maybe_unused]] const int opened = open("/dev/null", O_RDWR);
+    }
 }
 
 void ignore_broken_outputs() {

@@ -18,6 +18,9 @@ struct Interrupted : std::exception {
 };
 void end_if_interrupted();  // throws Interrupted after the first such signal
 
+// Gives the standard streams that are closed the null device. A file of the run would else get the number of one of them,
+// and what is printed.
+void open_closed_streams();
 // Ignores SIGPIPE and SIGXFSZ, so that a write that fails reports its error instead of ending the program.
 void ignore_broken_outputs();
 // Throws InputError when what was printed did not arrive, as where the disk is full. Who stops reading, like `head`, has

@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -25,11 +26,15 @@ void check_vertex(int vertex, const TriangleMesh& mesh, const std::string& where
                           std::to_string(mesh.vertex_count()) + ", from 0");
 }
 
+void check_finite(const std::vector<Vec3>& positions) {
+  for (const Vec3& x : positions)
+    if (!x.allFinite()) throw py::value_error("positions: a coordinate is not a finite number");
+}
+
 TriangleMesh made(const py::object& positions, const py::object& triangles, const Groups& groups) {
   TriangleMesh mesh;
   mesh.positions = points(positions, "positions");
-  for (const Vec3& x : mesh.positions)
-    if (!x.allFinite()) throw py::value_error("positions: a coordinate is not a finite number");
+  check_finite(mesh.positions);
   const IntArray corners = integers(triangles, "triangles", {-1, 3});
   mesh.triangles.resize(static_cast<std::size_t>(corners.shape(0)));
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -63,8 +68,11 @@ py::object triangles_of(const py::object& self) {
 
 void set_positions(TriangleMesh& mesh, const py::object& positions) {
   const Array array = numbers(positions, "positions", {mesh.vertex_count(), 3});
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-    mesh.positions[i] = Eigen::Map<const Vec3>(array.data() + 3 * i);
+  std::vector<Vec3> moved(mesh.positions.size());
+  for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = Eigen::Map<const Vec3>(array.data() + 3 * i);
+  check_finite(moved);
+  std::copy(moved.begin(), moved.end(),
+            mesh.positions.begin());  // arrays may look at the memory that is there
 }
 
 py::dict groups_of(const TriangleMesh& mesh) {

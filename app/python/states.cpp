@@ -79,12 +79,14 @@ void add_states(py::module_& m) {
       .def("copy", &copy_of, "Another state with the same numbers.")
       .def("__copy__", &copy_of)
       .def("__deepcopy__", [](const State& state, const py::object&) { return copy_of(state); })
-      .def(py::pickle(
-          [](const State& state) {
-            require_free(&state);
-            return py::make_tuple(state.time, copied_rows(state.x), copied_rows(state.v));
-          },
-          [](const py::tuple& saved) { return made(saved[1], saved[2], saved[0].cast<double>()); }))
+      // Not py::pickle, which ends the interpreter with the protocols 0 and 1.
+      .def("__reduce__",
+           [](const py::object& self) {
+             const State& state = self.cast<const State&>();
+             require_free(&state);
+             return py::make_tuple(py::type::of(self),
+                                   py::make_tuple(copied_rows(state.x), copied_rows(state.v), state.time));
+           })
       .def("__repr__", [](const State& state) {
         return "State(time=" + shortest(state.time) + " s, " + counted(state.particles(), "particle") + ")";
       });

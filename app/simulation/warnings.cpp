@@ -188,13 +188,14 @@ void warn_if_coarse_for_folds(const ClothEntry& entry, const Cloth& cloth, Names
       (wrinkles ? "" : ", or set compression = 0.1, so that it wrinkles finer than the mesh"));
 }
 
-// How many vertices are at exactly the place of another one that they are not sewn to at once.
+// How many vertices are at exactly the place of another one with which they do not become one at once.
 int coincident(const Cloth& cloth) {
   std::vector<char> sewn(cloth.mesh.positions.size(), 0);
   for (const Cloth::Stitched& open : cloth.seams)
     for (std::size_t k = 0; k < open.seam.pairs.size(); ++k)
       if (open.seam.merge && open.seam.begins_closed(k))
         sewn[static_cast<std::size_t>(open.seam.pairs[k].second)] = 1;
+  for (const auto& [a, b] : cloth.at_one_place) sewn[static_cast<std::size_t>(std::max(a, b))] = 1;
   std::vector<std::array<double, 3>> places;
   for (std::size_t v = 0; v < sewn.size(); ++v)
     if (const Vec3& x = cloth.mesh.positions[v]; !sewn[v]) places.push_back({x[0], x[1], x[2]});
@@ -333,6 +334,13 @@ void warn_of_inner_steps(const Scene& scene, Names& messages) {
           "warning: " + body_name(entry.obstacle, entry.name) + ": " + integrator +
           " does not keep its momentum with the cloth's, and may give a light body several times "
           "the energy; implicit-euler keeps it");
+  constexpr double short_enough = 1.5e-3;  // s
+  if (!scene.obstacles.empty() && scene.simulation.time_step > short_enough)
+    messages.push_back("warning: " + integrator +
+                       " settles contact once a step, and cloth that falls on a body may have "
+                       "several times its energy after steps of " +
+                       rounded(1000 * scene.simulation.time_step, 3) +
+                       " ms: look at the energies in steps.csv, and give it a time_step of 1 ms or less");
 }
 
 void warn_of_time(const SimulationOptions& options, Names& messages) {

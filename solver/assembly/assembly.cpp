@@ -230,7 +230,10 @@ Cloth& Assembly::add(ClothPart part) {
     faces_.push_back({t, stiffness});
   }
   const Layers layers = layers_of(part.self_contact, cloth.mesh);
-  if (part.self_contact) meet(cloth, *part.self_contact, faces, layers);
+  if (part.self_contact) {
+    meet(cloth, *part.self_contact, faces, layers);
+    cloth.at_one_place = internal::joined_at_one_place(cloth.mesh, cloth.rest);
+  }
   const std::vector<Vec3> positions = start_of(
       cloth, layers, part.self_contact ? internal::layers_below(cloths, cloth.mesh) : std::vector<int>{});
   return take(std::move(cloth), positions, masses);
@@ -325,6 +328,9 @@ void Assembly::use(MakeIntegrator make) {
     if (!self_segments_.empty()) constraints->add_self_segments(self_segments_);
     self_segments_ = {};
     make_system(std::exchange(masses_, {}), std::exchange(forces_, {}));
+    std::vector<Pairs> at_one_place;
+    for (const Cloth& cloth : cloths) at_one_place.push_back(cloth.at_one_place);
+    merge(at_one_place);
   }
   make_integrator = std::move(make);
   integrator = make_integrator(*system, *constraints);

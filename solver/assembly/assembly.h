@@ -61,7 +61,8 @@ struct Assembly {
   void set_friction(std::size_t k, std::size_t l, double friction);
 
   // Makes the system at the first call, and steps with this integrator from then on. If there are bodies by
-  // the first call, their corners and rims are kept from coming through triangles.
+  // the first call, their corners and rims are kept from coming through triangles. Vertices of a cloth with self_contact
+  // that edges of no length join become one particle then.
   void use(MakeIntegrator make);
   void use(const std::string& integrator, const std::string& linear_solver, const StepOptions& options = {});
 
@@ -81,7 +82,10 @@ struct Assembly {
   // Adds the forces of a part, as far as it has been sewn, and notes its edges.
   void connect(Cloth& cloth, Forces& forces) const;
   void make_system(std::vector<double> masses, Forces forces);
+  using Pairs = std::vector<std::pair<int, int>>;  // of vertices
   bool merge_closed_seams();
+  // The vertices of each pair become one particle, for each cloth.
+  void merge(const std::vector<Pairs>& pairs);
   void sew();
   int tear_cloths();  // returns how many edges it has cut
   void part_particles(const std::vector<std::vector<std::pair<int, int>>>& cuts);  // edges to cut, by cloth

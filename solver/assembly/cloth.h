@@ -125,7 +125,10 @@ struct Cloth {
   Fabric fabric;  // of a cloth
   ClothModel model = ClothModel::noh_jung;
   std::vector<Vec3> warp;  // direction in the rest shape, of each triangle; [0, 0, 0] where nothing says it
-  bool face_clusters = false;          // in place of what stretches
+  bool face_clusters = false;  // in place of what stretches
+  // Vertices that edges of no length join: where the cloth has self_contact they become one particle when the system is
+  // made, because two points at one place have no sides on which other cloth could be kept.
+  std::vector<std::pair<int, int>> at_one_place;
   double imperfection = 0;             // m, how far the start is off `mesh`
   std::shared_ptr<BendMemory> memory;  // of a woven cloth whose threads rub
   std::optional<Tearing> tearing;      // set: it may tear; copies of vertices come after the others

@@ -4,6 +4,7 @@
 #include <array>
 #include <tuple>
 
+#include "mesh/triangles/extent.h"
 #include "mesh/triangles/topology.h"
 
 namespace drape::internal {
@@ -48,6 +49,24 @@ std::vector<int> layers_below(const std::vector<Cloth>& cloths, const TriangleMe
       if (v >= first_vertex) below[v - first_vertex] = std::max(below[v - first_vertex], count);
   }
   return below;
+}
+
+std::vector<std::pair<int, int>> joined_at_one_place(const TriangleMesh& mesh, const TriangleMesh& rest) {
+  constexpr double none = 1e-9;
+  const auto no_length = [](const TriangleMesh& of, int a, int b, double size) {
+    return (of.positions[a] - of.positions[b]).norm() <= none * size;
+  };
+  const double size = box_of(mesh.positions).diagonal().norm(),
+               at_rest = box_of(rest.positions).diagonal().norm();
+  std::vector<std::pair<int, int>> pairs;
+  for (const int k : counted_triangles(mesh))
+    for (std::size_t side = 0; side < 3; ++side) {
+      const Triangle &t = mesh.triangles[k], &r = rest.triangles[k];
+      const std::size_t next = (side + 1) % 3;
+      if (no_length(mesh, t[side], t[next], size) && no_length(rest, r[side], r[next], at_rest))
+        pairs.emplace_back(t[side], t[next]);
+    }
+  return pairs;
 }
 
 }  // namespace drape::internal

@@ -1,7 +1,9 @@
-// Layers of cloth that lie at exactly one place, such as a fusing that was made by copying a panel. Nothing tells which of them
-// is over which, so the one that comes later is taken to lie farther out, along the normals.
+// What lies at exactly one place. Layers of cloth, such as a fusing that was made by copying a panel: nothing tells which of
+// them is over which, so the one that comes later is taken to lie farther out, along the normals. And vertices that edges of
+// no length join: they are one point of the cloth.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "solver/assembly/cloth.h"
@@ -11,5 +13,9 @@ namespace drape::internal {
 // For each vertex of the mesh, over how many other triangles one of its triangles lies: those of cloths and of the mesh
 // that come before it, whose corners are at exactly the same places.
 std::vector<int> layers_below(const std::vector<Cloth>& cloths, const TriangleMesh& mesh);
+
+// The pairs of vertices that an edge joins which has no length, neither as the cloth starts nor at rest: below 1e-9 of the
+// size of each, as in mesh/obj/examine.h.
+std::vector<std::pair<int, int>> joined_at_one_place(const TriangleMesh& mesh, const TriangleMesh& rest);
 
 }  // namespace drape::internal

@@ -1,4 +1,4 @@
-// Seams that have closed: their particles become one, and the system is made anew.
+// Seams that have closed, and vertices at one place: their particles become one, and the system is made anew.
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -33,21 +33,25 @@ State Assembly::merged_state(const std::vector<double>& masses, const std::vecto
 }
 
 bool Assembly::merge_closed_seams() {
+  std::vector<Pairs> closed(cloths.size());
+  for (std::size_t k = 0; k < cloths.size(); ++k) {
+    for (Cloth::Stitched& open : cloths[k].seams) {
+      const Pairs pairs = open.seam.take_closed(cloths[k].embedding, state);
+      closed[k].insert(closed[k].end(), pairs.begin(), pairs.end());
+    }
+    std::erase_if(cloths[k].seams, [](const Cloth::Stitched& open) { return open.seam.pairs.empty(); });
+  }
+  if (std::ranges::all_of(closed, &Pairs::empty)) return false;
+  merge(closed);
+  return true;
+}
+
+void Assembly::merge(const std::vector<Pairs>& pairs) {
+  if (std::ranges::all_of(pairs, &Pairs::empty)) return;
   std::vector<int> number(static_cast<std::size_t>(state.particles()));
   std::iota(number.begin(), number.end(), 0);
-  bool any = false;
-  for (Cloth& cloth : cloths) {
-    std::vector<std::pair<int, int>> closed;
-    for (Cloth::Stitched& open : cloth.seams) {
-      const auto pairs = open.seam.take_closed(cloth.embedding, state);
-      closed.insert(closed.end(), pairs.begin(), pairs.end());
-    }
-    std::erase_if(cloth.seams, [](const Cloth::Stitched& open) { return open.seam.pairs.empty(); });
-    if (closed.empty()) continue;
-    any = true;
-    number = merged(number, closed, cloth.embedding);
-  }
-  if (!any) return false;
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    if (!pairs[k].empty()) number = merged(number, pairs[k], cloths[k].embedding);
   std::vector<double> masses(1 + static_cast<std::size_t>(*std::max_element(number.begin(), number.end())),
                              0.0);
   for (std::size_t i = 0; i < number.size(); ++i) masses[number[i]] += system->masses()[i];
@@ -58,7 +62,6 @@ bool Assembly::merge_closed_seams() {
   for (Cloth& cloth : cloths) cloth.renumber(number);
   for (Cloth& cloth : cloths) connect(cloth, forces);
   make_system(std::move(masses), std::move(forces));
-  return true;
 }
 
 }  // namespace drape

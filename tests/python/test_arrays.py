@@ -20,6 +20,13 @@ class Views(unittest.TestCase):
         mesh.positions[7, 1] = 0.5
         self.assertEqual(drape.at_rest(mesh).x[7, 1], 0.5)
 
+    def test_positions_are_finite(self):
+        mesh = drape.grid(4, 5, 1, 1)
+        before = mesh.positions.copy()
+        with self.assertRaisesRegex(ValueError, "finite"):
+            mesh.positions = np.where(before > 0.4, np.nan, before + 1)
+        self.assertTrue(np.array_equal(mesh.positions, before))
+
     def test_vertex_numbers_cannot_be_written(self):
         triangles = drape.grid(4, 5, 1, 1).triangles
         with self.assertRaises(ValueError):
@@ -92,7 +99,8 @@ class Copies(unittest.TestCase):
 
     def test_to_the_last_bit(self):
         state = self.state()
-        ways = [lambda s: pickle.loads(pickle.dumps(s)), copy.copy, copy.deepcopy, drape.State.copy]
+        pickled = [lambda s, p=p: pickle.loads(pickle.dumps(s, p)) for p in range(pickle.HIGHEST_PROTOCOL + 1)]
+        ways = [*pickled, copy.copy, copy.deepcopy, drape.State.copy]
         for way in ways:
             other = way(state)
             self.assertEqual(other.hash, state.hash)
