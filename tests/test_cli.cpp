@@ -378,6 +378,12 @@ TEST_CASE("what is said of a start that contact cannot take as it is", "[cli]") 
              "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 1 0 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\n"
              "f 1 3 4 2\nf 5 7 8 6\n");
   CHECK_THAT(warned(guarded).out, Contains("4 of its vertices are at the same place as another one"));
+  CHECK_THAT(warned(guarded + "weld = true\n").out, !Contains("at the same place") && !Contains("coincide"));
+  CHECK(shop.drape("simulate w.toml --out welded").exit_code == 0);
+  const Outcome grid = warned("model = \"choi-ko\"\nweld = true\n");
+  CHECK(grid.exit_code == 2);
+  CHECK_THAT(grid.err,
+             StartsWith("error: w.toml:") && Contains("weld = true: the springs of model = \"choi-ko\""));
   CHECK_THAT(warned(guarded + "model = \"woven\"\n").out, Contains("crossings: none"));
 }
 

@@ -18,8 +18,8 @@ struct Interrupted : std::exception {
 };
 void end_if_interrupted();  // throws Interrupted after the first such signal
 
-// Gives the standard streams that are closed the null device. A file of the run would else get the number of one of them,
-// and what is printed.
+// Gives the standard streams that are closed the null device. Else a file that the run opens could get the number of one of
+// them, and what is printed would land in the file.
 void open_closed_streams();
 // Ignores SIGPIPE and SIGXFSZ, so that a write that fails reports its error instead of ending the program.
 void ignore_broken_outputs();

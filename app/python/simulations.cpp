@@ -206,7 +206,7 @@ void add_parts(py::module_& m) {
           "positions", [](const Part& part) { return part.rows(part.whole->simulation.state.x); },
           "(vertices, 3) [m], now: a view that can be written where every vertex is a particle of its own, "
           "else\n"
-          "(seams that have closed, soft bodies) a read-only copy")
+          "(seams that have closed, vertices at one place, soft bodies) a read-only copy")
       .def_property_readonly(
           "velocities", [](const Part& part) { return part.rows(part.whole->simulation.state.v); },
           "(vertices, 3) [m/s], the same")

@@ -318,6 +318,7 @@ Json::Members scene_json(const Scene& scene, const Simulation* simulation) {
     Json::Members json = {{"name", entry.name},
                           {"fabric", fabric_json(entry, simulation ? &simulation->cloths[k] : nullptr)}};
     if (entry.clusters) json.emplace_back("clusters", "faces");
+    if (entry.weld) json.emplace_back("weld", true);
     if (entry.tear) json.emplace_back("tear", *entry.tear);
     if (simulation) {
       json.emplace_back("pins", pins_json(entry.pins, simulation->cloths[k]));

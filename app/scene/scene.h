@@ -80,6 +80,7 @@ struct ClothEntry {
   std::vector<GroupWarp> group_warps;  // the same of groups of the mesh, instead of that
   bool warp_is_down = false;           // the direction is chosen when the mesh is loaded: down the cloth
   bool clusters = false;               // whether each face is a cluster in place of what stretches
+  bool weld = false;                   // vertices at one place become one particle
   std::optional<double> imperfection;  // m, how far the start is off the mesh; unset: by the model
   bool self_contact = false;           // whether the cloth meets itself and others
   SelfContactOptions self;             // how, where it does

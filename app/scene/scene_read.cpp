@@ -209,6 +209,13 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
   }
   read_model(table, cloth);
   read_warp(table, cloth);
+  table.read("weld", cloth.weld,
+             {"whether vertices at exactly the same place become one, as where a program has parted the mesh "
+              "along the seams of its texture; what is written keeps all vertices. Layers that lie on one "
+              "another are refused"});
+  if (cloth.weld && cloth.model == "choi-ko")
+    table.fail("weld",
+               "the springs of model = \"choi-ko\" are those of a grid; weld the mesh itself in a modeller");
   table.read(
       "imperfection", cloth.imperfection, dimension::length, Range::not_negative,
       {"how far the start is off its own surface, in gentle waves: a cloth that is exactly flat and is "

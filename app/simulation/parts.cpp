@@ -78,6 +78,7 @@ ClothPart load_cloth(const ClothEntry& entry, Names& messages) {
   part.imperfection = entry.imperfection;
   part.tear = entry.tear;
   part.clusters = entry.clusters;
+  part.weld = entry.weld;
   if (entry.self_contact) part.self_contact = entry.self;
   part.mesh = placed(is_pattern(entry.mesh) ? cut_pattern(entry, messages) : read_obj(entry.mesh),
                      {.scale = entry.placement.scale}, entry.mesh.string());
@@ -92,7 +93,7 @@ ClothPart load_cloth(const ClothEntry& entry, Names& messages) {
   place_panels(entry, part.mesh, messages);
   const Placement rest_of_it{.rotation = entry.placement.rotation, .translate = entry.placement.translate};
   part.mesh = placed(std::move(part.mesh), rest_of_it, entry.mesh.string());
-  part.report = examine(part.mesh);
+  part.report = examine(part.mesh, part.weld);
   add_messages(*part.report, entry.mesh.string(), messages);
   part.seams = seam_plans(entry, part.mesh);
   return part;

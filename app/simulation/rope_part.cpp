@@ -43,7 +43,9 @@ std::optional<Polyline> end_to_end(const std::vector<const Polyline*>& pieces) {
     end = vertices.back();
     ++used;
   }
-  if (used != pieces.size()) return std::nullopt;
+  std::vector<int> sorted = line.vertices;
+  std::ranges::sort(sorted);
+  if (used != pieces.size() || std::ranges::adjacent_find(sorted) != sorted.end()) return std::nullopt;
   const auto place = [&](int v) { return std::ranges::find(line.vertices, v); };
   if (place(pieces.front()->vertices.front()) > place(pieces.front()->vertices.back()))
     std::ranges::reverse(line.vertices);
@@ -61,9 +63,11 @@ Polyline line_of(const RopeEntry& entry, const TriangleMesh& mesh) {
   }
   const std::string start = entry.where + ": line: " + entry.mesh.string() + " has ";
   if (lines.empty()) {
-    const std::vector<std::string>& left_out = mesh.document->warnings;
+    const std::vector<std::string>& warnings = mesh.document->warnings;
+    const auto left_out = std::ranges::find_if(
+        warnings, [](const std::string& text) { return text.find("line or point element") != text.npos; });
     throw InputError(start + "no lines ('l'); expected one that the rope goes along" +
-                     (left_out.empty() ? "" : " (" + left_out.front() + ")"));
+                     (left_out == warnings.end() ? "" : " (" + *left_out + ")"));
   }
   if (found.empty())
     throw InputError(start + "no line '" + one_line(entry.line) + "'; " + suggestion(entry.line, names));

@@ -188,17 +188,22 @@ void warn_if_coarse_for_folds(const ClothEntry& entry, const Cloth& cloth, Names
       (wrinkles ? "" : ", or set compression = 0.1, so that it wrinkles finer than the mesh"));
 }
 
-// How many vertices are at exactly the place of another one with which they do not become one at once.
+// How many particles are at exactly the place of another one with which they do not become one in the first step.
 int coincident(const Cloth& cloth) {
-  std::vector<char> sewn(cloth.mesh.positions.size(), 0);
+  std::vector<char> counted(static_cast<std::size_t>(cloth.end_particle - cloth.first_particle), 0);
+  const auto mark = [&](int vertex) -> char& {
+    return counted[static_cast<std::size_t>(cloth.embedding.particle(vertex) - cloth.first_particle)];
+  };
   for (const Cloth::Stitched& open : cloth.seams)
     for (std::size_t k = 0; k < open.seam.pairs.size(); ++k)
-      if (open.seam.merge && open.seam.begins_closed(k))
-        sewn[static_cast<std::size_t>(open.seam.pairs[k].second)] = 1;
-  for (const auto& [a, b] : cloth.at_one_place) sewn[static_cast<std::size_t>(std::max(a, b))] = 1;
+      if (open.seam.merge && open.seam.begins_closed(k)) mark(open.seam.pairs[k].second) = 1;
   std::vector<std::array<double, 3>> places;
-  for (std::size_t v = 0; v < sewn.size(); ++v)
-    if (const Vec3& x = cloth.mesh.positions[v]; !sewn[v]) places.push_back({x[0], x[1], x[2]});
+  for (int v = 0; v < cloth.mesh.vertex_count(); ++v) {
+    if (mark(v)) continue;
+    mark(v) = 1;
+    const Vec3& x = cloth.mesh.positions[static_cast<std::size_t>(v)];
+    places.push_back({x[0], x[1], x[2]});
+  }
   std::ranges::sort(places);
   int count = 0;
   for (std::size_t k = 0; k < places.size(); ++k)
@@ -231,7 +236,7 @@ void tell_of_self_contact(const ClothEntry& entry, const Cloth& cloth, Names& me
     messages.push_back(
         "warning: cloth " + cloth.name + ": " + std::to_string(count) +
         " of its vertices are at the same place as another one: triangles that meet there may pass "
-        "through each other, self_contact or not; weld them in a modeller");
+        "through each other, self_contact or not; set weld = true, or weld them in a modeller");
   const std::string start = "note: cloth " + cloth.name + ": ";
   if (!entry.fabric_record.thickness)
     messages.push_back(start + "no thickness is given: layers rest " +
@@ -336,11 +341,12 @@ void warn_of_inner_steps(const Scene& scene, Names& messages) {
           "the energy; implicit-euler keeps it");
   constexpr double short_enough = 1.5e-3;  // s
   if (!scene.obstacles.empty() && scene.simulation.time_step > short_enough)
-    messages.push_back("warning: " + integrator +
-                       " settles contact once a step, and cloth that falls on a body may have "
-                       "several times its energy after steps of " +
-                       rounded(1000 * scene.simulation.time_step, 3) +
-                       " ms: look at the energies in steps.csv, and give it a time_step of 1 ms or less");
+    messages.push_back(
+        "warning: " + integrator +
+        " settles contact once a step, and cloth that falls on a body may gain energy in steps of " +
+        rounded(1000 * scene.simulation.time_step, 3) +
+        " ms, several times its own in 10 ms: look at the energies in steps.csv, and set time_step to "
+        "1 ms or less");
 }
 
 void warn_of_time(const SimulationOptions& options, Names& messages) {

@@ -41,7 +41,7 @@ void sort_unique(std::vector<int>& list) {
 
 class Examiner {
  public:
-  explicit Examiner(const TriangleMesh& mesh) : mesh_(mesh) {}
+  Examiner(const TriangleMesh& mesh, bool will_be_welded) : mesh_(mesh), will_be_welded_(will_be_welded) {}
 
   MeshReport examine() {
     report_.vertices = mesh_.vertex_count();
@@ -82,6 +82,7 @@ class Examiner {
   void unit_question();
 
   const TriangleMesh& mesh_;
+  bool will_be_welded_;
   MeshReport report_;
   std::vector<int> counted_;
   std::vector<Edge> edges_;
@@ -247,7 +248,8 @@ void Examiner::coincident_vertices() {
   }
   std::sort(line.begin(), line.end());
   const auto close = [&](int v, int w) {
-    return (mesh_.positions[v] - mesh_.positions[w]).norm() <= tolerance;
+    const Vec3 &x = mesh_.positions[v], &y = mesh_.positions[w];
+    return (x - y).norm() <= tolerance && !(will_be_welded_ && x == y);
   };
 
   std::vector<int> joined;
@@ -275,14 +277,17 @@ void Examiner::coincident_vertices() {
   if (!joined.empty()) {
     add(Severity::warning,
         std::to_string(joined.size()) +
-            " coincident vertices are joined by edges of no length, which will hold them together",
+            " coincident vertices are joined by edges of no length, which will hold them together or make "
+            "them "
+            "one",
         joined);
   }
   if (!apart.empty()) {
     add(Severity::warning,
         std::to_string(apart.size()) +
             " vertices coincide with others they are not joined to and will move apart freely;"
-            " weld them in your modeller if they should be joined",
+            " if they should be joined, weld them in your modeller, or set weld = true if it is a cloth of "
+            "triangles",
         apart);
   }
 }
@@ -338,7 +343,9 @@ bool MeshReport::refused() const {
                      [](const Defect& d) { return d.severity == Severity::refusal; });
 }
 
-MeshReport examine(const TriangleMesh& mesh) { return Examiner(mesh).examine(); }
+MeshReport examine(const TriangleMesh& mesh, bool will_be_welded) {
+  return Examiner(mesh, will_be_welded).examine();
+}
 
 std::string format(const Defect& defect) {
   static const char* const names[] = {"note: ", "warning: ", "refused: "};

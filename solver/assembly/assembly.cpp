@@ -29,6 +29,8 @@ TriangleMesh internal::between_particles(const Cloth& cloth) {
   for (Triangle& t : mesh.triangles)
     for (int& v : t) v = cloth.embedding.particle(v) - cloth.first_particle;
   mesh.positions.resize(static_cast<std::size_t>(cloth.end_particle - cloth.first_particle));
+  for (int v = cloth.mesh.vertex_count(); v-- > 0;)  // the first vertex of a particle comes last
+    mesh.positions[cloth.embedding.particle(v) - cloth.first_particle] = cloth.mesh.positions[v];
   return mesh;
 }
 
@@ -105,6 +107,27 @@ double imperfection_of(const Cloth& cloth, const std::optional<double>& given) {
     throw InputError(cloth.name + ": imperfection = " + std::to_string(amplitude) +
                      " m: it is finite and not negative");
   return amplitude;
+}
+
+// Of Cloth::at_one_place. Grids stay as they are.
+std::vector<std::pair<int, int>> at_one_place(const ClothPart& part, const Cloth& cloth) {
+  if (cloth.model == ClothModel::choi_ko) {
+    if (!part.weld) return {};
+    throw InputError(
+        cloth.name +
+        ": weld: the springs of \"choi-ko\" are those of a grid; weld the mesh itself in a modeller");
+  }
+  std::vector<std::pair<int, int>> pairs;
+  if (part.self_contact) pairs = internal::joined_at_one_place(cloth.mesh, cloth.rest);
+  if (!part.weld) return pairs;
+  if (const int layers = internal::triangles_on_others(cloth.mesh); layers > 0)
+    throw InputError(
+        cloth.name + ": weld: " + std::to_string(layers) +
+        " triangles lie on others with their corners at the same places, such as those of a copied layer, "
+        "and would become one with them; weld the seams in a modeller");
+  const std::vector<std::pair<int, int>> welded = internal::all_at_one_place(cloth.mesh);
+  pairs.insert(pairs.end(), welded.begin(), welded.end());
+  return pairs;
 }
 
 // Calls set(triangle, group) for the triangles of these groups of the mesh, none of which is in two.
@@ -212,12 +235,17 @@ Cloth& Assembly::add(ClothPart part) {
   if (cloth.fabric.weave.rest_angle > 0 && !part.seams.empty())
     throw InputError(cloth.name +
                      ": rest_angle: where panels are sewn the mesh has no angle; expected 0 with seams");
+  if (cloth.model == ClothModel::choi_ko && !part.seams.empty())
+    throw InputError(cloth.name +
+                     ": seams: the springs of \"choi-ko\" are those of a grid, which cannot be sewn");
   cloth.imperfection = imperfection_of(cloth, part.imperfection);
   for (OpenSeam& seam : open_seams(part.seams, cloth.fabric, cloth.mesh, cloth.rest))
     cloth.seams.push_back({std::move(seam), nullptr});
   cloth.first_particle = state.particles();
   cloth.end_particle = cloth.first_particle + cloth.mesh.vertex_count();
   cloth.embedding = Embedding::each(cloth.first_particle, cloth.mesh.vertex_count());
+
+  cloth.at_one_place = at_one_place(part, cloth);
 
   const std::vector<double> masses = internal::cloth_masses(cloth);
   connect(cloth, forces_);
@@ -230,10 +258,7 @@ Cloth& Assembly::add(ClothPart part) {
     faces_.push_back({t, stiffness});
   }
   const Layers layers = layers_of(part.self_contact, cloth.mesh);
-  if (part.self_contact) {
-    meet(cloth, *part.self_contact, faces, layers);
-    cloth.at_one_place = internal::joined_at_one_place(cloth.mesh, cloth.rest);
-  }
+  if (part.self_contact) meet(cloth, *part.self_contact, faces, layers);
   const std::vector<Vec3> positions = start_of(
       cloth, layers, part.self_contact ? internal::layers_below(cloths, cloth.mesh) : std::vector<int>{});
   return take(std::move(cloth), positions, masses);

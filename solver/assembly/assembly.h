@@ -39,7 +39,7 @@ struct Assembly {
   State state;
   // The states from before particles became one or parted; they are kept because arrays may still look at them.
   std::vector<State> outgrown;
-  // false: none of them is kept where particles part, because nothing looks at them.
+  // false: none of them is kept, because nothing looks at them.
   bool keep_outgrown = true;
   // Makes the integrator, at first and again whenever particles have become one or parted.
   MakeIntegrator make_integrator;
@@ -61,8 +61,8 @@ struct Assembly {
   void set_friction(std::size_t k, std::size_t l, double friction);
 
   // Makes the system at the first call, and steps with this integrator from then on. If there are bodies by
-  // the first call, their corners and rims are kept from coming through triangles. Vertices of a cloth with self_contact
-  // that edges of no length join become one particle then.
+  // the first call, their corners and rims are kept from coming through triangles. Vertices of Cloth::at_one_place
+  // become one particle then, and particles have other numbers: Cloth::embedding tells them.
   void use(MakeIntegrator make);
   void use(const std::string& integrator, const std::string& linear_solver, const StepOptions& options = {});
 

@@ -61,6 +61,9 @@ struct ClothPart {
   std::vector<SeamPlan> seams = {};
   // Whether each face is a cluster in place of what stretches (solver/forces/face_clusters.h).
   bool clusters = false;
+  // Whether vertices at exactly the same place become one particle; false: only those that edges of no length join do, of
+  // cloth with self_contact.
+  bool weld = false;
   std::optional<SelfContactOptions> self_contact = {};  // unset: the cloth passes through cloth
   // The strain l / L - 1 of an edge above which the cloth tears there (solver/assembly/tear_rule.h); unset: it never
   // tears.
@@ -126,8 +129,9 @@ struct Cloth {
   ClothModel model = ClothModel::noh_jung;
   std::vector<Vec3> warp;  // direction in the rest shape, of each triangle; [0, 0, 0] where nothing says it
   bool face_clusters = false;  // in place of what stretches
-  // Vertices that edges of no length join: where the cloth has self_contact they become one particle when the system is
-  // made, because two points at one place have no sides on which other cloth could be kept.
+  // Vertices that become one particle when the system is made: those that ClothPart::weld names, or of cloth with
+  // self_contact those that edges of no length join, because two points at one place have no sides on which other cloth
+  // could be kept. (Grids of choi_ko stay as they are.)
   std::vector<std::pair<int, int>> at_one_place;
   double imperfection = 0;             // m, how far the start is off `mesh`
   std::shared_ptr<BendMemory> memory;  // of a woven cloth whose threads rub

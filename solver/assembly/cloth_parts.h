@@ -8,7 +8,8 @@
 
 namespace drape::internal {
 
-// The cloth's triangles between its particles, numbered from its first particle. Places mean nothing there.
+// The cloth's triangles between its particles, numbered from its first particle. Each particle is where its first vertex
+// starts.
 TriangleMesh between_particles(const Cloth& cloth);
 
 std::vector<double> cloth_masses(const Cloth& cloth);  // kg, of its vertices, by its triangles

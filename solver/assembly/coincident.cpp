@@ -51,13 +51,37 @@ std::vector<int> layers_below(const std::vector<Cloth>& cloths, const TriangleMe
   return below;
 }
 
+std::vector<std::pair<int, int>> all_at_one_place(const TriangleMesh& mesh) {
+  std::vector<std::pair<int, int>> pairs;
+  const std::vector<int> first = welded(mesh.positions);
+  for (int v = 0; v < mesh.vertex_count(); ++v)
+    if (first[v] != v) pairs.emplace_back(first[v], v);
+  return pairs;
+}
+
+int triangles_on_others(const TriangleMesh& mesh) {
+  const std::vector<int> place = welded(mesh.positions);
+  std::vector<std::pair<Triangle, Triangle>> all;  // places and vertices, both sorted
+  for (const Triangle& t : mesh.triangles) {
+    Triangle places = {place[t[0]], place[t[1]], place[t[2]]}, vertices = t;
+    std::ranges::sort(places);
+    std::ranges::sort(vertices);
+    if (places[0] != places[1] && places[1] != places[2]) all.emplace_back(places, vertices);
+  }
+  std::ranges::sort(all);
+  int count = 0;
+  for (std::size_t k = 1; k < all.size(); ++k)
+    count += all[k].first == all[k - 1].first && all[k].second != all[k - 1].second;
+  return count;
+}
+
 std::vector<std::pair<int, int>> joined_at_one_place(const TriangleMesh& mesh, const TriangleMesh& rest) {
   constexpr double none = 1e-9;
   const auto no_length = [](const TriangleMesh& of, int a, int b, double size) {
     return (of.positions[a] - of.positions[b]).norm() <= none * size;
   };
-  const double size = box_of(mesh.positions).diagonal().norm(),
-               at_rest = box_of(rest.positions).diagonal().norm();
+  const double size = box_of(mesh.positions, mesh.triangles).diagonal().norm(),
+               at_rest = box_of(rest.positions, rest.triangles).diagonal().norm();
   std::vector<std::pair<int, int>> pairs;
   for (const int k : counted_triangles(mesh))
     for (std::size_t side = 0; side < 3; ++side) {

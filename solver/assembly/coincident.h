@@ -14,6 +14,10 @@ namespace drape::internal {
 // that come before it, whose corners are at exactly the same places.
 std::vector<int> layers_below(const std::vector<Cloth>& cloths, const TriangleMesh& mesh);
 
+// Each vertex at exactly the place of another one, with the first vertex there.
+std::vector<std::pair<int, int>> all_at_one_place(const TriangleMesh& mesh);
+// How many triangles have their corners at the places of another one's, which has other vertices.
+int triangles_on_others(const TriangleMesh& mesh);
 // The pairs of vertices that an edge joins which has no length, neither as the cloth starts nor at rest: below 1e-9 of the
 // size of each, as in mesh/obj/examine.h.
 std::vector<std::pair<int, int>> joined_at_one_place(const TriangleMesh& mesh, const TriangleMesh& rest);

@@ -56,7 +56,8 @@ void Assembly::merge(const std::vector<Pairs>& pairs) {
                              0.0);
   for (std::size_t i = 0; i < number.size(); ++i) masses[number[i]] += system->masses()[i];
   State fewer = merged_state(masses, number);
-  outgrown.push_back(std::exchange(state, std::move(fewer)));
+  State before = std::exchange(state, std::move(fewer));
+  if (keep_outgrown) outgrown.push_back(std::move(before));
   constraints->merge(number);
   Forces forces;
   for (Cloth& cloth : cloths) cloth.renumber(number);
