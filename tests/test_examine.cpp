@@ -119,7 +119,7 @@ TEST_CASE("every defect is found at its place", "[examine]") {
   SECTION("coincident, joined by an edge") {
     mesh.positions[5] = mesh.positions[6];
     const MeshReport report = examine(mesh);
-    CHECK(finds(report, "hold them together (vertices 5 and 6)"));
+    CHECK(finds(report, "hold them together or make them one (vertices 5 and 6)"));
     CHECK(finds(report, "no area"));
     CHECK_FALSE(finds(report, "weld"));
     CHECK(report.shortest_edge == 0);
