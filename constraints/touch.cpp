@@ -48,7 +48,7 @@ std::vector<int> leave_out_what_is_no_corner(TriangleMesh& mesh) {
   std::vector<int> kept, place(mesh.positions.size(), 0);
   for (const Triangle& t : mesh.triangles) kept.insert(kept.end(), t.begin(), t.end());
   std::ranges::sort(kept);
-  kept.erase(std::ranges::unique(kept).begin(), kept.end());
+  kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
   for (std::size_t k = 0; k < kept.size(); ++k) {
     place[static_cast<std::size_t>(kept[k])] = static_cast<int>(k);
     mesh.positions[k] = mesh.positions[static_cast<std::size_t>(kept[k])];

@@ -76,7 +76,7 @@ TEST_CASE(
     "vertices that edges of no length join are one point of cloth that meets cloth, and those that are "
     "welded",
     "[self-contact]") {
-  enum Way { whole, joined, welded };
+  enum Way { whole, joined, at_one_place };
   struct Sort {
     ClothModel model;
     double rest_angle;
@@ -92,7 +92,7 @@ TEST_CASE(
         Fabric fabric{.area_density = 0.2, .stretch = 500, .bend = 1e-5, .damping = 0.002};
         fabric.weave.rest_angle = rest_angle;
         std::array<double, 3> energy{}, at_start{}, heaviest{};
-        for (const Way way : {whole, joined, welded}) {
+        for (const Way way : {whole, joined, at_one_place}) {
           const TriangleMesh mesh = way == whole ? sheet : with_cut(sheet, way == joined);
           REQUIRE((mesh.vertex_count() > sheet.vertex_count()) == (way != whole));
           Assembly all;
@@ -101,7 +101,7 @@ TEST_CASE(
                             .fabric = fabric,
                             .model = model,
                             .imperfection = 0,
-                            .weld = way == welded,
+                            .weld = way == at_one_place,
                             .self_contact = SelfContactOptions{.thickness = r, .friction = 0.3}});
           all.use("implicit-euler", "auto", {.tolerance = 1e-4});
           REQUIRE(all.state.particles() == sheet.vertex_count());
@@ -121,7 +121,7 @@ TEST_CASE(
           CHECK(crossing_count(crossing_contours(end, all.cloths[0].mesh.triangles)) == 0);
         }
         CHECK(energy[whole] > 1e-6);
-        for (const Way way : {joined, welded}) {
+        for (const Way way : {joined, at_one_place}) {
           CHECK(heaviest[way] == Approx(heaviest[whole]).epsilon(1e-12));
           CHECK(energy[way] == Approx(energy[whole]).epsilon(1e-9));
           CHECK(at_start[way] == Approx(at_start[whole]).epsilon(1e-9).margin(1e-15));

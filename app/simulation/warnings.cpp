@@ -236,7 +236,8 @@ void tell_of_self_contact(const ClothEntry& entry, const Cloth& cloth, Names& me
     messages.push_back(
         "warning: cloth " + cloth.name + ": " + std::to_string(count) +
         " of its vertices are at the same place as another one: triangles that meet there may pass "
-        "through each other, self_contact or not; set weld = true, or weld them in a modeller");
+        "through each other, self_contact or not; " +
+        (entry.model == "choi-ko" ? "" : "set weld = true, or ") + "weld them in a modeller");
   const std::string start = "note: cloth " + cloth.name + ": ";
   if (!entry.fabric_record.thickness)
     messages.push_back(start + "no thickness is given: layers rest " +
