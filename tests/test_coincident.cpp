@@ -70,6 +70,14 @@ TriangleMesh with_cut(TriangleMesh mesh, bool joined) {
   return mesh;
 }
 
+// With its vertices in the reverse order, so that those that are doubled come first and last.
+TriangleMesh backwards(TriangleMesh mesh) {
+  std::ranges::reverse(mesh.positions);
+  for (Triangle& t : mesh.triangles)
+    for (int& v : t) v = mesh.vertex_count() - 1 - v;
+  return mesh;
+}
+
 }  // namespace
 
 TEST_CASE(
@@ -93,7 +101,7 @@ TEST_CASE(
         fabric.weave.rest_angle = rest_angle;
         std::array<double, 3> energy{}, at_start{}, heaviest{};
         for (const Way way : {whole, joined, at_one_place}) {
-          const TriangleMesh mesh = way == whole ? sheet : with_cut(sheet, way == joined);
+          const TriangleMesh mesh = backwards(way == whole ? sheet : with_cut(sheet, way == joined));
           REQUIRE((mesh.vertex_count() > sheet.vertex_count()) == (way != whole));
           Assembly all;
           all.constraints->add(Obstacle{.shape = Sphere{{0, -0.05, 0}, 0.06}, .friction = 0.3});
@@ -123,8 +131,8 @@ TEST_CASE(
         CHECK(energy[whole] > 1e-6);
         for (const Way way : {joined, at_one_place}) {
           CHECK(heaviest[way] == Approx(heaviest[whole]).epsilon(1e-12));
-          CHECK(energy[way] == Approx(energy[whole]).epsilon(1e-9));
-          CHECK(at_start[way] == Approx(at_start[whole]).epsilon(1e-9).margin(1e-15));
+          CHECK(energy[way] == Approx(energy[whole]).epsilon(1e-7));
+          CHECK(at_start[way] == Approx(at_start[whole]).epsilon(1e-5).margin(1e-15));
         }
       }
 }
