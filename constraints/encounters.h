@@ -154,8 +154,18 @@ std::vector<Meeting>& Encounters::select(Kind kind, const VecX& x, const VecX& x
     for (std::size_t part = 0; part < 2; ++part) {
       if ((static_cast<unsigned>(kind) >> part & 1u) == 0 || due[part] - clock.end > gap) continue;
       due[part] = std::numeric_limits<double>::infinity();
-      for (int k = from[part]; k < from[part + 1]; ++k)
-        due[part] = std::min(due[part], select_pair(pairs, k, clock, x, x_new, gap, gap_of, look, found));
+      for (int k = from[part]; k < from[part + 1];) {
+        // Most pairs are not due, and are looked at by fours.
+        const int next = std::min(k + 4, from[part + 1]);
+        double first = pairs.due[k];
+        for (int other = k + 1; other < next; ++other) first = std::min(first, pairs.due[other]);
+        if (first - clock.end > gap) {
+          due[part] = std::min(due[part], first);
+          k = next;
+        }
+        for (; k < next; ++k)
+          due[part] = std::min(due[part], select_pair(pairs, k, clock, x, x_new, gap, gap_of, look, found));
+      }
     }
   };
   select_chunks(static_cast<int>(groups_.size()), groups_in_a_chunk, [&](int k, std::vector<Meeting>& found) {

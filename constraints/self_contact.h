@@ -264,6 +264,7 @@ class SelfContacts {
   bool is_sewn(const Encounter& e) const { return have_on_both_sides(sewn_, e); }
   static bool have_on_both_sides(const std::vector<char>& mark, const Encounter& e);  // a marked particle
   bool has_contact(const Encounter& e) const;
+  void list_last_ones();
   const SelfContact* last_of(const Encounter& e) const;
   // The pairs that are not surely apart all the way from x to x_new, in order.
   std::vector<internal::Meeting>& meetings(const VecX& x, const VecX& x_new);
@@ -316,6 +317,8 @@ class SelfContacts {
   std::vector<char> tangled_;      // whether it was in a tangle there, or is beside a cut
   std::vector<SelfContact> touching_, last_;     // of this step and of the last one, sorted
   std::vector<Encounter> last_ones_;             // scratch: the pairs of last_, in its order
+  // Scratch: where in last_ the pairs of vertices, and those of edges, begin whose first particle is this one.
+  std::array<std::vector<int>, 2> last_from_;
   std::vector<SelfContact> met_;                 // scratch
   std::vector<internal::Meeting> found_;         // scratch
   std::vector<double> way_, shorter_, nearest_;  // scratch, by particle

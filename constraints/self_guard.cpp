@@ -40,7 +40,7 @@ std::vector<Meeting>& SelfContacts::meetings(const VecX& x, const VecX& x_new) {
     return found;
   };
   const auto gap_of = [floor](const Encounter&) { return floor; };
-  found_ = encounters_->select(Encounters::Kind::both, x, x_new, floor, gap_of, look);
+  std::swap(found_, encounters_->select(Encounters::Kind::both, x, x_new, floor, gap_of, look));
   if (surfaces_->any()) {
     const std::vector<Meeting>& others =
         on_bodies_->select(Encounters::Kind::both, x, x_new, floor, gap_of, look);

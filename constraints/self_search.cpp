@@ -38,10 +38,25 @@ bool SelfContacts::has_contact(const Encounter& e) const {
   return at != touching_.end() && at->who == e;
 }
 
+// Fills last_ones_ and last_from_.
+void SelfContacts::list_last_ones() {
+  last_ones_.clear();
+  for (std::vector<int>& from : last_from_) from.assign(nearest_.size() + 1, 0);
+  for (const SelfContact& c : last_) {
+    last_ones_.push_back(c.who);
+    ++last_from_[c.who.edges][c.who.v[0] + 1];
+  }
+  int before = 0;  // the pairs of vertices stand before those of edges
+  for (std::vector<int>& from : last_from_)
+    for (int& count : from) count = before += count;
+}
+
 // The contact of this pair in the last step; null when there was none.
 const SelfContact* SelfContacts::last_of(const Encounter& e) const {
-  const auto at = std::lower_bound(last_ones_.begin(), last_ones_.end(), e);
-  return at != last_ones_.end() && *at == e ? &last_[at - last_ones_.begin()] : nullptr;
+  const std::vector<int>& from = last_from_[e.edges];
+  for (int k = from[e.v[0]]; k < from[e.v[0] + 1]; ++k)
+    if (last_ones_[k] == e) return &last_[k];
+  return nullptr;
 }
 
 int SelfContacts::one_of(const Encounter& e, bool second) const { return ropes_->one_of(e, second); }
@@ -121,16 +136,11 @@ std::optional<SelfContact> SelfContacts::contact_of(const StepMotion& step, cons
 void SelfContacts::take_over(SelfContact& contact, double recovery) const {
   const SelfContact* at = last_of(contact.who);
   if (!at && !contact.who.edges) {
-    const auto of_vertex = [&](const SelfContact& c) {
-      return !c.who.edges && c.who.v[0] == contact.who.v[0];
-    };
-    auto c =
-        std::lower_bound(last_.begin(), last_.end(), contact.who.v[0],
-                         [](const SelfContact& one, int v) { return !one.who.edges && one.who.v[0] < v; });
-    while (c != last_.end() && of_vertex(*c) &&
-           (c->normal.dot(contact.normal) < same_way || !share_a_particle(c->who, contact.who)))
-      ++c;
-    if (c != last_.end() && of_vertex(*c) && !has_contact(c->who)) at = &*c;
+    const int* const from = &last_from_[0][contact.who.v[0]];
+    const auto c = std::find_if(last_.begin() + from[0], last_.begin() + from[1], [&](const SelfContact& one) {
+      return !(one.normal.dot(contact.normal) < same_way) && share_a_particle(one.who, contact.who);
+    });
+    if (c != last_.begin() + from[1] && !has_contact(c->who)) at = &*c;
   }
   if (!at) return;
   contact.before = at->before;
@@ -216,7 +226,7 @@ bool SelfContacts::is_borne_otherwise(const Meeting& edges) const {
 
 // Fills found_.
 void SelfContacts::find_near_ones(const StepMotion& step, double thickest, bool edges) {
-  found_ = near_ones(step, *encounters_, thickest, reach_, edges);
+  std::swap(found_, near_ones(step, *encounters_, thickest, reach_, edges));
   // Other methods look at a contact within the step, when the body is not yet where its end takes it.
   if (!surfaces_->any() || step.foresight != Foresight::ahead) return;
   const std::vector<Meeting>& others =
@@ -226,8 +236,7 @@ void SelfContacts::find_near_ones(const StepMotion& step, double thickest, bool 
 
 void SelfContacts::find_contacts(const StepMotion& step) {
   touching_.clear();
-  last_ones_.clear();
-  for (const SelfContact& c : last_) last_ones_.push_back(c.who);
+  list_last_ones();
   double thickest = 0, thickest_rope = 0;
   for (const SelfFace& face : faces_) thickest = std::max(thickest, face.thickness);
   for (const SelfSegment& segment : segments_) thickest_rope = std::max(thickest_rope, segment.thickness);

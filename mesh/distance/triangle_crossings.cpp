@@ -166,7 +166,7 @@ std::vector<CrossingContour> contours_of(const std::vector<Vec3>& positions,
     triangle_of.push_back(k);
   }
   if (faces.empty()) return {};
-  constexpr int in_a_box = 4;
+  constexpr int in_a_box = 1;
   MovingBoxes boxes(faces, positions, in_a_box, faces_of_first);
   boxes.refit(faces, positions, positions);
   Search search(positions, triangles);
