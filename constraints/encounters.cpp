@@ -176,6 +176,22 @@ bool Encounters::touch(const Box& a, const Box& b, double reach) const {
   return enter <= leave + 1e-9;
 }
 
+// Whether the normal of the first triangle at the start separates the two by more than `reach` at both ends of the motion, and
+// so all the way. Boxes do not tell layers apart that lie on a slope.
+bool Encounters::apart_along_normal(int first, int second, double reach) const {
+  const Triangle &a = faces_[first].v, &b = faces_[second].v;
+  const Vec3 n = (start_[a[1]] - start_[a[0]]).cross(start_[a[2]] - start_[a[0]]);
+  const double enough = reach * n.norm();
+  bool above = true, below = true;
+  for (const std::vector<Vec3>* x : {&start_, &end_}) {
+    const auto [a_low, a_high] = std::minmax({n.dot((*x)[a[0]]), n.dot((*x)[a[1]]), n.dot((*x)[a[2]])});
+    const auto [b_low, b_high] = std::minmax({n.dot((*x)[b[0]]), n.dot((*x)[b[1]]), n.dot((*x)[b[2]])});
+    above = above && b_low - a_high > enough;
+    below = below && a_low - b_high > enough;
+  }
+  return above || below;
+}
+
 // By how much a vector may differ between two patches, or within one, at most, along each axis.
 Eigen::Array3d Encounters::difference(const Range& a, const Range& b) {
   return (a.upper - b.lower).max(b.upper - a.lower);
@@ -346,6 +362,7 @@ bool Encounters::search(Group& group, double within, std::size_t most) const {
       [&](int first, int second) {
         if (common(first, second) >= 0) return true;
         if (of_cloth_ != 0 && (first < of_cloth_) == (second < of_cloth_)) return true;
+        if (apart_along_normal(first, second, within)) return true;
         const auto before = static_cast<std::ptrdiff_t>(found.size());
         list(std::min(first, second), std::max(first, second), found);
         const auto far = [&](const Encounter& e) {

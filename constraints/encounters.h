@@ -99,6 +99,7 @@ class Encounters {
   void spread(const VecX& x, std::vector<Vec3>& places) const;
   Box box_about(const Encounter& e, std::size_t from, std::size_t to) const;
   bool touch(const Box& a, const Box& b, double reach) const;
+  bool apart_along_normal(int first, int second, double reach) const;
   int common(int first, int second) const;  // the lowest common vertex; -1: none
   static Eigen::Array3d difference(const Range& a, const Range& b);
   static double largest_difference(const Ranges& ranges);

@@ -363,6 +363,9 @@ TEST_CASE("what is said of a start that contact cannot take as it is", "[cli]") 
   const std::string guarded = "self_contact = true\nthickness = \"1 mm\"\n";
   CHECK_THAT(warned(guarded).out, !Contains("from the origin"));
   CHECK_THAT(warned(guarded + "translate = [100, 0, 0]\n").out, Contains("reaches 100 m from the origin"));
+  CHECK_THAT(warned(guarded).out, !Contains("thick for a cloth"));
+  CHECK_THAT(warned("self_contact = true\nthickness = 0.1\n").out,
+             Contains("warning: cloth sheet: layers 100 mm apart are thick for a cloth of "));
   const Outcome far = warned(guarded + "translate = [0, 0, -5000]\n");
   CHECK(far.exit_code == 2);
   CHECK(lines_of(far.err) == 1);

@@ -111,6 +111,12 @@ TEST_CASE("$DRAPE_DATA adds fabrics to the built-in ones, and its own go before"
   CHECK(bend_of_run(shop, "drop sheet.obj --fabric cotton-broad", data) == Approx(30e-6));
   CHECK(bend_of_run(shop, "drop sheet.obj --fabric cotton-poplin", data) == Approx(8e-6));
   CHECK(bend_of_run(shop, "drop sheet.obj --fabric cotton-broad") == Approx(11.5718e-6));
+  // A file that cannot be read hides no other.
+  shop.write("more/fabrics/broken.toml", "stretch =\n");
+  const Outcome with_broken = shop.drape("list fabrics", data);
+  CHECK(with_broken.exit_code == 0);
+  CHECK_THAT(with_broken.out, Contains("cannot be read: more/fabrics/broken.toml:1: is not TOML"));
+  CHECK(lines_of(with_broken.out) == lines_of(listed.out) + 1);
   CHECK(shop.drape("list fabrics", "DRAPE_DATA=none").exit_code == 0);
 }
 

@@ -45,12 +45,16 @@ std::vector<Part> parts_of(const Infos& infos) {
 
 std::vector<Part> fabric_parts() {
   std::vector<Part> parts;
-  for (const std::string& name : fabric_names()) {
-    const NamedFabric named = load_fabric(name);
-    std::string text = in_words(named.fabric) + "; " + named.description;
-    if (!named.assumed.empty()) text += " (assumed: " + listed(named.assumed) + ")";
-    parts.push_back({name, one_line(text)});
-  }
+  const auto in_short = [](const std::string& name) {
+    try {
+      const NamedFabric named = load_fabric(name);
+      const std::string text = in_words(named.fabric) + "; " + named.description;
+      return named.assumed.empty() ? text : text + " (assumed: " + listed(named.assumed) + ")";
+    } catch (const InputError& error) {
+      return std::string("cannot be read: ") + error.what();
+    }
+  };
+  for (const std::string& name : fabric_names()) parts.push_back({name, one_line(in_short(name))});
   return parts;
 }
 

@@ -9,6 +9,7 @@
 #include "app/simulation/schedule.h"
 #include "mesh/base/errors.h"
 #include "mesh/distance/triangle_crossings.h"
+#include "mesh/triangles/extent.h"
 #include "solver/forces/choi_ko.h"
 
 namespace drape::app {
@@ -230,7 +231,8 @@ void check_place(const ClothEntry& entry, const Cloth& cloth, const VecX& x, Nam
 
 // What contact of cloth with cloth takes for granted.
 void tell_of_self_contact(const ClothEntry& entry, const Cloth& cloth, Names& messages) {
-  constexpr double coarse = 20;  // edges that long, in thicknesses
+  constexpr double coarse = 20;   // edges that long, in thicknesses
+  constexpr double thick = 0.05;  // of the size of the cloth
   if (!entry.self_contact) return;
   if (const int count = coincident(cloth); count > 0)
     messages.push_back(
@@ -242,6 +244,11 @@ void tell_of_self_contact(const ClothEntry& entry, const Cloth& cloth, Names& me
   if (!entry.fabric_record.thickness)
     messages.push_back(start + "no thickness is given: layers rest " +
                        rounded(1000 * entry.self.thickness, 3) + " mm apart");
+  const double size = box_of(cloth.mesh.positions).diagonal().norm();
+  if (entry.self.thickness > thick * size)
+    messages.push_back("warning: cloth " + cloth.name + ": layers " +
+                       rounded(1000 * entry.self.thickness, 3) + " mm apart are thick for a cloth of " +
+                       rounded(1000 * size, 3) + " mm from corner to corner; give a smaller thickness");
   if (cloth.report.median_edge > coarse * entry.self.thickness)
     messages.push_back(start + "its edges (median " + rounded(1000 * cloth.report.median_edge, 2) +
                        " mm) are long for layers " + rounded(1000 * entry.self.thickness, 3) +
