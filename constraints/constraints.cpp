@@ -27,8 +27,8 @@ void Constraints::pin_to_body(const std::vector<int>& particles, int body, const
   step_.held.clear();
 }
 
-void Constraints::pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x) {
-  pins_.pin_along(particles, motion, x);
+void Constraints::pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x, double t) {
+  pins_.pin_along(particles, motion, x, t);
   step_.held.clear();
 }
 
@@ -85,7 +85,7 @@ void Constraints::prepare(int particles, const std::vector<double>& masses) {
 }
 
 ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses, double t,
-                                    double h, Foresight foresight, double kappa) {
+                                    double h, Foresight foresight, const SelfSprings& springs) {
   prepare(static_cast<int>(x.size() / 3), masses);
   step_.t = t;
   step_.h = h;
@@ -120,7 +120,7 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
       if (foresight != Foresight::ahead) faces_.limit_dampers(masses, h);
     }
   }
-  self_.begin_step(step_, bodies_, options_.recovery_speed * h, kappa);
+  self_.begin_step(step_, bodies_, options_.recovery_speed * h, springs);
   if (foresight != Foresight::none)
     for (const Contact& contact : contacts_.touching())
       if (contact.planes > 0 && step_.radius_of(contact.particle) == 0)

@@ -30,10 +30,10 @@ class Constraints {
   void add(Obstacle obstacle);  // throws InputError
   void pin(int particle);       // holds the particle where it is; pinning it twice is pinning it once
   void pin(const std::vector<int>& particles);
-  // These particles are carried along from where they are at time 0 (x [m] has the places of all particles):
-  // by a body, or by a motion of their own. A particle is pinned once, in the way that is named first.
+  // These particles are carried along from where they are now (x [m] has the places of all particles): by a body, or by
+  // a motion of their own, which is at the time t [s] of it. A particle is pinned once, in the way that is named first.
   void pin_to_body(const std::vector<int>& particles, int body, const VecX& x);
-  void pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x);
+  void pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x, double t = 0);
 
   // The particle is the middle of something that is as thick as a ball of this radius [m], such as a rope: it rests at
   // the radius and the margin outside of a body. A particle of a cloth has the radius 0. Throws InputError when the
@@ -69,10 +69,10 @@ class Constraints {
 
   double work() const { return step_.work; }  // of moving bodies and pins in the last step [J]
   // Begins the step of length h [s] from x [m] and v [m/s] at time t [s], and finds what touches.
-  // masses [kg]. kappa [m/h^2]: how stiff the springs between cloth and cloth are (constraints/self_contact.h).
+  // masses [kg]. springs: between cloth and cloth (constraints/self_contact.h).
   [[nodiscard]] ContactStep begin_step(const VecX& x, const VecX& v, const std::vector<double>& masses,
                                        double t, double h, Foresight foresight = Foresight::ahead,
-                                       double kappa = implicit_kappa);
+                                       const SelfSprings& springs = {});
 
   // For a step that is taken in parts: go_back() takes the bodies back to where they were at the last keep().
   void keep();

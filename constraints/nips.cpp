@@ -115,7 +115,9 @@ void ParticleContacts::clamp_between(const Bodies& bodies, const StepMotion& ste
     return clearance(o, particle) - offset(o) - touch(o) - bodies[o].travel(x, x);
   };
   const bool clamped = before && before->clamped;
-  if (contact.comes_out) return;
+  // What began inside a body comes out first; what began beside it, within its margin, may be clamped there.
+  const int deepest_in = contact.plane[0].obstacle;
+  if (contact.comes_out && contact.plane[0].gap < -offset(deepest_in)) return;
   const int count = static_cast<int>(bodies.size());
   for (int a = 0; a < count; ++a) {
     if (bodies[a].reacting()) continue;

@@ -18,10 +18,10 @@ void PinSet::pin_to_body(const std::vector<int>& particles, const MovingBody& bo
   pin(particles);
 }
 
-void PinSet::pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x) {
+void PinSet::pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x, double t) {
   const int path = static_cast<int>(paths_.size());
   paths_.push_back(motion);
-  const Pose start = motion.at(0);
+  const Pose start = motion.at(t);
   for (int i : particles)
     if (!has(i)) moving_.push_back({i, -1, path, {start.to_body(x.segment<3>(3 * i)), {}}});
   pin(particles);

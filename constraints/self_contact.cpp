@@ -40,6 +40,9 @@ constexpr double comes_back = 1.1, ends_above = 1.25;
 // What pushed in the last step begins as pushing unless the free way opens it by this many times what it was compressed.
 constexpr double goes_on = 10;
 
+// In this time [s] a contact comes back to its thickness that became stiffer.
+constexpr double thickens_in = 0.01;
+
 // How fast a contact that has become thinner than its cloth may thicken [m/s]: so slowly that, on earth, what it lifts flies no
 // farther than the contact is remembered.
 double lift_speed(double thickness) { return std::sqrt(2 * 9.81 * 0.5 * thickness); }
@@ -164,15 +167,15 @@ bool SelfContacts::may_pass(const Encounter& e) const {
 // way, as between two layers that cross, would become stiffer in every step: so there is a limit.
 void SelfContacts::stiffen(SelfContact& contact, const StepMotion& step) const {
   if (kappa_ < 1) return;
-  const double mass = contact.stiffness * step.h * step.h / kappa_;
+  const double mass = contact.stiffness * made_for_ * made_for_ / kappa_;
   const double stops = mass * std::max(0.0, -contact.normal.dot(contact.over(step.v))) / step.h;
   const double sinks = std::max(contact.thickness, 0.1 * both_thicknesses(contact.who));
   const double under_load = load_sinks * sinks;
   double bears =
       contact.load / (ropes_->is_rope(contact.who) ? std::min(under_load, rope_sinks) : under_load);
-  if (step.last_h > 0)
+  if (last_made_for_ > 0)
     for (double* k : {&contact.stiff, &contact.least_stiff})
-      *k *= step.last_h * step.last_h / (step.h * step.h);
+      *k *= last_made_for_ * last_made_for_ / (made_for_ * made_for_);
   if (contact.stiff > 0) bears = next_stiffness(contact, bears, step.h);
   const double arrives = stops / (arrival_sinks * sinks);
   if (arrives > bears)
@@ -189,7 +192,7 @@ bool SelfContacts::stiffen_to_hold(SelfContact& contact, const VecX& x_new) cons
     const double w = contact.weights[k] + contact.of_body[k], mass = step.mass(contact.who.v[k]);
     if (mass > 0) inverse += w * w / mass;
   }
-  const double limit = stiffest * kappa_ / (step.h * step.h * inverse);
+  const double limit = stiffest * kappa_ / (made_for_ * made_for_ * inverse);
   const double sinks = std::max(contact.thickness, 0.1 * both_thicknesses(contact.who));
   const double wanted = contact.push_at(contact.at(x_new)) / (arrival_sinks * sinks);
   if (kappa_ < 1 || std::min(wanted, limit) < 1.01 * contact.stiffness) return false;
@@ -200,7 +203,7 @@ bool SelfContacts::stiffen_to_hold(SelfContact& contact, const VecX& x_new) cons
 }
 
 void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<MovingBody>& bodies,
-                              double recovery, double kappa) {
+                              double recovery, const SelfSprings& springs) {
   if (!any()) return;
   stale_ = surfaces_->begin_step(bodies, of_cloth) || stale_;
   const StepMotion& step = surfaces_->step();
@@ -208,7 +211,8 @@ void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<Movi
   accepted_ = is_proven_ = false;
   caution_ = 1;
   stopped_.assign(static_cast<std::size_t>(cloth_particles()), 0);
-  kappa_ = kappa;
+  kappa_ = springs.kappa;
+  made_for_ = springs.h > 0 ? springs.h : step.h;
   recovery_ = recovery;
   ahead_ = step.x + step.h * step.v;
   find_contacts(step);
@@ -216,9 +220,14 @@ void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<Movi
             [](const SelfContact& a, const SelfContact& b) { return a.who < b.who; });
   for_chunks<Work::heavy>(static_cast<int>(touching_.size()), [&](int begin, int end) {
     for (SelfContact& c : std::span(touching_).subspan(begin, end - begin)) {
-      take_over(c, std::min(recovery, step.h * lift_speed(thickness_of(c.who))));
+      const double lift = std::min(recovery, step.h * lift_speed(thickness_of(c.who)));
+      take_over(c, lift);
       c.push = c.before;
       stiffen(c, step);
+      // What became stiffer in a short step begins with about the force that it had: or it would make energy.
+      const double as_before = c.normal.dot(c.place) + c.before / c.stiffness;
+      if (as_before < c.thickness)
+        c.thickness = as_before + std::min(1.0, step.h / thickens_in) * (c.thickness - as_before);
       const Vec3 p = c.now = c.at(ahead_);
       const double drag = c.drag_at(p).norm();
       c.active = c.linear_push(p) > -goes_on * c.before;
@@ -342,6 +351,7 @@ bool SelfContacts::react(const VecX& v, const VecX& r, const VecX& x_new, double
 void SelfContacts::end_step(const VecX& x_new) {
   if (!any()) return;
   pushing_ = 0;
+  last_made_for_ = made_for_;
   last_ = touching_;
   for (SelfContact& c : last_) {
     const Vec3 p = c.at(x_new);

@@ -8,10 +8,12 @@
 //                                                   t of the last step
 //         t = d while |d| <= mu f (it sticks), else mu f d/|d| (it slides)         [Cundall & Strack 1979]
 //     k = kappa m / h^2,  1/m = sum w_k^2 / m_k     as stiff as the time step allows, whatever the mesh: a layer sinks
-//                                                   into the thickness by g h^2 / kappa, 33 um with h = 10 ms
+//                                                   into the thickness by g h^2 / kappa, 33 um with h = 10 ms. Of a step
+//                                                   that is taken in pieces h is that of the whole
 //   kappa is larger, up to a limit, where the load, or what arrives, would sink in by more than a share of r. It goes half
 //   of the way to what the load asks for in a step, in ratios, and falls only after a while in which much less was asked for:
-//   what shares a load would else take it by turns, and a pile would swing up and down for ever.
+//   what shares a load would else take it by turns, and a pile would swing up and down for ever. In steps
+//   shorter than 10 ms what becomes stiffer begins with the force that it had: r is so much less at first, and grows back.
 //   Within a solve a contact is linear: it acts or not, and friction is a spring weakened to share (t_0 - k s). With such
 //   springs no solve goes too far, but where many contacts slide, each solve takes away only an eighth of the error. So what
 //   slid in the solve before, too, is linearised as the force along d that friction is, with the spring across d
@@ -50,6 +52,10 @@ namespace drape {
 
 // How stiff the springs are [m/h^2]: for methods that solve for the end of a step, and for those that do not.
 inline constexpr double implicit_kappa = 30, explicit_kappa = 0.2;
+struct SelfSprings {
+  double kappa = implicit_kappa;
+  double h = 0;  // the length of step that they are made for [s]; 0: that of the step under way
+};
 
 namespace internal {
 class Encounters;
@@ -188,10 +194,10 @@ class SelfContacts {
   }
 
   // Finds what comes near along x -> x + h v. recovery: by how much the thickness of a contact that started nearer
-  // than r grows in the step at most [m]. kappa: stiffness of the springs at least [m/h^2]; below 1, as
+  // than r grows in the step at most [m]. springs.kappa: their stiffness at least [m/h^2]; below 1, as
   // explicit methods bear it, it is no larger anywhere.
   void begin_step(const StepMotion& step, const std::vector<MovingBody>& bodies, double recovery,
-                  double kappa);
+                  const SelfSprings& springs);
   void follow(const std::vector<MovingBody>& bodies);  // bodies that react have changed their motion
   // Gives the bodies what the contacts push them with when the step takes the cloth to x_new; returns the work on the
   // cloth [J].
@@ -298,7 +304,8 @@ class SelfContacts {
   std::unique_ptr<internal::Tangles> tangles_;
   std::unique_ptr<internal::RopeRest> ropes_;
   bool stale_ = true, look_again_ = true;
-  double kappa_ = 0;                   // m/h^2
+  double kappa_ = 0;                          // m/h^2
+  double made_for_ = 0, last_made_for_ = 0;  // h of this: SelfSprings::h, now and in the last step [s]
   double caution_ = 1;                 // SelfContact::spring of what slides in the next solve
   double reach_ = 0, body_reach_ = 0;  // m, from which on pairs are looked at
   double recovery_ = 0;                // m, by which tangles move in a step at most

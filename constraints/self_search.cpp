@@ -111,7 +111,7 @@ std::optional<SelfContact> SelfContacts::contact_of(const StepMotion& step, cons
                       .normal = near.normal,
                       .place = Vec3::Zero(),
                       .now = Vec3::Zero(),
-                      .stiffness = kappa_ / (step.h * step.h * inverse),
+                      .stiffness = kappa_ / (made_for_ * made_for_ * inverse),
                       .thickness = thickness_of(who),
                       .friction = friction_of(who)};
   if (is_on_body(who)) {

@@ -236,6 +236,19 @@ TEST_CASE("what starts beside the middle is brought there no faster than what st
   }
 }
 
+TEST_CASE("what starts between two bodies, however narrow the room, is held from the start", "[nips]") {
+  for (const double room : {0.3e-3, 0.9e-3, 1.9e-3, 2e-3, 2.1e-3})
+    for (const double beside : {0.0, 0.2, -0.4}) {  // of half of the room
+      INFO(room << " m between the bodies, " << beside << " of the way to one of them");
+      One one({0, 0.5 * beside * room, 0});
+      one.add(block(1), {{0, {0, 0.5 * room, 0}}}, 0.3);
+      one.add(wall(-1), {{0, {0, -0.5 * room, 0}}}, 0.3);
+      for (int k = 0; k < 40; ++k) CHECK(one.advance().pinched == 1);
+      CHECK(std::abs(one.state.x[1]) < 1e-9);
+      CHECK(std::abs(one.state.x[2]) < 1e-9);
+    }
+}
+
 TEST_CASE("what starts inside bodies that overlap comes out of both", "[nips]") {
   for (double beside : {0.03, 0.05, 0.06})
     for (double mu : {0.3, 1.0}) {

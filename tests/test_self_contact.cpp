@@ -97,7 +97,7 @@ TEST_CASE("whatever particles are told to do, no cloth passes through cloth", "[
         for (int c = 0; c < 3; ++c) x_new[3 * i + c] += 0.1 * common[c] + size * number(random);
       step.v = (x_new - step.x) / step.h;
       VecX v_new = step.v;
-      contacts.begin_step(step, {}, 1e-3, implicit_kappa);
+      contacts.begin_step(step, {}, 1e-3, SelfSprings{});
       const VecX asked = x_new;
       stopped += contacts.guard({}, {}, true, x_new, v_new);
       contacts.end_step(x_new);

@@ -48,7 +48,7 @@ struct Guarded {
   int guard() {
     step.v = (x_new - step.x) / step.h;
     v_new = step.v;
-    contacts.begin_step(step, {}, 1e-3, implicit_kappa);
+    contacts.begin_step(step, {}, 1e-3, SelfSprings{});
     return contacts.guard({}, on_bodies, true, x_new, v_new);
   }
 

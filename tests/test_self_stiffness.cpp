@@ -16,13 +16,15 @@ namespace {
 
 constexpr double thickness = 1e-3;  // m
 
-Assembly pile_on(const Obstacle& floor, int layers, int n, Kind kind) {
+Assembly pile_on(const Obstacle& floor, int layers, int n, Kind kind,
+                 ClothModel model = ClothModel::noh_jung, double size = 0.1) {
   Assembly pile{Vec3(0, -9.81, 0)};
   for (int k = 0; k < layers; ++k) {
     const TriangleMesh mesh =
-        bent(n + k % 3, kind, 0.1, [&](double, double) { return 2e-3 + thickness * k; });
+        bent(n + k % 3, kind, size, [&](double, double) { return 2e-3 + thickness * k; });
     pile.add({.mesh = mesh,
               .fabric = {.area_density = 0.2, .stretch = 200, .bend = 1e-5, .damping = 0.002},
+              .model = model,
               .imperfection = 0,
               .self_contact = SelfContactOptions{.thickness = thickness, .friction = 0.3}});
   }
@@ -148,4 +150,63 @@ TEST_CASE("a contact whose load comes back when it is eased is not eased as far 
       CHECK(came_back >= 1);
       CHECK(came_back <= 2);
     }
+}
+
+TEST_CASE("a body that comes to lie on two layers is not thrown off", "[self-contact]") {
+  const Vec3 size(0.1, 0.05, 0.1);
+  const std::array models = {ClothModel::noh_jung, ClothModel::woven};
+  const std::array masses = {0.2, 1.0, 5.0};
+  std::size_t run = 0;
+  for (const Kind kind : kinds)
+    for (const int n : {13, 19, 25})
+      for (const double above : {0.0, 5e-3}) {  // m, from where it falls
+        const ClothModel model = models[run % models.size()];
+        const double mass = masses[run++ % masses.size()];
+        INFO("model " << static_cast<int>(model) << ", kind " << static_cast<int>(kind) << ", " << n
+                      << " vertices along an edge, " << mass << " kg from " << above << " m");
+        Assembly pile = pile_on(floor_along({{.time = 0}}), 2, n, kind, model, 0.3);
+        const double lies = 4e-3 + thickness + 0.5 * size[1];
+        const Vec3 place(0, lies + above, 0);
+        const UniformSolid solid = uniform_solid(Box{.centre = place, .size = size}, mass).value();
+        pile.constraints->add(
+            {.shape = Box{.centre = place, .size = size},
+             .friction = 0.5,
+             .margin = 2e-3,
+             .rigid = RigidBody{.mass = mass, .inertia = solid.inertia, .centre = solid.centre}});
+        double highest = 0;
+        for (int k = 0; k < 20 && pile.advance(0.01).done; ++k)
+          highest = std::max(highest, pile.constraints->bodies()[1].reacting()->centre()[1] - lies);
+        CHECK(highest < above + 0.5 * thickness);
+      }
+}
+
+TEST_CASE("a pile at rest is not thrown up by shorter steps, nor let down by longer ones", "[self-contact]") {
+  constexpr double usual = 0.01, weight_of_layer = 9.81 * 0.2 * 0.01;
+  for (const Kind kind : kinds)
+    for (const int layers : {2, 5, 8})
+      for (const double pieces : {4.0, 64.0}) {
+        INFO("kind " << static_cast<int>(kind) << ", " << layers << " layers, steps of a " << pieces << "th");
+        Assembly pile = pile_on(floor_along({{.time = 0}}), layers, 5, kind);
+        const auto fastest = [&] {
+          double most = 0;
+          for (int i = 0; i < pile.state.particles(); ++i)
+            most = std::max(most, pile.state.v.segment<3>(3 * i).norm());
+          return most;
+        };
+        while (pile.state.time < 1.5) REQUIRE(pile.advance(usual).done);
+        const double rests = pile.system->total_energy(pile.state);
+        for (const double h : {usual / pieces, usual}) {
+          double energy = rests, speed = 0;
+          for (int k = 0; k < 64; ++k) {
+            REQUIRE(pile.advance(h).done);
+            energy = std::max(energy, pile.system->total_energy(pile.state));
+            speed = std::max(speed, fastest());
+          }
+          INFO("steps of " << h << " s");
+          // Lifted by what it is compressed, at most.
+          CHECK(energy - rests < 0.1 * weight_of_layer * layers * layers * thickness);
+          CHECK(speed < 0.15);
+        }
+        CHECK(fastest() < 5e-3);
+      }
 }

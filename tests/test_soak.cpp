@@ -111,7 +111,7 @@ TEST_CASE("a million motions: no cloth passes through cloth", "[.][soak]") {
             x_new[3 * static_cast<Eigen::Index>(i) + c] += common[c] + size * number(random, -1, 1);
       step.v = (x_new - step.x) / step.h;
       VecX v_new = step.v;
-      contacts.begin_step(step, {}, 1e-3, implicit_kappa);
+      contacts.begin_step(step, {}, 1e-3, SelfSprings{});
       stopped += contacts.guard({}, {}, true, x_new, v_new) > 0;
       contacts.end_step(x_new);
       INFO("case " << cases << ", motion " << size << " m");

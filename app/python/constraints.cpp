@@ -103,16 +103,16 @@ void add_constraints(py::module_& m) {
             constraints.pin_to_body(particles_of(particles, state), body, state.x);
           },
           "particles"_a, "body"_a, "state"_a,
-          "These are carried along by a body, from where they are at time 0.")
+          "These are carried along by a body, from where they and the body are after the last step.")
       .def(
           "pin_along",
           [](Constraints& constraints, const py::object& particles, const Motion& motion,
              const State& state) {
             require_free(&constraints);
-            constraints.pin_along(particles_of(particles, state), motion, state.x);
+            constraints.pin_along(particles_of(particles, state), motion, state.x, state.time);
           },
           "particles"_a, "motion"_a, "state"_a,
-          "These follow a motion of their own, from where they are at time 0.")
+          "These follow a motion of their own, from where they are at the time of the state.")
       .def_property_readonly(
           "pinned", [](const Constraints& constraints) { return copied(constraints.pinned()); },
           "int32, ascending; a copy")

@@ -95,7 +95,8 @@ void add_reports_of_steps(py::module_& m) {
                     "from 1: in steps of this length since the time 0, or since the run began where that is "
                     "between two")
       .def_readonly("time", &RunStep::time, "s, at its end")
-      .def_readonly("kinetic_energy", &RunStep::kinetic_energy, "J")
+      .def_readonly("kinetic_energy", &RunStep::kinetic_energy,
+                    "J, of cloth, soft bodies and ropes, as the other energies: not of bodies with a mass")
       .def_readonly("elastic_energy", &RunStep::elastic_energy, "J, stored in the cloth: of its shape alone")
       .def_readonly("contact_energy", &RunStep::contact_energy,
                     "J, stored where faces of the cloth give way to bodies")

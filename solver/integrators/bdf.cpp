@@ -188,7 +188,8 @@ ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& repor
   most_reference_ = std::numeric_limits<double>::infinity();
   merit_.begin(piece.h);
   const Stopwatch watch(report.collide_ms);
-  ContactStep contacts = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, piece.h);
+  ContactStep contacts = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, piece.h,
+                                                 Foresight::ahead, {.h = piece.of_step()});
   system_.begin_step({state.time, piece.h, state.x, state.v, piece.h});
   history_.begin(state, piece, contacts);
   history_.first_point(state, p_);

@@ -15,7 +15,7 @@ void HeldMotion::begin(const State& state, double h, StepReport& report) {
   const Stopwatch watch(report.collide_ms);
   contacts_ = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h,
                                       contact_ == ContactMode::constraint ? Foresight::here : Foresight::none,
-                                      kappa_);
+                                      {.kappa = kappa_});
   system_.begin_step({state.time, h, state.x, state.v, 0.5 * h});
   contacts_->filter(state.v, held_);
   pull_.setZero(state.x.size());

@@ -166,7 +166,8 @@ bool NewtonKinsol::attempt(State& state, const Piece& piece) {
   f_scale_.setConstant(1 / scale_);
   {
     const Stopwatch watch(report_.collide_ms);
-    contacts_ = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h);
+    contacts_ = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, h, Foresight::ahead,
+                                        {.h = piece.of_step()});
     system_.begin_step({state.time, h, state.x, state.v, h});
   }
   v_ = state.v;

@@ -13,6 +13,7 @@ struct Piece {
   int halvings;          // of the step, which this piece is a part of; 0: the piece is all of the step
   bool shortest;         // the piece will not be halved
   bool order_1 = false;  // the piece is taken by order 1, whatever the integrator
+  double of_step() const { return std::ldexp(h, halvings); }  // the length of the whole step [s]
 };
 
 // attempt(piece) takes `state` on by the piece, or returns false and leaves the state as it is. `before` is

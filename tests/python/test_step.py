@@ -265,6 +265,20 @@ class LinearSystems(unittest.TestCase):
         self.assertLess(locked + free, system.particles)  # the others slide
         return stepper.last_system
 
+    def test_a_pin_that_begins_in_mid_run_goes_on_from_where_the_particle_is(self):
+        for start in (0.0, 0.5):
+            mesh = drape.grid(3, 3, 0.2, 0.2)
+            fabric = drape.Fabric(area_density=0.2, stretch=100.0, bend=1e-5)
+            system = drape.System(drape.masses(mesh, fabric))
+            system.add(drape.noh_jung(mesh, fabric))
+            constraints = drape.Constraints()
+            state = drape.State(mesh.positions)
+            state.time = start
+            constraints.pin_along([0], drape.Motion.constant([1, 0, 0]), state)
+            before = state.x[0].copy()
+            drape.ImplicitEuler(system, constraints, "mpcg").advance(state, 0.01)
+            np.testing.assert_allclose(state.x[0] - before, [0.01, 0, 0], atol=1e-12)
+
     def test_the_filter_is_what_pins_and_contacts_allow(self):
         system = self.in_contact()
         S, z = system.filter
