@@ -27,7 +27,8 @@ void Constraints::pin_to_body(const std::vector<int>& particles, int body, const
   step_.held.clear();
 }
 
-void Constraints::pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x, double t) {
+void Constraints::pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x,
+                            double t) {
   pins_.pin_along(particles, motion, x, t);
   step_.held.clear();
 }

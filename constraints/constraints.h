@@ -31,7 +31,7 @@ class Constraints {
   void pin(int particle);       // holds the particle where it is; pinning it twice is pinning it once
   void pin(const std::vector<int>& particles);
   // These particles are carried along from where they are now (x [m] has the places of all particles): by a body, or by
-  // a motion of their own, which is at the time t [s] of it. A particle is pinned once, in the way that is named first.
+  // a motion of their own. t [s]: the time now. A particle is pinned once, in the way that is named first.
   void pin_to_body(const std::vector<int>& particles, int body, const VecX& x);
   void pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x, double t = 0);
 

@@ -176,12 +176,14 @@ bool Encounters::touch(const Box& a, const Box& b, double reach) const {
   return enter <= leave + 1e-9;
 }
 
-// Whether the normal of the first triangle at the start separates the two by more than `reach` at both ends of the motion, and
-// so all the way. Boxes do not tell layers apart that lie on a slope.
+// Whether the two stay apart along the normal of the first triangle at the start, so far that no motion brings them within
+// `reach` that differs from this one by no more along each axis. Along a fixed direction the distance of two triangles whose
+// corners go straight is a concave function of time, so it is least at one of the ends. Boxes do not tell layers apart that
+// lie on a slope.
 bool Encounters::apart_along_normal(int first, int second, double reach) const {
   const Triangle &a = faces_[first].v, &b = faces_[second].v;
   const Vec3 n = (start_[a[1]] - start_[a[0]]).cross(start_[a[2]] - start_[a[0]]);
-  const double enough = reach * n.norm();
+  const double enough = reach * n.lpNorm<1>();  // a change by 1 along each axis is |n|_1 along n
   bool above = true, below = true;
   for (const std::vector<Vec3>* x : {&start_, &end_}) {
     const auto [a_low, a_high] = std::minmax({n.dot((*x)[a[0]]), n.dot((*x)[a[1]]), n.dot((*x)[a[2]])});

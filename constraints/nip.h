@@ -7,9 +7,8 @@
 //              body that bears it, such as the weight of the cloth
 //   At rest    the cloth goes along with the rougher body, which rubs it with mu (r.n + N); the smoother body
 //              slides on the cloth, and so on the rougher one, with mu N
-//   Running    with integrators that foresee contact, where the cloth slides on the body that holds it (and faster than friction could stop the body within the step,
-//              where that reacts), such as a tablecloth that is pulled from under a dish, the
-//              bodies do not rub on each other. The other one rubs the particle, too, with mu N against the slip s with which
+//   Running    with integrators that foresee contact, where the cloth slides on the body that holds it, such as a tablecloth
+//              that is pulled from under a dish, the bodies do not rub on each other. The other one rubs the particle, too, with mu N against the slip s with which
 //              the step begins; a slip that could be stopped within the step is damped, with h D = mu N / |s|.
 #pragma once
 

@@ -21,16 +21,6 @@ constexpr double widest_held = 1.2;
 // Bodies that stand hold what is inside both of their margins by more than this share of the lesser touching_range().
 constexpr double share_of_touch = 0.1;
 
-// Whether friction could stop the slip v - v_body of a particle at x within a step, if the body alone gave way. A body that does
-// not react gives no way. share: the length of this step over that of the last.
-bool could_stop(const MovingBody& body, const Vec3& normal, const Vec3& x, const Vec3& v, double share) {
-  const ReactingBody* const reacting = body.reacting();
-  if (!reacting) return false;
-  const Vec3 slip = v - reacting->velocity() - reacting->spin().cross(x - reacting->centre());
-  const double pressed = share * reacting->impulse_of_bodies().norm() / reacting->mass();  // m/s
-  return (slip - slip.dot(normal) * normal).norm() <= 2 * body.obstacle().friction.kinetic * pressed;
-}
-
 // How two bodies that do not react stand to a place that goes with both of them, by the mean of their ways, at the end of the
 // step.
 struct Squeeze {
@@ -91,9 +81,7 @@ void ParticleContacts::add_nip(const Bodies& bodies, const StepMotion& step, con
   const auto roughness = [&bodies](int o) { return bodies[o].obstacle().friction.kinetic; };
   const bool a_holds = roughness(a) != roughness(b) ? roughness(a) > roughness(b) : !bodies[a].reacting();
   const int holder = a_holds ? a : b;
-  const bool slides = contact.grip == Grip::slide && contact.plane[0].obstacle == holder &&
-                      !could_stop(bodies[holder], contact.plane[0].normal, x, step.velocity(particle),
-                                  step.last_h > 0 ? step.h / step.last_h : 1);
+  const bool slides = contact.grip == Grip::slide && contact.plane[0].obstacle == holder;
   nip_of_[particle] = static_cast<int>(nips_.size());
   nips_.push_back({.particle = particle,
                    .a = a,
@@ -115,9 +103,6 @@ void ParticleContacts::clamp_between(const Bodies& bodies, const StepMotion& ste
     return clearance(o, particle) - offset(o) - touch(o) - bodies[o].travel(x, x);
   };
   const bool clamped = before && before->clamped;
-  // What began inside a body comes out first; what began beside it, within its margin, may be clamped there.
-  const int deepest_in = contact.plane[0].obstacle;
-  if (contact.comes_out && contact.plane[0].gap < -offset(deepest_in)) return;
   const int count = static_cast<int>(bodies.size());
   for (int a = 0; a < count; ++a) {
     if (bodies[a].reacting()) continue;
@@ -126,6 +111,8 @@ void ParticleContacts::clamp_between(const Bodies& bodies, const StepMotion& ste
       if (bodies[b].reacting() || spare_a + spare(b) > 0) continue;
       const auto [at_a, at_b, way, closes, holds] = squeeze(bodies[a], bodies[b], x);
       if (!holds && !clamped) continue;
+      // What began inside one of them comes out first; what began between them, within their margins, is clamped there.
+      if (contact.comes_out && std::min(at_a.distance, at_b.distance) < step.radius_of(particle)) continue;
       const double gap_a = at_a.distance - offset(a), gap_b = at_b.distance - offset(b);
       const double least = std::min(touch(a), touch(b));
       const bool no_room = !clamped && closes

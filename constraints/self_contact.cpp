@@ -40,7 +40,7 @@ constexpr double comes_back = 1.1, ends_above = 1.25;
 // What pushed in the last step begins as pushing unless the free way opens it by this many times what it was compressed.
 constexpr double goes_on = 10;
 
-// In this time [s] a contact comes back to its thickness that became stiffer.
+// In about this time [s] a contact grows back to its thickness.
 constexpr double thickens_in = 0.01;
 
 // How fast a contact that has become thinner than its cloth may thicken [m/s]: so slowly that, on earth, what it lifts flies no
@@ -202,6 +202,19 @@ bool SelfContacts::stiffen_to_hold(SelfContact& contact, const VecX& x_new) cons
   return true;
 }
 
+// Takes over what the contact was in the last step. A contact that is stiffer now, as in a step that is shorter than the last
+// one, would make energy with the thickness that it had. So it begins with about the force that it had, and grows back.
+void SelfContacts::go_on(SelfContact& contact, const StepMotion& step, double recovery) const {
+  take_over(contact, recovery);
+  stiffen(contact, step);
+  if (contact.stiff <= 0) return;  // it is new
+  const double as_before = contact.normal.dot(contact.place) + contact.before / contact.stiffness;
+  const double share = std::min(1.0, step.h / thickens_in);
+  if (as_before < contact.thickness)
+    contact.thickness =
+        std::min(contact.thickness, as_before + share * (thickness_of(contact.who) - as_before));
+}
+
 void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<MovingBody>& bodies,
                               double recovery, const SelfSprings& springs) {
   if (!any()) return;
@@ -220,14 +233,8 @@ void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<Movi
             [](const SelfContact& a, const SelfContact& b) { return a.who < b.who; });
   for_chunks<Work::heavy>(static_cast<int>(touching_.size()), [&](int begin, int end) {
     for (SelfContact& c : std::span(touching_).subspan(begin, end - begin)) {
-      const double lift = std::min(recovery, step.h * lift_speed(thickness_of(c.who)));
-      take_over(c, lift);
+      go_on(c, step, std::min(recovery, step.h * lift_speed(thickness_of(c.who))));
       c.push = c.before;
-      stiffen(c, step);
-      // What became stiffer in a short step begins with about the force that it had: or it would make energy.
-      const double as_before = c.normal.dot(c.place) + c.before / c.stiffness;
-      if (as_before < c.thickness)
-        c.thickness = as_before + std::min(1.0, step.h / thickens_in) * (c.thickness - as_before);
       const Vec3 p = c.now = c.at(ahead_);
       const double drag = c.drag_at(p).norm();
       c.active = c.linear_push(p) > -goes_on * c.before;

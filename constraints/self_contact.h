@@ -8,12 +8,13 @@
 //                                                   t of the last step
 //         t = d while |d| <= mu f (it sticks), else mu f d/|d| (it slides)         [Cundall & Strack 1979]
 //     k = kappa m / h^2,  1/m = sum w_k^2 / m_k     as stiff as the time step allows, whatever the mesh: a layer sinks
-//                                                   into the thickness by g h^2 / kappa, 33 um with h = 10 ms. Of a step
-//                                                   that is taken in pieces h is that of the whole
+//                                                   into the thickness by g h^2 / kappa, 33 um with h = 10 ms. Where an
+//                                                   implicit step is taken in pieces h is that of the whole
 //   kappa is larger, up to a limit, where the load, or what arrives, would sink in by more than a share of r. It goes half
 //   of the way to what the load asks for in a step, in ratios, and falls only after a while in which much less was asked for:
 //   what shares a load would else take it by turns, and a pile would swing up and down for ever. In steps
-//   shorter than 10 ms what becomes stiffer begins with the force that it had: r is so much less at first, and grows back.
+//   shorter than 10 ms what is stiffer than before begins with about the force that it had: r is so much less at first, and
+//   grows back in 10 ms or so.
 //   Within a solve a contact is linear: it acts or not, and friction is a spring weakened to share (t_0 - k s). With such
 //   springs no solve goes too far, but where many contacts slide, each solve takes away only an eighth of the error. So what
 //   slid in the solve before, too, is linearised as the force along d that friction is, with the spring across d
@@ -289,6 +290,7 @@ class SelfContacts {
   std::optional<SelfContact> contact_of(const StepMotion& step, const Encounter& who,
                                         const Nearest& near) const;
   void take_over(SelfContact& contact, double recovery) const;
+  void go_on(SelfContact& contact, const StepMotion& step, double recovery) const;
   void stiffen(SelfContact& contact, const StepMotion& step) const;
   bool stiffen_to_hold(SelfContact& contact, const VecX& x_new) const;
   double both_thicknesses(const Encounter& e) const;
@@ -304,12 +306,12 @@ class SelfContacts {
   std::unique_ptr<internal::Tangles> tangles_;
   std::unique_ptr<internal::RopeRest> ropes_;
   bool stale_ = true, look_again_ = true;
-  double kappa_ = 0;                          // m/h^2
+  double kappa_ = 0;                         // m/h^2
   double made_for_ = 0, last_made_for_ = 0;  // h of this: SelfSprings::h, now and in the last step [s]
-  double caution_ = 1;                 // SelfContact::spring of what slides in the next solve
-  double reach_ = 0, body_reach_ = 0;  // m, from which on pairs are looked at
-  double recovery_ = 0;                // m, by which tangles move in a step at most
-  int touched_body_ = 0;               // not 0: the same of cloth and a body
+  double caution_ = 1;                       // SelfContact::spring of what slides in the next solve
+  double reach_ = 0, body_reach_ = 0;        // m, from which on pairs are looked at
+  double recovery_ = 0;                      // m, by which tangles move in a step at most
+  int touched_body_ = 0;                     // not 0: the same of cloth and a body
   int touched_ = 0;  // not 0: a pair touched at the start of the step, and may have crossed in it
   int pushing_ = 0, stood_still_ = 0;
   // By particle, those of bodies included.
@@ -322,8 +324,8 @@ class SelfContacts {
   std::vector<char> sewn_, pass_;  // sew(): all of its particles, and those that may pass
   VecX rest_;                      // places of the cloth when the faces were added [m]
   std::vector<char> tangled_;      // whether it was in a tangle there, or is beside a cut
-  std::vector<SelfContact> touching_, last_;     // of this step and of the last one, sorted
-  std::vector<Encounter> last_ones_;             // scratch: the pairs of last_, in its order
+  std::vector<SelfContact> touching_, last_;  // of this step and of the last one, sorted
+  std::vector<Encounter> last_ones_;          // scratch: the pairs of last_, in its order
   // Scratch: where in last_ the pairs of vertices, and those of edges, begin whose first particle is this one.
   std::array<std::vector<int>, 2> last_from_;
   std::vector<SelfContact> met_;                 // scratch

@@ -81,8 +81,7 @@ bool SelfContacts::meet(const VecX& of_cloth) {
             [](const SelfContact& a, const SelfContact& b) { return a.who < b.who; });
   for (const SelfContact& found : met_) {
     SelfContact& contact = *std::lower_bound(touching_.begin(), touching_.end(), found.who, by_pair);
-    take_over(contact, recovery_);
-    stiffen(contact, step);
+    go_on(contact, step, recovery_);
   }
   return true;
 }

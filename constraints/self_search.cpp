@@ -137,9 +137,10 @@ void SelfContacts::take_over(SelfContact& contact, double recovery) const {
   const SelfContact* at = last_of(contact.who);
   if (!at && !contact.who.edges) {
     const int* const from = &last_from_[0][contact.who.v[0]];
-    const auto c = std::find_if(last_.begin() + from[0], last_.begin() + from[1], [&](const SelfContact& one) {
-      return !(one.normal.dot(contact.normal) < same_way) && share_a_particle(one.who, contact.who);
-    });
+    const auto c =
+        std::find_if(last_.begin() + from[0], last_.begin() + from[1], [&](const SelfContact& one) {
+          return !(one.normal.dot(contact.normal) < same_way) && share_a_particle(one.who, contact.who);
+        });
     if (c != last_.begin() + from[1] && !has_contact(c->who)) at = &*c;
   }
   if (!at) return;

@@ -28,7 +28,6 @@ bool Surfaces::begin_step(const std::vector<MovingBody>& bodies, const StepMotio
   }
   const Eigen::Index own = cloth.x.size(), all = own + 3 * static_cast<Eigen::Index>(body_.size());
   step_.h = cloth.h;
-  step_.last_h = cloth.last_h;
   step_.foresight = cloth.foresight;
   step_.x.resize(all);
   step_.v.resize(all);

@@ -1,6 +1,7 @@
 // The search for what could meet: it misses nothing, whatever moves, and does not begin again for what moves elsewhere.
 #include "constraints/encounters.h"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <random>
 #include <set>
@@ -159,6 +160,32 @@ TEST_CASE("the search for what could meet misses nothing, and tells each pair on
             two.go(x_new);
           }
         }
+}
+
+TEST_CASE("the search misses nothing of sheets that come near each other slowly, whichever way they face",
+          "[approach]") {
+  constexpr double way = 0.0007;                     // m, in a step
+  for (const double start : {0.0075, 0.009, 0.012})  // m
+    for (const Vec3& facing : {Vec3(0, 1, 0), Vec3(0, 1, 1), Vec3(1, 1, 1), Vec3(2, -1, 2)}) {
+      const Kind kind = kinds[static_cast<std::size_t>(start / 0.002) % kinds.size()];
+      INFO("mesh " << static_cast<int>(kind) << ", " << start << " m apart, facing " << facing.transpose());
+      Sheets two(kind, 5, start);
+      const Mat3 turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), facing).toRotationMatrix();
+      for (int i = 0; i < two.vertices(); ++i) two.x.segment<3>(3 * i) = turn * two.places[i];
+      two.encounters.set(two.triangles, {}, two.vertices(), two.triangles.size(), two.x);
+      const std::vector<Encounter> pairs = two.all_pairs();
+      for (int step = 0; step < 14; ++step) {
+        VecX x_new = two.x;
+        for (int i = two.half; i < two.vertices(); ++i) x_new.segment<3>(3 * i) -= way * facing.normalized();
+        const std::vector<Encounter> selected = two.select(x_new);
+        const std::set<Encounter> found(selected.begin(), selected.end());
+        long missed = 0;
+        for (const Encounter& e : pairs)
+          missed += come_near(e, corners(two.x, e), corners(x_new, e), 0.99 * gap) && found.count(e) == 0;
+        CHECK(missed == 0);
+        two.go(x_new);
+      }
+    }
 }
 
 TEST_CASE("the search misses nothing of a pile that is pressed together and comes apart", "[approach]") {

@@ -159,6 +159,43 @@ TEST_CASE("a cloth that is pulled from under a body drags it by the friction of 
       }
 }
 
+TEST_CASE("cloth that is drawn from under a body that a wall holds is rubbed by both sides", "[nips]") {
+  for (const auto& [mu_table, mu_body] :
+       std::vector<std::pair<double, double>>{{0.2, 0.3}, {0.2, 0.21}, {0.3, 0.2}, {0.1, 0.3}})
+    for (const double speed : {0.05, 0.5})  // m/s
+      for (const Kind kind : kinds) {
+        INFO("table " << mu_table << ", body " << mu_body << ", " << speed << " m/s, kind "
+                      << static_cast<int>(kind));
+        constexpr double mass = 0.5;
+        Desk desk(kind == Kind::squares ? 9 : kind == Kind::equilateral ? 13 : 19, kind);
+        desk.add_table(mu_table);
+        desk.lay(lying()[0].shape, mass, mu_body, lying()[0].flat);
+        desk.constraints.add({.shape = Box{.centre = {0.1502, 0.1, 0}, .size = {0.1, 0.1, 0.3}},
+                              .friction = 0,
+                              .margin = margin});
+        std::vector<int> edge;
+        double dragged = 0;  // kg, of the sheet
+        for (int i = 0; i < desk.state.particles(); ++i)
+          if (desk.state.x[3 * i] > 0.22)
+            edge.push_back(i);
+          else
+            dragged += desk.system.masses()[i];
+        desk.constraints.pin_along(edge, Motion::constant({speed, 0, 0}, Vec3::Zero(), Vec3::Zero()),
+                                   desk.state.x);
+        ImplicitEuler stepper(desk.system, desk.constraints, make_linear_solver("mpcg"), {.tolerance = 1e-6});
+        double pull = 0;  // N, the mean of the last steps
+        constexpr int steps = 30, last = 10;
+        for (int k = 0; k < steps; ++k) {
+          REQUIRE(stepper.advance(desk.state, 0.005).done);
+          if (k < steps - last) continue;
+          const VecX force = desk.system.force(desk.state.x, desk.state.v);
+          for (int i : edge) pull -= force[3 * i] / last;
+        }
+        const double load = g * mass;
+        CHECK(pull == Approx((mu_table + mu_body) * load + mu_table * g * dragged).epsilon(0.05));
+      }
+}
+
 TEST_CASE("momentum is kept where two bodies that collide pinch cloth between them", "[nips]") {
   for (const Method& method : methods())
     for (double speed : {0.0, 3.0}) {  // m/s, at which the cloth runs through between them

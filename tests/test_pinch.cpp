@@ -249,6 +249,22 @@ TEST_CASE("what starts between two bodies, however narrow the room, is held from
     }
 }
 
+TEST_CASE("what starts inside one of two bodies goes no deeper, whatever their margins are", "[nips]") {
+  for (const double of_upper : {0.5e-3, 2e-3, 5e-3}) {
+    INFO("margin of the upper body " << of_upper << " m");
+    One one({0, -1e-3, 0});
+    one.constraints.add({.shape = block(1).shape, .friction = 0.3, .margin = of_upper});
+    one.constraints.add({.shape = wall(-1).shape, .friction = 0.3, .margin = 0.5e-3});
+    one.advance();
+    double deepest = 1e-3;
+    for (int k = 0; k < 40; ++k) {
+      one.advance();
+      deepest = -one.constraints.bodies()[1].distance(one.state.x);
+    }
+    CHECK(deepest < (of_upper > 2e-3 ? 1e-3 + 1e-9 : 0.9e-3));  // a wide margin holds it there
+  }
+}
+
 TEST_CASE("what starts inside bodies that overlap comes out of both", "[nips]") {
   for (double beside : {0.03, 0.05, 0.06})
     for (double mu : {0.3, 1.0}) {

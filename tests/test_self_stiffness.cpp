@@ -16,8 +16,8 @@ namespace {
 
 constexpr double thickness = 1e-3;  // m
 
-Assembly pile_on(const Obstacle& floor, int layers, int n, Kind kind,
-                 ClothModel model = ClothModel::noh_jung, double size = 0.1) {
+Assembly pile_on(const Obstacle& floor, int layers, int n, Kind kind, ClothModel model = ClothModel::noh_jung,
+                 double size = 0.1) {
   Assembly pile{Vec3(0, -9.81, 0)};
   for (int k = 0; k < layers; ++k) {
     const TriangleMesh mesh =
@@ -173,10 +173,14 @@ TEST_CASE("a body that comes to lie on two layers is not thrown off", "[self-con
              .friction = 0.5,
              .margin = 2e-3,
              .rigid = RigidBody{.mass = mass, .inertia = solid.inertia, .centre = solid.centre}});
-        double highest = 0;
-        for (int k = 0; k < 20 && pile.advance(0.01).done; ++k)
-          highest = std::max(highest, pile.constraints->bodies()[1].reacting()->centre()[1] - lies);
+        double highest = 0, height = above;
+        for (int k = 0; k < 20; ++k) {
+          REQUIRE(pile.advance(0.01).done);
+          height = pile.constraints->bodies()[1].reacting()->centre()[1] - lies;
+          highest = std::max(highest, height);
+        }
         CHECK(highest < above + 0.5 * thickness);
+        CHECK(height > -thickness);
       }
 }
 
@@ -196,17 +200,38 @@ TEST_CASE("a pile at rest is not thrown up by shorter steps, nor let down by lon
         while (pile.state.time < 1.5) REQUIRE(pile.advance(usual).done);
         const double rests = pile.system->total_energy(pile.state);
         for (const double h : {usual / pieces, usual}) {
-          double energy = rests, speed = 0;
+          double energy = rests, least = rests, speed = 0;
           for (int k = 0; k < 64; ++k) {
             REQUIRE(pile.advance(h).done);
             energy = std::max(energy, pile.system->total_energy(pile.state));
+            least = std::min(least, pile.system->total_energy(pile.state));
             speed = std::max(speed, fastest());
           }
           INFO("steps of " << h << " s");
           // Lifted by what it is compressed, at most.
           CHECK(energy - rests < 0.1 * weight_of_layer * layers * layers * thickness);
+          CHECK(rests - least < 0.1 * weight_of_layer * layers * layers * thickness);
           CHECK(speed < 0.15);
         }
         CHECK(fastest() < 5e-3);
+      }
+}
+
+TEST_CASE("a layer that starts too near comes to its thickness as soon in steps of any length",
+          "[self-contact]") {
+  constexpr double starts = 0.2 * thickness;
+  for (const Kind kind : kinds)
+    for (const int n : {4, 6, 8})
+      for (const double h : {0.01, 0.002, 0.0002}) {
+        INFO("kind " << static_cast<int>(kind) << ", " << n << " vertices along an edge, steps of " << h
+                     << " s");
+        Assembly pile = pile_on(floor_along({{.time = 0}}), 2, n, kind);
+        const int upper = pile.cloths[1].first_particle;
+        for (int i = upper; i < pile.state.particles(); ++i) pile.state.x[3 * i + 1] -= thickness - starts;
+        while (pile.state.time < 0.06 - 0.5 * h) REQUIRE(pile.advance(h).done);
+        double height = 0;
+        for (int i = upper; i < pile.state.particles(); ++i)
+          height += (pile.state.x[3 * i + 1] - 2e-3) / (pile.state.particles() - upper);
+        CHECK(height > 0.8 * thickness);
       }
 }
