@@ -207,12 +207,12 @@ bool SelfContacts::stiffen_to_hold(SelfContact& contact, const VecX& x_new) cons
 void SelfContacts::go_on(SelfContact& contact, const StepMotion& step, double recovery) const {
   take_over(contact, recovery);
   stiffen(contact, step);
-  if (contact.stiff <= 0) return;  // it is new
+  // It is new, or no spring of an implicit step, or grows back within the step.
+  if (contact.stiff <= 0 || step.foresight != Foresight::ahead || step.h >= thickens_in) return;
   const double as_before = contact.normal.dot(contact.place) + contact.before / contact.stiffness;
-  const double share = std::min(1.0, step.h / thickens_in);
   if (as_before < contact.thickness)
-    contact.thickness =
-        std::min(contact.thickness, as_before + share * (thickness_of(contact.who) - as_before));
+    contact.thickness = std::min(contact.thickness,
+                                 as_before + step.h / thickens_in * (thickness_of(contact.who) - as_before));
 }
 
 void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<MovingBody>& bodies,
