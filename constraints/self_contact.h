@@ -54,7 +54,7 @@ namespace drape {
 // How stiff the springs are [m/h^2]: for methods that solve for the end of a step, and for those that do not.
 inline constexpr double implicit_kappa = 30, explicit_kappa = 0.2;
 struct SelfSprings {
-  double kappa = implicit_kappa;
+  double kappa = implicit_kappa;  // m/h^2
   double h = 0;  // the length of step that they are made for [s]; 0: that of the step under way
 };
 
