@@ -63,7 +63,8 @@ struct Contact {
   int catches = 0;             // how often a plane that was let go in this step has held it again
   double normal_impulse = 0;   // sum over the planes [N s], of the last solve
   int turns = 0;               // how often it has gone up after down, or down after up, within this step
-  double last_change = 0;      // by how much the last solve changed it [N s]
+  double last_change = 0;      // by how much the last solve asked for another one [N s]
+  double relaxed = 1;          // by which share of that it followed
   double arrival_impulse = 0;  // the part that stops the approach to the planes that hold [N s]
   Vec3 friction_impulse = Vec3::Zero();  // -mu_k (r.n) t of what slides [N s]
   Vec3 slip = Vec3::Zero();              // s_0 of what slides, s_e of what is braked [m/s]

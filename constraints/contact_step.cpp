@@ -5,10 +5,10 @@
 
 namespace drape {
 
-void ContactStep::filter(const VecX& v, Filter& filter) const {
+void ContactStep::filter(const VecX& v, Filter& filter, Arrival arrival) const {
   filter.clear();
   constraints_->pins_.filter(constraints_->step_, v, filter);
-  constraints_->contacts_.filter(constraints_->step_, v, filter);
+  constraints_->contacts_.filter(constraints_->step_, v, arrival, filter);
 }
 
 const std::vector<ContactFriction>& ContactStep::friction() {
@@ -95,7 +95,7 @@ ContactImbalance ContactStep::imbalance(const VecX& v, const VecX& r, const VecX
   contacts.look_on_path(constraints_->bodies_, step, x_new);
   found.wrong = std::hypot(found.wrong, contacts.imbalance(constraints_->bodies_, step, v, r, x_new));
   if (step.foresight == Foresight::ahead)
-    found.wrong = std::hypot(found.wrong, constraints_->faces_.imbalance(step.h, x_new));
+    found.wrong = std::hypot(found.wrong, constraints_->faces_.imbalance(step, x_new, v));
   for (const Contact& c : touching())
     if (c.active() && !c.clamped) found.borne += r.segment<3>(3 * c.particle).squaredNorm();
   found.borne = std::sqrt(found.borne);
@@ -111,7 +111,7 @@ ContactChange ContactStep::react(const VecX& v, const VecX& r, const VecX& x_new
   if (!bodies()) return change;
   change.grip = contacts.react(constraints_->bodies_, step, v, r, x_new, noise);
   change.caught = contacts.catch_on_path(constraints_->bodies_, step, r, x_new);
-  if (step.foresight == Foresight::ahead) change.faces = constraints_->faces_.react(x_new, v) || change.faces;
+  if (step.foresight == Foresight::ahead)  change.faces = constraints_->faces_.react(step, x_new, v) || change.faces;
   return change;
 }
 
@@ -148,7 +148,7 @@ void ContactStep::count_face_impulse(double duration, const VecX& x, const VecX&
 }
 
 void ContactStep::settle_faces(const VecX& x_new, const VecX& v_new) {
-  constraints_->faces_.react(x_new, v_new);
+  constraints_->faces_.react(constraints_->step_, x_new, v_new);
 }
 
 ContactReport ContactStep::finish(VecX& x_new, VecX& v_new) {

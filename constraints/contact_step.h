@@ -51,7 +51,7 @@ class ContactStep {
   bool touches_anything() const { return bodies() || !constraints_->self_.touching().empty(); }
   bool holds_anything() const { return meets_anything() || !moving_pins().empty(); }
 
-  void filter(const VecX& v, Filter& filter) const;  // S and z at the velocity v
+  void filter(const VecX& v, Filter& filter, Arrival arrival = Arrival::in_step) const;  // S and z at the velocity v
   // The dampers and impulses of the contacts that slide.
   const std::vector<ContactFriction>& friction();
   const VecX& correction() const;                // y [m] is added to the positions; empty without bodies

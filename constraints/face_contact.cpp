@@ -12,6 +12,12 @@ namespace drape {
 namespace {
 
 constexpr double slow = 1e-3;  // m/s
+// Friction is looked for as if a push of a particle met this share of the inertia that it meets while its neighbours stay
+// behind, as for particles that touch (constraints/grip.cpp).
+constexpr double share_of_inertia = 0.12;
+// A damper may rub with this many times mu N, since it is of the N and the slip of the step before.
+constexpr double overrubbed = 1.05;
+constexpr int most_rubs = 2;  // how often a triangle that touches anew begins to rub
 // A contact that has changed this often within a step changes again only when no other does, and alone.
 constexpr int most_changes = 3;
 constexpr int most_steps = 24;            // steps of the search for the lowest point
@@ -146,9 +152,41 @@ double measure(FaceContact& c, const VecX& x_new, const VecX& v_new) {
   return gap;
 }
 
+// Makes the damper for what a solve came to: where the triangle did not rub before, and where it rubs harder than its law
+// allows. Then it is taken down, by one step of Newton's method for a point that is alone. True when it changed.
+bool rub(FaceContact& c, const StepMotion& step) {
+  const double before = c.damper;
+  if (before == 0 && c.rubs < most_rubs) c.damper = std::min(c.rubbing(), c.most_damper);
+  if (step.foresight == Foresight::ahead) {
+    const double most = c.friction * c.push, given = before * c.slip;  // N
+    if (given > overrubbed * most) {
+      const double mobility = step.h * c.mobility(step);  // m/s for 1 N
+      c.damper = most / std::max(c.slip + mobility * (given - most), slow);
+    }
+  }
+  if (c.damper == before) return false;
+  ++c.rubs;
+  return true;
+}
+
 }  // namespace
 
 double FaceContact::rubbing() const { return friction * push / std::max(slip, slow); }
+
+double FaceContact::wrong_friction(const VecX& x, const VecX& v) const {
+  const double given = damper * slip_at(v).norm(), most = friction * stiffness * std::max(-gap_at(x), 0.0);
+  return given > overrubbed * most ? given - most : 0;
+}
+
+double FaceContact::mobility(const StepMotion& step) const {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const auto particle = static_cast<std::size_t>(particles[static_cast<std::size_t>(k)]);
+    if (step.is_held(static_cast<int>(particle))) continue;
+    sum += weights[k] * weights[k] / std::max(step.masses[particle], share_of_inertia * step.inertia[particle]);
+  }
+  return sum;
+}
 
 void FaceContacts::add(const std::vector<ClothFace>& faces) {
   faces_.insert(faces_.end(), faces.begin(), faces.end());
@@ -332,23 +370,22 @@ void FaceContacts::follow(const std::vector<MovingBody>& bodies) {
   }
 }
 
-double FaceContacts::imbalance(double h, const VecX& x_new) const {
+double FaceContacts::imbalance(const StepMotion& step, const VecX& x_new, const VecX& v_new) const {
   double squares = 0;
-  for (const FaceContact& c : touching_)
+  for (const FaceContact& c : touching_) {
     if (const double gap = c.gap_at(x_new); c.active != (gap < 0))
-      squares += std::pow(h * c.stiffness * gap, 2);
+      squares += std::pow(step.h * c.stiffness * gap, 2);
+    squares += std::pow(step.h * c.wrong_friction(x_new, v_new), 2);
+  }
   return std::sqrt(squares);
 }
 
-bool FaceContacts::react(const VecX& x_new, const VecX& v_new) {
+bool FaceContacts::react(const StepMotion& step, const VecX& x_new, const VecX& v_new) {
   bool changed = false;
   FaceContact* worst = nullptr;
   for (FaceContact& c : touching_) {
     const double gap = measure(c, x_new, v_new);
-    if (c.damper == 0 && c.rubbing() > 0) {
-      c.damper = std::min(c.rubbing(), c.most_damper);
-      changed = true;
-    }
+    if (rub(c, step)) changed = true;
     if (c.active == (gap < 0)) continue;
     if (c.changes == most_changes) {
       if (!worst || c.stiffness * std::abs(gap) > worst->stiffness * std::abs(worst->gap_at(x_new)))

@@ -6,9 +6,10 @@
 //   g = g_0 + n . (sum w_k (x_k - x_k0) - h v_b)     the gap of p to the surface, offset by half the margin:
 //                                                    a triangle touches nothing where its vertices rest
 //   E = k/2 g^2 for g < 0,   f_k = -k g w_k n,   K_kl = k w_k w_l n n^T
-//   friction: the damper mu N / |u| acts on u, the part of sum w_k v_k - v_b along the surface. N = -k g and
-//             |u| are those of the step before (where the triangle touches anew, of the solve before); below
-//             `slow` [m/s] the triangle creeps instead of sticking.
+//   friction: the damper mu N / |u| acts on u, the part of sum w_k v_k - v_b along the surface; below `slow` [m/s] the
+//             triangle creeps instead of sticking. N = -k g and |u| are
+//             those of the step before (where the triangle touches anew, of the solve before). Where that comes to more
+//             than mu N of the solve by a twentieth, as where the triangle has just been let go, the damper is made less.
 // A constraint would lock two or three particles to each other, which a filter of 3x3 blocks cannot express.
 // The blocks of the spring stand where those of the triangle's edges stand. k is the cloth's own membrane
 // stiffness, and a triangle has two springs at most: so they change neither the condition of the matrix nor the
@@ -25,6 +26,7 @@
 
 #include "constraints/moving_body.h"
 #include "constraints/parting.h"
+#include "constraints/step_motion.h"
 
 namespace drape {
 
@@ -50,6 +52,7 @@ struct FaceContact {
   double push = 0;    // normal force of the last solve, and then of the end of the step [N]
   double slip = 0;    // |u| then [m/s]
   double damper = 0;  // of the friction in this step [N s/m]
+  int rubs = 0;       // how often `damper` has changed within this step
   double most_damper = std::numeric_limits<double>::infinity();  // upper bound of `damper` [N s/m]
 
   template <class Vector>
@@ -72,6 +75,10 @@ struct FaceContact {
     return -stiffness * std::min(gap_at(x), 0.0) * normal - damper * slip_at(v);
   }
   double rubbing() const;  // the damper that `push` and `slip` make [N s/m]
+  // By how much the friction of a solve that came to x, v is off from its law [N].
+  double wrong_friction(const VecX& x, const VecX& v) const;
+  // The velocity that an impulse of 1 N s gives the point, with these inertias of its particles: 0 where none moves [1/kg].
+  double mobility(const StepMotion& step) const;
 };
 
 class FaceContacts {
@@ -93,10 +100,11 @@ class FaceContacts {
   // sliding within a few steps of h [s] and never throw it back, however many faces share a particle.
   void limit_dampers(const std::vector<double>& masses, double h);
   void follow(const std::vector<MovingBody>& bodies);  // takes over a changed motion of the bodies
-  // The norm of the impulses of springs that pull, and of those that are missing, after a solve [N s].
-  double imbalance(double h, const VecX& x_new) const;
-  // Finds after a solve which contacts act; true when that has changed.
-  bool react(const VecX& x_new, const VecX& v_new);
+  // The norm of the impulses of springs that pull, of those that are missing, and of what friction takes otherwise than
+  // its law, after a solve [N s].
+  double imbalance(const StepMotion& step, const VecX& x_new, const VecX& v_new) const;
+  // Finds after a solve which contacts act, and how they rub; true when that has changed.
+  bool react(const StepMotion& step, const VecX& x_new, const VecX& v_new);
   void end_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new, const VecX& v_new);
 
   // The impulse of the step on the bodies. Where a step has stages, count_impulse adds the force at x, v

@@ -8,8 +8,11 @@
 namespace drape {
 namespace {
 
+// A contact in doubt follows what solves ask for by this share at least.
+constexpr double least_relaxed = 0.5;
 // A contact that stops and comes loose this often within a step is braked from then on.
 constexpr int most_changes = 3;
+constexpr double nearly = 0.25;
 // Friction is looked for as if a push of the particle met this share of the inertia that it meets while its
 // neighbours stay behind. (On a ball, a sheet of 10 k vertices took 3.0 solves a step and 141 iterations with springs,
 // 3.2 and 112 woven. With a share of 0.25 it took 4.1 and 193, and 3.0 and 114; with 0.06 it took 3.6 and 162, and 3.5 and 114.)
@@ -84,6 +87,14 @@ Vec3 given_friction(const Contact& contact, double mu, double mass, const Vec3& 
   return contact.friction_impulse - rubbing(contact, mu, mass) * (slip - t.dot(slip) * t);
 }
 
+// By which share the normal impulse of a contact in doubt follows what a solve asks it to change by. Two solves tell how what
+// is asked for depends on what was taken; the share is what this line asks for.  [Aitken's method; Irons & Tuck 1969]
+double relaxation(const Contact& contact, double change) {
+  const double fell = contact.last_change - change;
+  if (fell * contact.last_change <= 0) return least_relaxed;
+  return std::clamp(contact.relaxed * contact.last_change / fell, least_relaxed, 1.0);
+}
+
 // What is wrong with friction where contact is not part of the solve [N s]. What slid all along is braked, and the
 // damper may rub with less than mu N; what has come loose goes on sliding. The answer then changes smoothly with the
 // motion of a body that reacts.
@@ -138,10 +149,13 @@ void ParticleContacts::catch_grip(const Bodies& bodies, const StepMotion& step, 
     slide_at(contact, mu.kinetic, slip);
 }
 
-void ParticleContacts::filter(const StepMotion& step, const VecX& v, Filter& filter) const {
+void ParticleContacts::filter(const StepMotion& step, const VecX& v, Arrival arrival, Filter& filter) const {
   for (const Contact& c : trial_) {
     if (!c.active()) continue;
-    const Vec3 normal_part = along_planes(c, normal_speeds(c, step.h));
+    std::array<double, 3> speeds = normal_speeds(c, step.h);
+    if (arrival == Arrival::none)
+      for (double& speed : speeds) speed = std::max(speed, 0.0);
+    const Vec3 normal_part = along_planes(c, speeds);
     const Mat3 Q = c.locked_directions();
     const Mat3 S = Mat3::Identity() - Q * Q.transpose();
     const Vec3 now = v.segment<3>(3 * c.particle);
@@ -228,7 +242,9 @@ void ParticleContacts::settle(const Bodies& bodies, const StepMotion& step, cons
     c.normal_impulse = pressed(c, r.segment<3>(3 * c.particle));
     const double slip = tangential(c, v.segment<3>(3 * c.particle) - c.body_velocity()).norm();
     const double most = friction_of(bodies, c).kinetic * c.normal_impulse;
-    if (step.mass(c.particle) * slip < stop_fraction * most) c.grip = Grip::stick;
+    // Where contact is not part of the solve, what has come loose moves from the next step on.
+    const bool waits = step.foresight != Foresight::ahead && c.grip == Grip::slide && c.changes > 0;
+    if (!waits && step.mass(c.particle) * slip < stop_fraction * most) c.grip = Grip::stick;
   }
 }
 
@@ -310,8 +326,9 @@ bool ParticleContacts::update_friction(const Bodies& bodies, const StepMotion& s
   const double change = pressing - c.normal_impulse;
   c.turns += change * c.last_change < 0;
   const bool in_doubt = c.catches > 0 || c.changes > 1 || c.turns > 1;
+  c.relaxed = in_doubt ? relaxation(c, change) : 1;
   c.last_change = change;
-  c.normal_impulse = in_doubt ? 0.5 * (c.normal_impulse + pressing) : pressing;
+  c.normal_impulse += c.relaxed * change;
   const double most = mu.kinetic * c.normal_impulse;
   if (c.grip != Grip::stick && step.foresight != Foresight::ahead) {
     const bool wrong = wrong_apart(c, given, most) > noise;
@@ -328,7 +345,9 @@ bool ParticleContacts::update_friction(const Bodies& bodies, const StepMotion& s
     ++c.changes;
     c.slip = slip;
     return true;
-  } else if (c.grip == Grip::brake && c.changes > most_changes) {
+  } else if (c.grip == Grip::brake && c.changes > most_changes &&
+             !(c.changes <= 2 * most_changes && slip.dot(c.slip) > 0 &&
+               std::abs(given.norm() - most) < nearly * most)) {
     c.slip = slip;
     return std::abs(given.norm() - most) > noise;
   } else if (c.grip == Grip::slide && slip.dot(c.slip) < 0) {  // the constant push turned the motion round

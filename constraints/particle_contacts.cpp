@@ -7,6 +7,9 @@
 namespace drape {
 namespace {
 
+// What is laid at the margin may be off by rounding, and its particles must not be told apart by that [m].
+constexpr double at_margin = 1e-9;
+
 // Whether the contact knows a plane of this body, also one that was let go in this step.
 bool knows(const Contact* contact, int obstacle) {
   if (!contact) return false;
@@ -182,7 +185,7 @@ void ParticleContacts::look_at(const MovingBody& body, const StepMotion& step, b
   }
   const ContactPlane plane = body.plane(x, start, x + step.h * v, radius);
   if (touched ? plane.gap < touching_range(margin)
-              : plane.gap < 0 && plane.gap + body.approach(x, x_new, plane) < 0) {
+              : plane.gap < at_margin && plane.gap + body.approach(x, x_new, plane) < at_margin) {
     add_deepest(contact, plane);
   } else if (plane.gap < travel) {
     if (const auto met = body.meeting(x, x_new, radius)) add_deepest(contact, *met);

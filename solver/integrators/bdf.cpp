@@ -265,14 +265,15 @@ void Bdf::add_friction(const std::vector<ContactFriction>& friction) {
 }
 
 bool Bdf::falls(ContactStep& contacts) {
-  set_base(contacts, true);
+  set_base(contacts, true, Arrival::in_step);
   return merit_.falls(k(), friction(contacts), v_base_, end_.v);
 }
 
 // Sets the velocity towards which a step goes back when it is too long: the last one, or standing still. It meets the
-// constraints, as the step does: the energy that it takes to meet them must not count against the step.
-void Bdf::set_base(ContactStep& contacts, bool standing) {
-  contacts.filter(p_.v, filter_);
+// constraints, as the step does: the energy that it takes to meet them must not count against the step. But no particle has
+// to arrive at a surface for that, except before the contacts have settled.
+void Bdf::set_base(ContactStep& contacts, bool standing, Arrival arrival) {
+  contacts.filter(p_.v, filter_, arrival);
   if (standing)
     v_base_ = -p_.v;
   else
@@ -282,7 +283,8 @@ void Bdf::set_base(ContactStep& contacts, bool standing) {
 }
 
 StepTaken Bdf::descend(ContactStep& contacts, const NewtonLoop& newton) {
-  set_base(contacts, newton.from_standing());
+  set_base(contacts, newton.from_standing(),
+           newton.from_standing() ? Arrival::none : Arrival::in_step);
   return merit_.descend(k(), friction(contacts), v_base_, dv_, newton.may_overshoot(), p_.v);
 }
 
