@@ -2,8 +2,8 @@
 //   A plane is the body's surface, offset by the margin, linearised at the point nearest the particle's path:
 //   gap = (x - point on the offset surface) . n, negative inside.
 //
-//   make     a contact begins where gap < 0, or where the predicted path x -> x + h v meets the offset
-//            surface
+//   make     a contact begins where gap < 0, but for rounding, or where the predicted path x -> x + h v meets the
+//            offset surface
 //   target   gap >= 0: the particle arrives exactly on the surface, v.n = v_b.n - gap / h
 //            gap <  0: it moves with the body, v.n = v_b.n, and comes out by y.n = min(-gap, recovery speed
 //            x h) [BW98, 6]
@@ -24,8 +24,9 @@
 //            the last step, with its arrival impulse replaced by that of this step: otherwise an impact would
 //            rub twice. A contact that has come loose too often ends as one that is braked. What begins to touch, and
 //            slips, is braked, too; so is what slid when the impulse turned its slip round, with a quarter of the slip.
-//   doubt    where a contact changed more than once, was let go and held again, or went up and down, r.n changes by half
-//            of what a solve asks for: friction may lift a particle off, or press it on, by more than it takes itself
+//   doubt    where a contact changed more than once, was let go and held again, or went up and down, r.n changes by a half
+//            to all of what a solve asks for, as the last two solves tell: friction may lift a particle off, or press it on,
+//            by more than it takes itself
 //   clamp    where a body overlaps itself, as thighs do that are pressed into each other, or two bodies close on the cloth
 //            (constraints/nip.h), there is no way out that the cloth could take: the particle goes with the body, or with
 //            both, in all directions, whatever pulls, until it is free

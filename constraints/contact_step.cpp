@@ -5,10 +5,10 @@
 
 namespace drape {
 
-void ContactStep::filter(const VecX& v, Filter& filter, Arrival arrival) const {
+void ContactStep::filter(const VecX& v, Filter& filter) const {
   filter.clear();
   constraints_->pins_.filter(constraints_->step_, v, filter);
-  constraints_->contacts_.filter(constraints_->step_, v, arrival, filter);
+  constraints_->contacts_.filter(constraints_->step_, v, filter);
 }
 
 const std::vector<ContactFriction>& ContactStep::friction() {
@@ -111,7 +111,11 @@ ContactChange ContactStep::react(const VecX& v, const VecX& r, const VecX& x_new
   if (!bodies()) return change;
   change.grip = contacts.react(constraints_->bodies_, step, v, r, x_new, noise);
   change.caught = contacts.catch_on_path(constraints_->bodies_, step, r, x_new);
-  if (step.foresight == Foresight::ahead)  change.faces = constraints_->faces_.react(step, x_new, v) || change.faces;
+  if (step.foresight == Foresight::ahead) {
+    const FaceContacts::Change faces = constraints_->faces_.react(step, x_new, v);
+    change.faces = change.faces || faces.acts;
+    change.rubs = faces.rubs;
+  }
   return change;
 }
 

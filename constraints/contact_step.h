@@ -25,8 +25,9 @@ struct ContactChange {
   bool grip = false;    // a contact was let go, or it changed between sticking and sliding
   bool caught = false;  // particles that were free touch a body
   bool faces = false;   // other faces push, so a force has changed
+  bool rubs = false;    // faces rub less, so a damper has changed
   bool met = false;     // cloth meets cloth where no spring was, so a force has other stencils
-  bool any() const { return grip || caught || faces || met; }
+  bool any() const { return grip || caught || faces || rubs || met; }
 };
 
 // How far the contacts are from agreeing with a solve.
@@ -51,7 +52,7 @@ class ContactStep {
   bool touches_anything() const { return bodies() || !constraints_->self_.touching().empty(); }
   bool holds_anything() const { return meets_anything() || !moving_pins().empty(); }
 
-  void filter(const VecX& v, Filter& filter, Arrival arrival = Arrival::in_step) const;  // S and z at the velocity v
+  void filter(const VecX& v, Filter& filter) const;  // S and z at the velocity v
   // The dampers and impulses of the contacts that slide.
   const std::vector<ContactFriction>& friction();
   const VecX& correction() const;                // y [m] is added to the positions; empty without bodies

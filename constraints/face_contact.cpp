@@ -17,7 +17,7 @@ constexpr double slow = 1e-3;  // m/s
 constexpr double share_of_inertia = 0.12;
 // A damper may rub with this many times mu N, since it is of the N and the slip of the step before.
 constexpr double overrubbed = 1.05;
-constexpr int most_rubs = 2;  // how often a triangle that touches anew begins to rub
+constexpr int most_begun = 3;  // how often a triangle begins to rub within a step
 // A contact that has changed this often within a step changes again only when no other does, and alone.
 constexpr int most_changes = 3;
 constexpr int most_steps = 24;            // steps of the search for the lowest point
@@ -155,18 +155,15 @@ double measure(FaceContact& c, const VecX& x_new, const VecX& v_new) {
 // Makes the damper for what a solve came to: where the triangle did not rub before, and where it rubs harder than its law
 // allows. Then it is taken down, by one step of Newton's method for a point that is alone. True when it changed.
 bool rub(FaceContact& c, const StepMotion& step) {
-  const double before = c.damper;
-  if (before == 0 && c.rubs < most_rubs) c.damper = std::min(c.rubbing(), c.most_damper);
-  if (step.foresight == Foresight::ahead) {
-    const double most = c.friction * c.push, given = before * c.slip;  // N
-    if (given > overrubbed * most) {
-      const double mobility = step.h * c.mobility(step);  // m/s for 1 N
-      c.damper = most / std::max(c.slip + mobility * (given - most), slow);
-    }
+  const double before = c.damper, most = c.friction * c.push, given = before * c.slip;  // N s/m, N, N
+  if (before == 0 && c.rubbing() > 0 && c.begun < most_begun) {
+    c.damper = std::min(c.rubbing(), c.most_damper);
+    ++c.begun;
+  } else if (step.foresight == Foresight::ahead && given > overrubbed * most) {
+    const double mobility = step.h * c.mobility(step);  // m/s for 1 N
+    c.damper = most / std::max(c.slip + mobility * (given - most), slow);
   }
-  if (c.damper == before) return false;
-  ++c.rubs;
-  return true;
+  return c.damper != before;
 }
 
 }  // namespace
@@ -183,7 +180,8 @@ double FaceContact::mobility(const StepMotion& step) const {
   for (int k = 0; k < 3; ++k) {
     const auto particle = static_cast<std::size_t>(particles[static_cast<std::size_t>(k)]);
     if (step.is_held(static_cast<int>(particle))) continue;
-    sum += weights[k] * weights[k] / std::max(step.masses[particle], share_of_inertia * step.inertia[particle]);
+    sum +=
+        weights[k] * weights[k] / std::max(step.masses[particle], share_of_inertia * step.inertia[particle]);
   }
   return sum;
 }
@@ -364,7 +362,7 @@ void FaceContacts::follow(const std::vector<MovingBody>& bodies) {
   for (FaceContact& c : touching_) {
     const MovingBody& body = bodies[c.body];
     const Vec3 before = c.body_velocity;
-    c.changes = 0;
+    c.changes = c.begun = 0;
     c.body_velocity = body.velocity(c.place);
     c.gap -= body.step() * c.normal.dot(c.body_velocity - before);
   }
@@ -380,12 +378,12 @@ double FaceContacts::imbalance(const StepMotion& step, const VecX& x_new, const 
   return std::sqrt(squares);
 }
 
-bool FaceContacts::react(const StepMotion& step, const VecX& x_new, const VecX& v_new) {
-  bool changed = false;
+FaceContacts::Change FaceContacts::react(const StepMotion& step, const VecX& x_new, const VecX& v_new) {
+  Change change;
   FaceContact* worst = nullptr;
   for (FaceContact& c : touching_) {
     const double gap = measure(c, x_new, v_new);
-    if (rub(c, step)) changed = true;
+    if (rub(c, step)) change.rubs = true;
     if (c.active == (gap < 0)) continue;
     if (c.changes == most_changes) {
       if (!worst || c.stiffness * std::abs(gap) > worst->stiffness * std::abs(worst->gap_at(x_new)))
@@ -394,18 +392,18 @@ bool FaceContacts::react(const StepMotion& step, const VecX& x_new, const VecX& 
     }
     c.active = gap < 0;
     ++c.changes;
-    changed = true;
+    change.acts = true;
   }
-  if (!changed && worst) {
+  if (!change.acts && !change.rubs && worst) {
     // Friction of other contacts may lift the triangle off the spring that acts, and press it on without one. Between
     // them is a softer spring that just carries it.
     if (worst->active)
       worst->stiffness *= 0.5;
     else
       worst->active = true;
-    changed = true;
+    change.acts = true;
   }
-  return changed;
+  return change;
 }
 
 void FaceContacts::end_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new,

@@ -7,9 +7,9 @@
 //                                                    a triangle touches nothing where its vertices rest
 //   E = k/2 g^2 for g < 0,   f_k = -k g w_k n,   K_kl = k w_k w_l n n^T
 //   friction: the damper mu N / |u| acts on u, the part of sum w_k v_k - v_b along the surface; below `slow` [m/s] the
-//             triangle creeps instead of sticking. N = -k g and |u| are
-//             those of the step before (where the triangle touches anew, of the solve before). Where that comes to more
-//             than mu N of the solve by a twentieth, as where the triangle has just been let go, the damper is made less.
+//             triangle creeps instead of sticking. N = -k g and |u| are those of the step before (where the triangle
+//             touches anew, of the solve before). Where that comes to more than 1.05 mu N of the solve, as where the
+//             triangle has just been let go, the damper is made less. It is not made more within a step.
 // A constraint would lock two or three particles to each other, which a filter of 3x3 blocks cannot express.
 // The blocks of the spring stand where those of the triangle's edges stand. k is the cloth's own membrane
 // stiffness, and a triangle has two springs at most: so they change neither the condition of the matrix nor the
@@ -52,7 +52,7 @@ struct FaceContact {
   double push = 0;    // normal force of the last solve, and then of the end of the step [N]
   double slip = 0;    // |u| then [m/s]
   double damper = 0;  // of the friction in this step [N s/m]
-  int rubs = 0;       // how often `damper` has changed within this step
+  int begun = 0;      // how often it began to rub within this step
   double most_damper = std::numeric_limits<double>::infinity();  // upper bound of `damper` [N s/m]
 
   template <class Vector>
@@ -103,8 +103,11 @@ class FaceContacts {
   // The norm of the impulses of springs that pull, of those that are missing, and of what friction takes otherwise than
   // its law, after a solve [N s].
   double imbalance(const StepMotion& step, const VecX& x_new, const VecX& v_new) const;
-  // Finds after a solve which contacts act, and how they rub; true when that has changed.
-  bool react(const StepMotion& step, const VecX& x_new, const VecX& v_new);
+  // Finds after a solve which contacts act, and how they rub; tells which of that has changed.
+  struct Change {
+    bool acts = false, rubs = false;
+  };
+  Change react(const StepMotion& step, const VecX& x_new, const VecX& v_new);
   void end_step(const std::vector<MovingBody>& bodies, const VecX& x, const VecX& x_new, const VecX& v_new);
 
   // The impulse of the step on the bodies. Where a step has stages, count_impulse adds the force at x, v

@@ -12,6 +12,8 @@ namespace {
 constexpr double least_relaxed = 0.5;
 // A contact that stops and comes loose this often within a step is braked from then on.
 constexpr int most_changes = 3;
+// A contact that is braked because it came loose too often is linearised anew once friction is within this share of mu N:
+// Newton's method then ends what the damper comes near to by a part of the error in each round.
 constexpr double nearly = 0.25;
 // Friction is looked for as if a push of the particle met this share of the inertia that it meets while its
 // neighbours stay behind. (On a ball, a sheet of 10 k vertices took 3.0 solves a step and 141 iterations with springs,
@@ -95,6 +97,13 @@ double relaxation(const Contact& contact, double change) {
   return std::clamp(contact.relaxed * contact.last_change / fell, least_relaxed, 1.0);
 }
 
+// Whether a contact that is braked for good is so near to its law that it slides instead. It may stop and come loose a few
+// times more, and then stays braked.
+bool may_slide_again(const Contact& contact, const Vec3& slip, const Vec3& given, double most) {
+  return contact.changes <= 2 * most_changes && slip.dot(contact.slip) > 0 &&
+         std::abs(given.norm() - most) < nearly * most;
+}
+
 // What is wrong with friction where contact is not part of the solve [N s]. What slid all along is braked, and the
 // damper may rub with less than mu N; what has come loose goes on sliding. The answer then changes smoothly with the
 // motion of a body that reacts.
@@ -149,13 +158,10 @@ void ParticleContacts::catch_grip(const Bodies& bodies, const StepMotion& step, 
     slide_at(contact, mu.kinetic, slip);
 }
 
-void ParticleContacts::filter(const StepMotion& step, const VecX& v, Arrival arrival, Filter& filter) const {
+void ParticleContacts::filter(const StepMotion& step, const VecX& v, Filter& filter) const {
   for (const Contact& c : trial_) {
     if (!c.active()) continue;
-    std::array<double, 3> speeds = normal_speeds(c, step.h);
-    if (arrival == Arrival::none)
-      for (double& speed : speeds) speed = std::max(speed, 0.0);
-    const Vec3 normal_part = along_planes(c, speeds);
+    const Vec3 normal_part = along_planes(c, normal_speeds(c, step.h));
     const Mat3 Q = c.locked_directions();
     const Mat3 S = Mat3::Identity() - Q * Q.transpose();
     const Vec3 now = v.segment<3>(3 * c.particle);
@@ -321,7 +327,7 @@ bool ParticleContacts::update_friction(const Bodies& bodies, const StepMotion& s
   const Vec3 slip = tangential(c, v - c.body_velocity());
   const Vec3 given = given_friction(c, mu.kinetic, mass, slip, r), asked = given - inertia * slip;
   // Friction may press the particle on, or lift it off, by more than it takes itself: then the impulse goes up and down from
-  // solve to solve. Half of the change settles.
+  // solve to solve. A part of the change settles.
   const double pressing = pressed(c, r);
   const double change = pressing - c.normal_impulse;
   c.turns += change * c.last_change < 0;
@@ -345,9 +351,7 @@ bool ParticleContacts::update_friction(const Bodies& bodies, const StepMotion& s
     ++c.changes;
     c.slip = slip;
     return true;
-  } else if (c.grip == Grip::brake && c.changes > most_changes &&
-             !(c.changes <= 2 * most_changes && slip.dot(c.slip) > 0 &&
-               std::abs(given.norm() - most) < nearly * most)) {
+  } else if (c.grip == Grip::brake && c.changes > most_changes && !may_slide_again(c, slip, given, most)) {
     c.slip = slip;
     return std::abs(given.norm() - most) > noise;
   } else if (c.grip == Grip::slide && slip.dot(c.slip) < 0) {  // the constant push turned the motion round

@@ -184,8 +184,9 @@ void ParticleContacts::look_at(const MovingBody& body, const StepMotion& step, b
     return;
   }
   const ContactPlane plane = body.plane(x, start, x + step.h * v, radius);
+  const double inside = step.foresight == Foresight::ahead ? at_margin : 0;
   if (touched ? plane.gap < touching_range(margin)
-              : plane.gap < at_margin && plane.gap + body.approach(x, x_new, plane) < at_margin) {
+              : plane.gap < inside && plane.gap + body.approach(x, x_new, plane) < inside) {
     add_deepest(contact, plane);
   } else if (plane.gap < travel) {
     if (const auto met = body.meeting(x, x_new, radius)) add_deepest(contact, *met);

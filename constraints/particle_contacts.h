@@ -55,9 +55,6 @@ struct ContactResponse {
   double gap;          // m, when the step begins
 };
 
-// Whether a particle that has not arrived yet does so in the step, or stays where it is unless a body pushes it.
-enum class Arrival { in_step, none };
-
 class ParticleContacts {
  public:
   using Bodies = std::vector<MovingBody>;
@@ -117,7 +114,7 @@ class ParticleContacts {
   void renumber(const std::vector<int>& number);
 
   // S and z of the particles that touch; the dampers and impulses of those that slide.
-  void filter(const StepMotion& step, const VecX& v, Arrival arrival, Filter& filter) const;
+  void filter(const StepMotion& step, const VecX& v, Filter& filter) const;
   const std::vector<ContactFriction>& make_friction(const Bodies& bodies, const StepMotion& step);
   const std::vector<ContactFriction>& friction() const { return friction_; }  // as it was made last
   const VecX& correction() const { return correction_; }                      // y [m]; empty without bodies

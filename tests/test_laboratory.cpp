@@ -112,6 +112,12 @@ TEST_CASE("mistakes in what a laboratory gave are told with their line", "[scene
       {"bending_length = 21\n", "f.toml:2:", "comes to 21 m; expected up to 50 cm"},
       {"overhang = { warp = \"4 cm\", weft = \"2 m\" }\n",
        "f.toml:2:", "comes to 2 m; expected up to 100 cm"},
+      {"measured_cantilever = { length = 100, droop = 60 }\n", "f.toml:2:", "expected up to 50 cm"},
+      {"measured_bias_extension = { length = \"10 cm\", width = 50, load = \"5 N/m\", extension = \"1 %\" "
+       "}\n",
+       "f.toml:2:", "expected up to 100 cm"},
+      {"measured_picture_frame = { side = 100, shear = \"5 deg\", force = \"1 N\" }\n",
+       "f.toml:2:", "expected up to 100 cm"},
       {"B = 0.1\n", "f.toml:2:", "docs/fabrics.md"},
       {"2HB = 0.1\n", "f.toml:2:", "kes = { 2HB = "},
       {"G = 0.1\n", "f.toml:2:", "docs/fabrics.md"},

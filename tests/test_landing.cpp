@@ -45,8 +45,7 @@ struct OnSlope {
     double lowest = 1;
     for (int i = 0; i < state.particles(); ++i)
       lowest = std::min(lowest, state.x.segment<3>(3 * i).dot(normal()));
-    for (int i = 0; i < state.particles(); ++i)
-      state.x[3 * i + 1] += (margin - lowest) / normal().y() + fall;
+    for (int i = 0; i < state.particles(); ++i) state.x[3 * i + 1] += (margin - lowest) / normal().y() + fall;
   }
   Vec3 velocity() const {
     Vec3 sum = Vec3::Zero();
@@ -88,7 +87,8 @@ TEST_CASE("cloth that lands on a slope loses mu times what the slope takes of it
         }
 }
 
-TEST_CASE("cloth that is laid at the margin holds below its static friction, by rounding or not", "[contact]") {
+TEST_CASE("cloth that is laid at the margin holds below its static friction, by rounding or not",
+          "[contact]") {
   const double slope = 24 * pi / 180;  // tan = 0.445
   for (const Kind kind : kinds)
     for (const int n : {6, 9, 13})
@@ -103,7 +103,8 @@ TEST_CASE("cloth that is laid at the margin holds below its static friction, by 
       }
 }
 
-TEST_CASE("cloth that sticks comes loose where the slope is too steep, whatever the integrator", "[integrators]") {
+TEST_CASE("cloth that sticks comes loose where the slope is too steep, whatever the integrator",
+          "[integrators]") {
   const double mu = 0.3, slope = pi / 4, duration = 0.1;
   const Fabric soft{.area_density = 0.3, .stretch = 10, .bend = 1e-6, .damping = 0.03};
   for (const Method& method : methods())

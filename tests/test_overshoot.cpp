@@ -18,10 +18,10 @@ struct Drop {
 };
 
 // A sheet that falls on a ball and drapes over it in folds.
-Drop dropped(int n, Kind kind, double height, double stretch = 1000) {
+Drop dropped(int n, Kind kind, double height) {
   TriangleMesh sheet = bent(n, kind, 1, [&](double, double) { return 0.31 + height; });
   System system(lumped_mass(sheet, 0.2));
-  system.add(noh_jung(sheet, {.area_density = 0.2, .stretch = stretch, .bend = 1e-5}));
+  system.add(noh_jung(sheet, {.area_density = 0.2, .stretch = 1000, .bend = 1e-5}));
   system.add(Gravity{});
   Constraints constraints;
   constraints.add(Obstacle{.shape = Sphere{Vec3::Zero(), 0.3}, .friction = 0.3});
@@ -60,18 +60,6 @@ TEST_CASE("a step that overshoots is put right by the next, and does not make th
       overshot += d.rescued;
     }
   CHECK(overshot > 20);
-}
-
-TEST_CASE("a stiff sheet of springs that drapes takes little more than one of Newton's iterations a step",
-          "[integrators]") {
-  for (const Kind kind : kinds)
-    for (const int n : {40, 50, 60}) {
-      const Drop d = dropped(n, kind, 0.0002, 5000);
-      INFO(n << " x " << n << " of kind " << static_cast<int>(kind) << ": " << d.newton << " iterations in "
-             << d.steps << " steps");
-      CHECK(d.newton < 1.6 * d.steps);
-      CHECK(d.most_above <= 0);
-    }
 }
 
 TEST_CASE(

@@ -49,6 +49,8 @@ TEST_CASE("a mistake in a file of poses is told with its line", "[motion]") {
       {"time,x,y,z,qw,qx,qy\n0,0,0,0,1,0,0\n",
        "poses.csv:1:", "of the columns qw, qx, qy, qz some are missing"},
       {"time,x,y,z,qw,qx,qy,qz,rx,ry,rz\n0,0,0,0,1,0,0,0,0,0,0\n", "poses.csv:1:", "given twice"},
+      {"time,x,y,z,rx,ry,rz\n0,0,0,0,0,0,0\n1,0,0,0,0,90,0\n",
+       "poses.csv:3:", "turn by 90 rad, which is more than a whole turn; name the unit in the header"},
       {head + "1,0,0\n", "poses.csv:3:", "has 3 cells, the header has 4"},
       {head + "1,0,0,0,\n", "poses.csv:3:", "has 5 cells"},
       {head + "\n\n1,0,abc,0\n", "poses.csv:5:", "y = \"abc\": expected a finite number"},

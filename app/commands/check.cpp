@@ -1,5 +1,6 @@
 #include "app/commands/check.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "app/base/toml_file.h"
@@ -208,6 +209,14 @@ void check_folder(const std::filesystem::path& folder, const std::filesystem::pa
   for (const std::string& missing : recording.missing()) std::printf("%s\n", one_line(missing).c_str());
 }
 
+// A fabric file that lacks its area density is one, too.
+bool is_fabric(const Node& file) {
+  const std::initializer_list<const char*> keys = {"area_density", "bend",           "stretch",
+                                                   "shear",        "bending_length", "overhang",
+                                                   "kes",          "fast",           "measured_cantilever"};
+  return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return file.members.contains(key); });
+}
+
 }  // namespace
 
 int check_file(const std::filesystem::path& file, const std::filesystem::path& mark) {
@@ -217,7 +226,7 @@ int check_file(const std::filesystem::path& file, const std::filesystem::path& m
     return 0;
   }
   const Node root = file.extension() == ".toml" ? read_toml(file) : Node();
-  const bool fabric = root.members.contains("area_density");
+  const bool fabric = is_fabric(root);
   if (fabric && !mark.empty())
     throw InputError(file.string() + ": a fabric has no triangles that could cross; leave --mark out");
   if (fabric)

@@ -3,6 +3,13 @@
 namespace drape::app {
 namespace {
 
+// A specimen that large is none of a laboratory: the unit was left out, or is another.
+void check_size(const Table& test, const char* key, double size, double most) {
+  if (size > most)
+    test.fail(key, "is " + rounded(size, 4) + " m; expected up to " + rounded(100 * most, 3) +
+                       " cm, such as \"10 cm\"");
+}
+
 std::optional<MeasuredDrape> read_drape(Table& table) {
   const About about("what a drape test of the fabric gave");
   const Node* const node = table.take("measured_drape", "a table", about);
@@ -33,6 +40,7 @@ MeasuredCantilever read_cantilever(Table& test) {
   MeasuredCantilever measured;
   test.read_required("length", measured.length, dimension::length, Range::positive,
                      "of the strip, from the clamp to its free end");
+  check_size(test, "length", measured.length, 0.5);
   test.require("droop");
   measured.droop = *read_directions(test, "droop", dimension::length, true,
                                     {"how much lower than the clamp the free end hangs", ""});
@@ -48,6 +56,8 @@ MeasuredBiasExtension read_bias_extension(Table& test) {
   MeasuredBiasExtension measured;
   test.read_required("length", measured.length, dimension::length, Range::positive, "between the clamps");
   test.read_required("width", measured.width, dimension::length, Range::positive, "of the strip");
+  check_size(test, "length", measured.length, 1);
+  check_size(test, "width", measured.width, 1);
   test.read_required("load", measured.load, dimension::sheet_force, Range::positive, "force per width");
   test.read_required("extension", measured.extension, dimension::share, Range::positive,
                      "how much longer the strip becomes, over its length");
@@ -59,6 +69,7 @@ MeasuredBiasExtension read_bias_extension(Table& test) {
 MeasuredFrame read_frame(Table& test) {
   MeasuredFrame measured;
   test.read_required("side", measured.side, dimension::length, Range::positive, "of the square");
+  check_size(test, "side", measured.side, 1);
   test.read_required("shear", measured.shear, dimension::angle, Range::positive,
                      "by which the right angles of the frame have changed");
   if (measured.shear > 0.8) test.fail("shear", "expected at most 45 degrees; write 5 degrees as \"5 deg\"");

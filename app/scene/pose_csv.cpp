@@ -38,7 +38,8 @@ Names known_names() {
 
 struct Column {
   std::string name;
-  double unit;  // in SI units
+  double unit;    // in SI units
+  bool has_unit;  // whether the header names it
 };
 
 Column read_column(const std::string& cell) {
@@ -55,7 +56,7 @@ Column read_column(const std::string& cell) {
     throw InputError("unknown column '" + name + "'; " + suggestion(name, known_names()) +
                      ", separated by commas");
   try {
-    return {name, parse_quantity("1 " + unit, *known->dimension)};
+    return {name, parse_quantity("1 " + unit, *known->dimension), bracket != cell.npos};
   } catch (const InputError& error) {
     throw InputError("column '" + cell + "': " + error.what());
   }
@@ -92,7 +93,10 @@ class PoseTable {
       throw InputError("has " + counted(static_cast<long>(row.cells.size()), "cell") + ", the header has " +
                        std::to_string(columns_.size()));
     Keyframe keyframe{at(row, "time"), {at(row, "x"), at(row, "y"), at(row, "z")}};
-    if (turns_by_vector()) keyframe.rotation = Vec3(at(row, "rx"), at(row, "ry"), at(row, "rz"));
+    if (turns_by_vector()) {
+      keyframe.rotation = Vec3(at(row, "rx"), at(row, "ry"), at(row, "rz"));
+      check_turn(keyframe.rotation);
+    }
     if (find("qw") < columns_.size()) keyframe.rotation = unwrapped(quaternion(row), rotation_before);
     return keyframe;
   }
@@ -114,6 +118,15 @@ class PoseTable {
   }
 
   bool turns_by_vector() const { return has({"rx", "ry", "rz"}); }
+
+  // Degrees are what most programs write.
+  void check_turn(const Vec3& rotation) const {
+    constexpr double turn = 6.2832;  // rad
+    if (rotation.norm() <= turn || columns_[find("rx")].has_unit) return;
+    throw InputError(
+        "rx, ry, rz turn by " + rounded(rotation.norm(), 4) +
+        " rad, which is more than a whole turn; name the unit in the header, as in rx [deg] or rx [rad]");
+  }
 
   double at(const CsvRow& row, const std::string& name) const {
     const std::size_t k = find(name);

@@ -197,7 +197,7 @@ ClothEntry read_cloth(Table& table, const fs::path& folder) {
               "\"mesh\"; of a pattern \"uv\""});
   cloth.rest_is_flat = rest == "uv";
   table.read("uv_scale", cloth.uv_scale, dimension::length, Range::positive,
-             "length of one unit of the texture coordinates, with rest = \"uv\"");
+             "length of one unit of the texture coordinates, with rest = \"uv\"; scale multiplies it, too");
   if (table.has("uv_scale") && !cloth.rest_is_flat) table.fail("uv_scale", "goes with rest = \"uv\"");
   cloth.panels = read_panels(table);
   cloth.seams = read_seams(table);

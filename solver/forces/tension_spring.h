@@ -23,10 +23,7 @@ struct TensionSpring {
   static Tension tension(const Rest& r, double l) {
     return taut(r, l) ? Tension{r.k * (l - r.L), r.k} : Tension{0, 0};
   }
-  // A spring that is nearly taut counts as taut, though without a force: what folds drive apart is taut after a step, and one
-  // that does not know of that overshoots, in every step anew.
-  static constexpr double nearly_taut = 1e-3;
-  static double chord(const Rest& r, double l) { return l > r.L * (1 - nearly_taut) ? r.k : 0; }
+  static double chord(const Rest&, double) { return 0; }
   static double stiffest(const Rest& r, double) { return r.k; }
   static void relax_apart(const StencilLink<2, Rest>* links, int count, Substep& substep, Vec3* impulses);
 };

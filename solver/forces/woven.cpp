@@ -30,7 +30,8 @@ PlateStiffness plate_of(const Fabric& fabric) {
   if (weave.bend_bias && !(twist > 0)) {
     std::ostringstream message;
     message << "bend_bias = " << *weave.bend_bias
-            << " N.m: with this bend, bend_weft and bend_poisson it is greater than " << least << " N.m";
+            << " N.m: with this bend, bend_weft and bend_poisson it has to be greater than " << least
+            << " N.m";
     throw InputError(message.str());
   }
   return {warp, weft, weave.bend_poisson * mean, twist};

@@ -111,7 +111,7 @@ class Bdf::ContactSolve {
       const Stopwatch watch(report_.collide_ms);
       bdf_.system_.find_contacts({state_.time, bdf_.k().h, state_.x, state_.v, bdf_.k().h});
     }
-    if (change.faces || change.met || (change.caught && bdf_.k().order_2())) linearise();
+    if (change.faces || change.rubs || change.met || (change.caught && bdf_.k().order_2())) linearise();
   }
 
   void bodies_moved() {
@@ -265,15 +265,14 @@ void Bdf::add_friction(const std::vector<ContactFriction>& friction) {
 }
 
 bool Bdf::falls(ContactStep& contacts) {
-  set_base(contacts, true, Arrival::in_step);
+  set_base(contacts, true);
   return merit_.falls(k(), friction(contacts), v_base_, end_.v);
 }
 
 // Sets the velocity towards which a step goes back when it is too long: the last one, or standing still. It meets the
-// constraints, as the step does: the energy that it takes to meet them must not count against the step. But no particle has
-// to arrive at a surface for that, except before the contacts have settled.
-void Bdf::set_base(ContactStep& contacts, bool standing, Arrival arrival) {
-  contacts.filter(p_.v, filter_, arrival);
+// constraints, as the step does: the energy that it takes to meet them must not count against the step.
+void Bdf::set_base(ContactStep& contacts, bool standing) {
+  contacts.filter(p_.v, filter_);
   if (standing)
     v_base_ = -p_.v;
   else
@@ -283,8 +282,7 @@ void Bdf::set_base(ContactStep& contacts, bool standing, Arrival arrival) {
 }
 
 StepTaken Bdf::descend(ContactStep& contacts, const NewtonLoop& newton) {
-  set_base(contacts, newton.from_standing(),
-           newton.from_standing() ? Arrival::none : Arrival::in_step);
+  set_base(contacts, newton.from_standing());
   return merit_.descend(k(), friction(contacts), v_base_, dv_, newton.may_overshoot(), p_.v);
 }
 

@@ -53,7 +53,7 @@ class Bdf final : public Integrator {
   double residual_wanted() const;          // N s
   bool makes_energy(const State& start, const ContactStep& contacts, double h) const;
   bool falls(ContactStep& contacts);  // whether the first solve of a step lowers Phi
-  void set_base(ContactStep& contacts, bool standing, Arrival arrival);
+  void set_base(ContactStep& contacts, bool standing);
   StepTaken descend(ContactStep& contacts, const internal::NewtonLoop& newton);
   void finish(State& state, ContactStep& contacts, StepReport& report);
   bool good(const LinearReport& linear) const;
