@@ -72,8 +72,10 @@ TEST_CASE("without friction a moving belt carries nothing", "[moving-bodies]") {
 TEST_CASE("a lift takes its load with it, up and down", "[moving-bodies]") {
   for (const Method& method : methods()) {
     INFO(method.label);
-    for (double speed : {0.5, -0.5}) {
-      Particles p({Vec3(0, 0.002, 0)}, method);
+    for (const auto& [speed, start] : {std::pair(0.5, 0.002), std::pair(-0.5, 0.002),
+                                       std::pair(-0.5, 0.0019999), std::pair(-0.05, 0.0019999)}) {
+      INFO(speed << " m/s, from " << start << " m");
+      Particles p({Vec3(0, start, 0)}, method);
       p.constraints.add(
           Obstacle{.shape = Plane{}, .motion = Motion::constant({0, speed, 0}, Vec3::Zero(), Vec3::Zero())});
       p.run(40);

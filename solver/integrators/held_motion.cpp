@@ -71,7 +71,7 @@ class HeldMotion::ContactSolve {
             noise,          motion_.weight_impulse(h_)};
   }
   bool worth_settling() { return true; }
-  void release() { motion_.let_go(x_, v_); }
+  void release() { motion_.let_go(x_, v_, h_); }
   bool refine(double) { return false; }
   void changed(const ContactChange&) {}
   void bodies_moved() {}
@@ -129,8 +129,9 @@ void HeldMotion::set_free(const VecX& v) {
 
 // A particle that was held and is let go, or comes loose, gets back the velocity that was taken from it at
 // the start, less friction; it moves from the next step on. It does not get h (I - S) M^-1 f, which is
-// explicit: where the cloth is stiff and h long, that is far more than the particle would gain.
-void HeldMotion::let_go(const VecX& x, const VecX& v) {
+// explicit: where the cloth is stiff and h long, that is far more than the particle would gain. What a body has led away with
+// it, and cannot pull, goes back by the way that this was.
+void HeldMotion::let_go(const VecX& x, const VecX& v, double h) {
   for (const Contact& c : contacts_->touching()) {
     if (c.active() && c.grip == Grip::stick) continue;
     const auto held = std::find_if(held_.entries().begin(), held_.entries().end(),
@@ -143,7 +144,9 @@ void HeldMotion::let_go(const VecX& x, const VecX& v) {
       const double most = c.friction_impulse.norm() / system_.masses()[c.particle];
       back *= back.norm() > most ? 1 - most / back.norm() : 0;
     }
-    x_new_.segment<3>(3 * c.particle) = x.segment<3>(3 * c.particle);
+    const Vec3& n = c.plane[0].normal;
+    const double led = c.active() ? 0 : std::max(n.dot(back), 0.0);  // m/s
+    x_new_.segment<3>(3 * c.particle) = x.segment<3>(3 * c.particle) + h * led * n;
     v_new_.segment<3>(3 * c.particle) = v.segment<3>(3 * c.particle) + back;
   }
 }

@@ -52,7 +52,7 @@ class HeldMotion {
   double weight_impulse(double h) const;  // h |m g| [N s]
   void set_free(const VecX& v);
   void move_within_constraints(const State& state, const VecX& x, double h);
-  void let_go(const VecX& x, const VecX& v);
+  void let_go(const VecX& x, const VecX& v, double h);
 
   System& system_;
   Constraints& constraints_;
