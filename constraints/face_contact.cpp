@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 
+#include "constraints/inertia.h"
 #include "mesh/base/parallel.h"
 #include "mesh/distance/closest_on_triangle.h"
 #include "mesh/triangles/normals.h"
@@ -12,12 +13,10 @@ namespace drape {
 namespace {
 
 constexpr double slow = 1e-3;  // m/s
-// Friction is looked for as if a push of a particle met this share of the inertia that it meets while its neighbours stay
-// behind, as for particles that touch (constraints/grip.cpp).
-constexpr double share_of_inertia = 0.12;
 // A damper may rub with this many times mu N, since it is of the N and the slip of the step before.
 constexpr double overrubbed = 1.05;
-constexpr int most_begun = 3;  // how often a triangle begins to rub within a step
+// How often a triangle begins to rub within a step. After that it slides freely for the rest of the step.
+constexpr int most_begun = 3;
 // A contact that has changed this often within a step changes again only when no other does, and alone.
 constexpr int most_changes = 3;
 constexpr int most_steps = 24;            // steps of the search for the lowest point
@@ -178,10 +177,8 @@ double FaceContact::wrong_friction(const VecX& x, const VecX& v) const {
 double FaceContact::mobility(const StepMotion& step) const {
   double sum = 0;
   for (int k = 0; k < 3; ++k) {
-    const auto particle = static_cast<std::size_t>(particles[static_cast<std::size_t>(k)]);
-    if (step.is_held(static_cast<int>(particle))) continue;
-    sum +=
-        weights[k] * weights[k] / std::max(step.masses[particle], share_of_inertia * step.inertia[particle]);
+    const int particle = particles[static_cast<std::size_t>(k)];
+    if (!step.is_held(particle)) sum += weights[k] * weights[k] / internal::inertia_met(step, particle);
   }
   return sum;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/inertia.h"
 #include "constraints/particle_contacts.h"
 
 namespace drape {
@@ -15,10 +16,6 @@ constexpr int most_changes = 3;
 // A contact that is braked because it came loose too often is linearised anew once friction is within this share of mu N:
 // Newton's method then ends what the damper comes near to by a part of the error in each round.
 constexpr double nearly = 0.25;
-// Friction is looked for as if a push of the particle met this share of the inertia that it meets while its
-// neighbours stay behind. (On a ball, a sheet of 10 k vertices took 3.0 solves a step and 141 iterations with springs,
-// 3.2 and 112 woven. With a share of 0.25 it took 4.1 and 193, and 3.0 and 114; with 0.06 it took 3.6 and 162, and 3.5 and 114.)
-constexpr double share_of_inertia = 0.12;
 // A damper may rub with this many times mu N where contact is not part of the solve.
 constexpr double overrubbed = 1.05;
 // What slides with mu N and no slip, as at the moment when it comes loose, goes on sliding.
@@ -322,8 +319,7 @@ bool ParticleContacts::update_friction(const Bodies& bodies, const StepMotion& s
                                        const Vec3& v, const Vec3& r, double noise) const {
   const Friction& mu = friction_of(bodies, c);
   const double mass = step.mass(c.particle);
-  const double inertia =
-      std::max(mass, share_of_inertia * step.inertia[static_cast<std::size_t>(c.particle)]);
+  const double inertia = internal::inertia_met(step, c.particle);
   const Vec3 slip = tangential(c, v - c.body_velocity());
   const Vec3 given = given_friction(c, mu.kinetic, mass, slip, r), asked = given - inertia * slip;
   // Friction may press the particle on, or lift it off, by more than it takes itself: then the impulse goes up and down from

@@ -211,10 +211,20 @@ void check_folder(const std::filesystem::path& folder, const std::filesystem::pa
 
 // A fabric file that lacks its area density is one, too.
 bool is_fabric(const Node& file) {
-  const std::initializer_list<const char*> keys = {"area_density", "bend",           "stretch",
-                                                   "shear",        "bending_length", "overhang",
-                                                   "kes",          "fast",           "measured_cantilever"};
-  return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return file.members.contains(key); });
+  const Names keys = {"area_density",
+                      "bend",
+                      "stretch",
+                      "shear",
+                      "bending_length",
+                      "overhang",
+                      "kes",
+                      "fast",
+                      "measured_cantilever",
+                      "measured_bias_extension",
+                      "measured_picture_frame",
+                      "measured_drape"};
+  return std::any_of(keys.begin(), keys.end(),
+                     [&](const std::string& key) { return file.members.contains(key); });
 }
 
 }  // namespace
