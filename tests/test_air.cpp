@@ -6,9 +6,11 @@
 #include "mesh/base/errors.h"
 #include "solver/assembly/assembly.h"
 #include "solver/forces/air.h"
+#include "solver/forces/choi_ko.h"
 #include "solver/forces/woven.h"
 #include "tests/integrators.h"
 #include "tests/strips.h"
+#include "tests/tearing.h"
 
 using namespace drape;
 using namespace drape::test;
@@ -35,13 +37,7 @@ struct Fall {
 };
 
 // A sheet that falls flat from rest for a time t [s].
-Fall fall(const TriangleMesh& mesh, const std::string& integrator, double h, double t, bool with_fabric) {
-  System system(masses(mesh, cloth));
-  if (with_fabric) system.add(woven(mesh, mesh, cloth));
-  std::vector<std::unique_ptr<Force>> drag;
-  drag.push_back(air_drag(mesh, {}));
-  system.add(std::move(drag));
-  system.add(Gravity{});
+Fall fall(const TriangleMesh& mesh, System& system, const std::string& integrator, double h, double t) {
   Constraints constraints;
   auto stepper = make_integrator(integrator, system, constraints, make_linear_solver("mpcg+block-ic0"),
                                  {.tolerance = 1e-10});
@@ -60,6 +56,16 @@ Fall fall(const TriangleMesh& mesh, const std::string& integrator, double h, dou
   for (int i = 0; i < state.particles(); ++i)
     all.spread = std::max(all.spread, std::abs(all.v + state.v[3 * i + 1]));
   return all;
+}
+
+Fall fall(const TriangleMesh& mesh, const std::string& integrator, double h, double t, bool with_fabric) {
+  System system(masses(mesh, cloth));
+  if (with_fabric) system.add(woven(mesh, mesh, cloth));
+  std::vector<std::unique_ptr<Force>> drag;
+  drag.push_back(air_drag(mesh, {}));
+  system.add(std::move(drag));
+  system.add(Gravity{});
+  return fall(mesh, system, integrator, h, t);
 }
 
 }  // namespace
@@ -134,6 +140,26 @@ TEST_CASE(
   };
   CHECK(worst("bdf2", 0.01) / worst("bdf2", 0.005) > 3);
   CHECK(worst("implicit-euler", 0.01) / worst("implicit-euler", 0.005) > 1.8);
+}
+
+TEST_CASE("a grid of quads that falls flat stays flat, however its quads are cut and wound", "[air]") {
+  const double v_t = terminal({});
+  for (const auto& [nx, nz] : {std::pair{5, 4}, {9, 9}, {16, 7}})
+    for (const bool turned : {false, true}) {
+      INFO(nx << " x " << nz << (turned ? ", wound the other way" : ""));
+      TriangleMesh mesh = quad_sheet(nx, nz, 0.03);
+      if (turned)
+        for (Triangle& t : mesh.triangles) std::swap(t[0], t[1]);
+      System system(choi_ko_mass(mesh, mesh, density));
+      system.add(choi_ko(mesh, cloth));
+      std::vector<std::unique_ptr<Force>> drag;
+      drag.push_back(air_drag_of_quads(mesh, {}));
+      system.add(std::move(drag));
+      system.add(Gravity{});
+      const Fall one = fall(mesh, system, "bdf2", 0.01, 0.3);
+      CHECK(one.v == Approx(v_t * std::tanh(g * 0.3 / v_t)).epsilon(2e-3));
+      CHECK(one.spread < 1e-9);
+    }
 }
 
 TEST_CASE("still air takes energy and never gives any", "[air]") {

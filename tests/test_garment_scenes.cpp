@@ -71,6 +71,15 @@ TEST_CASE("what rests is not settled while its seams are closing", "[sewing]") {
   CHECK(content(tailor.path / "o/run.json").find("has not closed") != std::string::npos);
 }
 
+TEST_CASE("a run that ends before its seams close says so", "[sewing]") {
+  const Tailor tailor;
+  tailor.write("s.toml", tube_cloth + "seams = [{ close = \"0.5 s\" }]\n" + pinned +
+                             "[simulation]\nduration = \"50 ms\"\n");
+  REQUIRE(tailor.drape("simulate s.toml --out o --frames none --quiet").exit_code == 0);
+  CHECK(content(tailor.path / "o/run.json").find("closes at 0.5 s, after the end of the run") !=
+        std::string::npos);
+}
+
 TEST_CASE("seams make no scene unstable", "[sewing]") {
   const Tailor tailor;
   tailor.write("s.toml", tube_cloth + "seams = [{ close = \"0.1 s\" }]\n" + pinned +

@@ -327,15 +327,18 @@ void add_fabrics(py::module_& m) {
   m.def(
       "air_drag",
       [](const TriangleMesh& mesh, const Vec3& wind, double density, double drag, double skin_friction,
-         int first) {
+         bool quads, int first) {
+        const Air air{wind, density, drag, skin_friction};
         std::vector<std::unique_ptr<Force>> forces;
-        forces.push_back(air_drag(mesh, {wind, density, drag, skin_friction}, first));
+        forces.push_back(quads ? air_drag_of_quads(mesh, air, first) : air_drag(mesh, air, first));
         return Forces{std::move(forces)};
       },
       "mesh"_a, py::kw_only(), "wind"_a = Vec3(0, 0, 0), "density"_a = 1.2, "drag"_a = 1.2,
-      "skin_friction"_a = 0.0, "first_particle"_a = 0,
+      "skin_friction"_a = 0.0, "quads"_a = false, "first_particle"_a = 0,
       "The air around a cloth: wind (3,) [m/s], density [kg/m^3], and the coefficients of a plate square to\n"
-      "the wind and along it. ValueError where a value is negative or not finite.");
+      "the wind and along it. `quads`: of a regular grid of quads, whose corners feel the same as they "
+      "weigh\n"
+      "(choi_ko_mass). ValueError where a value is negative or not finite, or the mesh no such grid.");
   m.def(
       "soft_body",
       [](const Lattice& lattice, const SoftMaterial& material, int first) {

@@ -327,16 +327,20 @@ void Run::note_failure(const StepFailure& failure) {
   record_.failure = noted;
 }
 
-// Those that should have closed by now.
+// Those to be merged that a run leaves open.
 void Run::tell_of_open_seams() {
   for (const Cloth& cloth : simulation_.cloths)
     for (const Cloth::Stitched& open : cloth.seams) {
-      bool told = !open.seam.merge || record_.failure || simulation_.state.time < open.seam.close;
+      const bool early = simulation_.state.time < open.seam.close;
+      bool told = !open.seam.merge || record_.failure || (early && record_.interrupted);
       tell_once(told, "warning: seam " + one_line(open.seam.name) + " of " + cloth.name +
                           " has not closed: it is " +
                           rounded(1000 * open.seam.gap(cloth.embedding, simulation_.state.x), 3) +
-                          " mm open; is a body or a pin between its panels, is it the wrong pair, or the "
-                          "stiffness too low?");
+                          (early ? " mm open, and closes at " + rounded(open.seam.close, 3) +
+                                       " s, after the end of the run: give it a longer duration, or the seam "
+                                       "a shorter close"
+                                 : " mm open; is a body or a pin between its panels, is it the wrong pair, "
+                                   "or the stiffness too low?"));
     }
 }
 

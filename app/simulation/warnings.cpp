@@ -7,9 +7,11 @@
 
 #include "app/scene/fabric_words.h"
 #include "app/simulation/schedule.h"
+#include "app/simulation/unlikely.h"
 #include "mesh/base/errors.h"
 #include "mesh/distance/triangle_crossings.h"
 #include "mesh/triangles/extent.h"
+#include "mesh/triangles/topology.h"
 #include "solver/forces/choi_ko.h"
 
 namespace drape::app {
@@ -135,15 +137,6 @@ void tell_of_idle_keys(const std::string& start, const Names& keys, const std::s
                      " no effect with " + chosen);
 }
 
-// Woven and knitted cloth weighs 10 to 1000 g/m^2.
-void warn_if_heavy(const ClothEntry& entry, Names& messages) {
-  constexpr double heaviest = 10;  // kg/m^2
-  if (entry.fabric.area_density <= heaviest) return;
-  messages.push_back("warning: cloth " + entry.name + ": an area density of " +
-                     rounded(entry.fabric.area_density, 3) +
-                     " kg/m^2 is heavier than any cloth: was it meant in g/m^2?");
-}
-
 // The files of fabrics have damping for models of springs.
 void tell_of_damping(const ClothEntry& entry, Names& messages) {
   if (entry.model != "woven" || !entry.has_own_damping || entry.fabric.damping == 0) return;
@@ -187,6 +180,18 @@ void warn_if_coarse_for_folds(const ClothEntry& entry, const Cloth& cloth, Names
       "the bending length of the fabric, " + rounded(1000 * c, 2) + " mm: folds come out too stiff; " +
       (is_pattern(entry.mesh) ? "give the pattern a smaller edge" : "subdivide the mesh in a modeller") +
       (wrinkles ? "" : ", or set compression = 0.1, so that it wrinkles finer than the mesh"));
+}
+
+// A file with few digits parts what a modeller shows at one place.
+void tell_of_weld(const ClothEntry& entry, const Cloth& cloth, Names& messages) {
+  if (!entry.weld) return;
+  const std::vector<int> first = welded(cloth.mesh.positions);
+  for (int v = 0; v < cloth.mesh.vertex_count(); ++v)
+    if (first[static_cast<std::size_t>(v)] != v) return;
+  messages.push_back(
+      "warning: cloth " + entry.name +
+      ": weld = true joins nothing, since no two of its vertices are at exactly the same place; where "
+      "they are meant to be, merge them by distance in a modeller, or leave weld out");
 }
 
 // How many particles are at exactly the place of another one with which they do not become one in the first step.
@@ -388,11 +393,12 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
   for (const ClothEntry& cloth : scene.cloths) {
     tell_of_idle_keys("cloth " + cloth.name + ": ", cloth.idle_keys, "model = \"" + cloth.model + "\"",
                       simulation.messages);
-    warn_if_heavy(cloth, simulation.messages);
     tell_of_damping(cloth, simulation.messages);
     tell_of_directions(cloth, simulation.messages);
   }
+  tell_of_unlikely_values(scene, simulation.messages);
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
+    tell_of_weld(scene.cloths[k], simulation.cloths[k], simulation.messages);
     warn_if_coarse_for_folds(scene.cloths[k], simulation.cloths[k], simulation.messages);
     if (scene.cloths[k].self_contact)
       check_place(scene.cloths[k], simulation.cloths[k], simulation.state.x, simulation.messages);

@@ -312,7 +312,9 @@ void Assembly::connect(Cloth& cloth, Forces& forces) const {
                                : forces_of(connections, cloth.fabric, cloth.first_particle),
            forces);
   }
-  if (air_) forces.push_back(air_drag(mesh, *air_, cloth.first_particle));
+  if (air_)
+    forces.push_back(cloth.model == ClothModel::choi_ko ? air_drag_of_quads(mesh, *air_, cloth.first_particle)
+                                                        : air_drag(mesh, *air_, cloth.first_particle));
   for (Cloth::Stitched& open : cloth.seams) {
     std::unique_ptr<Force> force = stitches(open.seam, cloth.embedding, state.time);
     open.force = force.get();

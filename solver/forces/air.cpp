@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mesh/base/errors.h"
+#include "mesh/obj/quad_grid.h"
 #include "mesh/triangles/normals.h"
 #include "mesh/triangles/topology.h"
 #include "solver/forces/require.h"
@@ -17,7 +18,7 @@ struct AirLaw {
   static constexpr int particles = 3;
   struct Rest {
     Vec3 normal = Vec3::Zero();  // of length 1, or 0 where the triangle has no area
-    double area = 0;             // m^2
+    double area = 0;             // m^2, as far as this triangle counts
   };
   using Common = Air;
 
@@ -61,7 +62,10 @@ struct AirLaw {
 
 class AirDrag final : public StencilForce<AirLaw> {
  public:
-  AirDrag(std::vector<Element> triangles, const Air& air) : StencilForce(std::move(triangles), air) {}
+  // Of the area of each triangle `share` counts.
+  AirDrag(const TriangleMesh& mesh, const std::vector<Triangle>& triangles, double share, const Air& air,
+          int first)
+      : StencilForce(elements_of(mesh, triangles, share, first), air), share_(share) {}
 
   bool begin_step(const StepStart& start) override {
     change_elements([&](Element& e) {
@@ -69,7 +73,7 @@ class AirDrag final : public StencilForce<AirLaw> {
         const int i = 3 * e.particles[k];
         return Vec3(start.x.segment<3>(i) + start.ahead * start.v.segment<3>(i));
       };
-      e.rest = rest_of(corner(0), corner(1), corner(2));
+      e.rest = rest_of(corner(0), corner(1), corner(2), share_);
     });
     return false;
   }
@@ -82,11 +86,24 @@ class AirDrag final : public StencilForce<AirLaw> {
     });
   }
 
-  static AirLaw::Rest rest_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+ private:
+  static std::vector<Element> elements_of(const TriangleMesh& mesh, const std::vector<Triangle>& triangles,
+                                          double share, int first) {
+    std::vector<Element> elements;
+    for (const Triangle& v : triangles) {
+      const auto corner = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(v[k])]; };
+      elements.push_back({.particles = {first + v[0], first + v[1], first + v[2]},
+                          .rest = rest_of(corner(0), corner(1), corner(2), share)});
+    }
+    return elements;
+  }
+  static AirLaw::Rest rest_of(const Vec3& a, const Vec3& b, const Vec3& c, double share) {
     const Vec3 normal = twice_area_normal(a, b, c);
     const double twice = normal.norm();
-    return twice > 0 ? AirLaw::Rest{normal / twice, 0.5 * twice} : AirLaw::Rest{};
+    return twice > 0 ? AirLaw::Rest{normal / twice, 0.5 * share * twice} : AirLaw::Rest{};
   }
+
+  double share_;
 };
 
 }  // namespace
@@ -100,14 +117,17 @@ void check(const Air& air) {
 
 std::unique_ptr<Force> air_drag(const TriangleMesh& mesh, const Air& air, int first) {
   check(air);
-  std::vector<StencilForce<AirLaw>::Element> triangles;
-  for (int t : counted_triangles(mesh)) {
-    const Triangle& v = mesh.triangles[static_cast<std::size_t>(t)];
-    const auto corner = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(v[k])]; };
-    triangles.push_back({.particles = {first + v[0], first + v[1], first + v[2]},
-                         .rest = AirDrag::rest_of(corner(0), corner(1), corner(2))});
-  }
-  return std::make_unique<AirDrag>(std::move(triangles), air);
+  std::vector<Triangle> triangles;
+  for (int t : counted_triangles(mesh)) triangles.push_back(mesh.triangles[static_cast<std::size_t>(t)]);
+  return std::make_unique<AirDrag>(mesh, triangles, 1, air, first);
+}
+
+std::unique_ptr<Force> air_drag_of_quads(const TriangleMesh& mesh, const Air& air, int first) {
+  check(air);
+  std::vector<Triangle> triangles;
+  for (const auto& [a, b, c, d] : quad_grid(mesh).quads)
+    triangles.insert(triangles.end(), {{a, b, c}, {a, c, d}, {a, b, d}, {b, c, d}});
+  return std::make_unique<AirDrag>(mesh, triangles, 0.5, air, first);
 }
 
 }  // namespace drape

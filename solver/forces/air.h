@@ -28,4 +28,8 @@ void check(const Air& air);
 // Of the triangles of a mesh; vertex 0 is the particle `first_particle` of the system.
 std::unique_ptr<Force> air_drag(const TriangleMesh& mesh, const Air& air, int first_particle = 0);
 
+// Of a regular grid of quads (mesh/obj/quad_grid.h): each is the mean of its two cuts into triangles. So the corners of a
+// flat quad feel as much as each other, as they weigh as much as each other (choi_ko_mass).
+std::unique_ptr<Force> air_drag_of_quads(const TriangleMesh& mesh, const Air& air, int first_particle = 0);
+
 }  // namespace drape

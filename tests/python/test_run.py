@@ -1,7 +1,9 @@
 """Runs: callbacks, what ends them, and what is in the folder then."""
 
 import csv
+import gc
 import math
+import os
 import shutil
 import signal
 import subprocess
@@ -104,6 +106,20 @@ class Callbacks(Runs):
             self.assertIn("<html", simulation.view().page)
         simulation.run(0.05)
         self.assertEqual(list(self.folder.glob("drape-*")), [simulation.folder])
+        self.assertTrue((simulation.folder / "run.json").is_file())
+
+    @unittest.skipUnless(hasattr(os, "fork"), "needs fork")
+    def test_a_fork_leaves_the_folder_of_the_process_it_came_from(self):
+        simulation = self.simulation()
+        simulation.run(0.02)
+        child = os.fork()
+        if child == 0:
+            try:
+                del simulation
+                gc.collect()
+            finally:
+                os._exit(0)
+        os.waitpid(child, 0)
         self.assertTrue((simulation.folder / "run.json").is_file())
 
     def test_what_ended_a_run_comes_before_what_its_files_say_then(self):

@@ -199,6 +199,7 @@ def air_drag(
     density: float = ...,
     drag: float = ...,
     skin_friction: float = ...,
+    quads: bool = ...,
     first_particle: int = ...,
 ) -> Forces: ...
 def soft_body(lattice: Lattice, material: SoftMaterial, first_particle: int = ...) -> Forces: ...

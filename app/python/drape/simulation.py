@@ -21,6 +21,12 @@ Callback = Callable[[_drape.RunStep], Union[bool, np.bool_, None]]
 _Begun = Tuple[_drape.Run, Path, Optional[Callable[[], Any]]]
 
 
+def _remove(folder: str, owner: int) -> None:
+    """Removes a temporary folder, unless this process is a fork of the one that made it."""
+    if os.getpid() == owner:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
 class Simulation(_drape.Simulation):
     """A scene made ready to run.
 
@@ -116,7 +122,7 @@ class Simulation(_drape.Simulation):
         if out is not None:
             return _drape.Run(self, out, frames, duration), out, None
         folder = tempfile.mkdtemp(prefix="drape-")
-        forget = weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+        forget = weakref.finalize(self, _remove, folder, os.getpid())
         try:
             return _drape.Run(self, folder, frames, duration), Path(folder), forget
         except BaseException:

@@ -1,0 +1,64 @@
+#include "app/simulation/unlikely.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace drape::app {
+namespace {
+
+// Woven and knitted cloth weighs 10 to 1000 g/m^2.
+void tell_of_area_density(const ClothEntry& entry, Names& messages) {
+  constexpr double heaviest = 10;  // kg/m^2
+  if (entry.fabric.area_density <= heaviest) return;
+  messages.push_back("warning: cloth " + entry.name + ": an area density of " +
+                     rounded(entry.fabric.area_density, 3) +
+                     " kg/m^2 is heavier than any cloth: was it meant in g/m^2?");
+}
+
+// Yarns break at strains of 3 to 50 %, and knitted cloth at twice its length or three times.
+void tell_of_tear(const ClothEntry& entry, Names& messages) {
+  constexpr double largest = 3;
+  if (!entry.tear || *entry.tear <= largest) return;
+  messages.push_back("warning: cloth " + entry.name + ": tear = " + rounded(*entry.tear, 4) +
+                     " is a strain of " + rounded(100 * *entry.tear, 4) +
+                     " %, which no cloth bears: was it meant in percent, \"" + rounded(*entry.tear, 4) + " %\"?");
+}
+
+// A rope of polyamide as thick as an arm weighs 6 kg/m.
+void tell_of_line_density(const RopeEntry& entry, Names& messages) {
+  constexpr double heaviest = 10;  // kg/m
+  if (entry.material.mass_per_length <= heaviest) return;
+  messages.push_back("warning: rope " + entry.name + ": a mass of " +
+                     rounded(entry.material.mass_per_length, 3) +
+                     " kg/m is heavier than any rope: was it meant in g/m?");
+}
+
+// Cloth on most things has 0.2 to 0.8, rubber up to 4.
+void tell_of_friction(const std::string& of, double friction, Names& messages) {
+  constexpr double largest = 5;
+  if (friction <= largest) return;
+  messages.push_back("note: " + of + ": with a friction of " + rounded(friction, 4) +
+                     " nothing slips; cloth has 0.2 to 0.8: was a percentage meant?");
+}
+
+}  // namespace
+
+void tell_of_unlikely_values(const Scene& scene, Names& messages) {
+  for (const ClothEntry& cloth : scene.cloths) {
+    tell_of_area_density(cloth, messages);
+    tell_of_tear(cloth, messages);
+    if (cloth.self_contact) tell_of_friction("cloth " + cloth.name, cloth.self.friction, messages);
+  }
+  for (const RopeEntry& rope : scene.ropes) {
+    tell_of_line_density(rope, messages);
+    if (rope.self_contact) tell_of_friction("rope " + rope.name, rope.self.friction, messages);
+  }
+  for (const SoftEntry& soft : scene.softs)
+    if (soft.self_contact) tell_of_friction("soft body " + soft.name, soft.self.friction, messages);
+  for (const ObstacleEntry& body : scene.obstacles)
+    tell_of_friction("body " + body.name, body.obstacle.friction.statics, messages);
+  for (const FrictionEntry& pair : scene.frictions)
+    tell_of_friction(pair.between[0] + " on " + pair.between[1], pair.friction, messages);
+}
+
+}  // namespace drape::app
