@@ -28,6 +28,9 @@ void check(const Obstacle& obstacle) {
   if (!can_react(obstacle.shape))
     throw InputError(where +
                      ": cannot react; give a mass to a body such as a sphere, a box or a closed mesh");
+  if (obstacle.motion.moves())
+    throw InputError(where +
+                     ": has a mass and a motion; a body that moves by what acts on it has no other motion");
   try {
     check(*obstacle.rigid);
   } catch (const InputError& error) {

@@ -35,9 +35,17 @@ void check(const RigidBody& body) {
     throw InputError("mass = " + std::to_string(body.mass) + " kg: a mass is positive");
   if (body.mass < 1e-9)  // lighter than a grain of dust: a mistaken unit, and 1 / m is out of all range
     throw InputError("mass: a body that reacts has a microgram at least");
+  for (const auto& [vector, called] : {std::pair(&body.centre, "centre"),
+                                       {&body.velocity, "velocity"},
+                                       {&body.spin, "spin"},
+                                       {&body.gravity, "gravity"}})
+    if (!vector->allFinite()) throw InputError(std::string(called) + ": three finite numbers are expected");
+  if (!body.inertia.allFinite() ||
+      !((body.inertia - body.inertia.transpose()).norm() <= 1e-9 * body.inertia.norm()))
+    throw InputError("inertia: a symmetric matrix of finite numbers is expected");
   const Eigen::SelfAdjointEigenSolver<Mat3> principal(body.inertia);
   const Vec3& I = principal.eigenvalues();  // ascending
-  if (!body.inertia.allFinite() || !(I[0] > 0))
+  if (!(I[0] > 0))
     throw InputError("inertia: the principal moments are positive, the least is " + std::to_string(I[0]) +
                      " kg m^2");
   if (I[2] > (I[0] + I[1]) * (1 + 1e-9))

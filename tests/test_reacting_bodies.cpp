@@ -277,6 +277,15 @@ TEST_CASE("bodies that cannot be are refused", "[reacting]") {
   o.rigid->inertia = Vec3(1, 1, 3).asDiagonal();
   CHECK_THROWS_WITH(constraints.add(o), Catch::Contains("moment"));
   o.rigid->inertia = Mat3::Identity();
+  o.rigid->inertia(0, 1) = 0.1;
+  CHECK_THROWS_WITH(constraints.add(o), Catch::Contains("symmetric"));
+  o.rigid->inertia = Mat3::Identity();
+  o.rigid->spin[1] = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_WITH(constraints.add(o), Catch::Contains("spin"));
+  o.rigid->spin = Vec3::Zero();
+  o.motion = Motion::constant({1, 0, 0}, Vec3::Zero(), Vec3::Zero(), 0, 1);
+  CHECK_THROWS_WITH(constraints.add(o), Catch::Contains("a mass and a motion"));
+  o.motion = Motion();
   o.shape = Plane{};
   CHECK_THROWS_WITH(constraints.add(o), Catch::Contains("cannot react"));
 }

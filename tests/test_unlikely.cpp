@@ -13,16 +13,18 @@ TEST_CASE("a quantity that is most often a mistake of its unit is told, and a us
   folder.write("c.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0.1 0 0.1\nf 1 2 3\nf 2 4 3\n");
   const auto told = [&](const std::string& text, const std::string& what) {
     const std::string cloth = "[[cloth]]\nname = \"c\"\nmesh = \"c.obj\"\narea_density = \"0.2 kg/m^2\"\n";
-    const Simulation made = make_simulation(read_scene(parse_toml(cloth + text, "s.toml"), {}, folder.path, "s.toml"));
+    const Simulation made =
+        make_simulation(read_scene(parse_toml(cloth + text, "s.toml"), {}, folder.path, "s.toml"));
     return std::any_of(made.messages.begin(), made.messages.end(),
                        [&](const std::string& m) { return m.find(what) != std::string::npos; });
   };
   struct Case {
     std::string usual, unlikely, what;
   };
-  const std::string rope = "[[rope]]\nname = \"r\"\npoints = [[0, 1, 0], [1, 1, 0]]\nsegments = 4\nmass_per_length = ",
-                    plane = "[[obstacle]]\nshape = \"plane\"\nname = \"floor\"\npoint = [0, -1, 0]\nfriction = ",
-                    second = "[[cloth]]\nname = \"d\"\nmesh = \"c.obj\"\ntranslate = [0, 1, 0]\narea_density = ";
+  const std::string
+      rope = "[[rope]]\nname = \"r\"\npoints = [[0, 1, 0], [1, 1, 0]]\nsegments = 4\nmass_per_length = ",
+      plane = "[[obstacle]]\nshape = \"plane\"\nname = \"floor\"\npoint = [0, -1, 0]\nfriction = ",
+      second = "[[cloth]]\nname = \"d\"\nmesh = \"c.obj\"\ntranslate = [0, 1, 0]\narea_density = ";
   const std::vector<Case> cases = {
       {second + "\"200 g/m^2\"\n", second + "200\n", "cloth d: an area density of 200 kg/m^2"},
       {"tear = \"40 %\"\n", "tear = 40\n", "was it meant in percent, \"40 %\"?"},
@@ -44,14 +46,17 @@ TEST_CASE("weld that finds nothing to join says so", "[scene]") {
     folder.write("c.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv " + second +
                               "\nv 0 0 0.1\nv 0.1 0 0.1\nf 1 2 3\nf 4 6 5\n");
     std::string all;
-    const Scene scene = read_scene(parse_toml("[[cloth]]\nmesh = \"c.obj\"\nweld = true\n", "s.toml"), {}, folder.path, "s.toml");
+    const Scene scene = read_scene(parse_toml("[[cloth]]\nmesh = \"c.obj\"\nweld = true\n", "s.toml"), {},
+                                   folder.path, "s.toml");
     for (const std::string& m : make_simulation(scene).messages) all += m + "\n";
     return all;
   };
   CHECK(messages("0.1 0 0").find("weld = true joins nothing") == std::string::npos);
   folder.write("c.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0.1 0 0.1\nf 1 2 3\nf 2 4 3\n");
-  const Scene apart = read_scene(parse_toml("[[cloth]]\nmesh = \"c.obj\"\nweld = true\n", "s.toml"), {}, folder.path, "s.toml");
+  const Scene apart = read_scene(parse_toml("[[cloth]]\nmesh = \"c.obj\"\nweld = true\n", "s.toml"), {},
+                                 folder.path, "s.toml");
   const Names told = make_simulation(apart).messages;
-  CHECK(std::any_of(told.begin(), told.end(),
-                    [](const std::string& m) { return m.find("weld = true joins nothing") != std::string::npos; }));
+  CHECK(std::any_of(told.begin(), told.end(), [](const std::string& m) {
+    return m.find("weld = true joins nothing") != std::string::npos;
+  }));
 }

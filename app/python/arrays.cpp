@@ -108,6 +108,8 @@ Mat3 mat3(const py::handle& from) {
 
 py::object read_only(const Vec3& v) { return locked(Array(py::ssize_t{3}, v.data())); }
 
+py::object read_only(const std::vector<double>& all) { return locked(copied(all)); }
+
 py::object read_only(const Mat3& m) {
   const Mat3 by_rows = m.transpose();
   return locked(Array({py::ssize_t{3}, py::ssize_t{3}}, by_rows.data()));

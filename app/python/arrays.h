@@ -41,6 +41,7 @@ Vec3 vec3(const py::handle& from);
 Mat3 mat3(const py::handle& from);
 py::object read_only(const Vec3& v);
 py::object read_only(const Mat3& m);
+py::object read_only(const std::vector<double>& all);  // (n,)
 
 }  // namespace drape::app::python
 

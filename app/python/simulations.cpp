@@ -256,8 +256,8 @@ void add_simulations(py::module_& m) {
           "state_hash", [](const Whole& whole) { return state_hash(between_steps(whole).state); },
           "16 hexadecimal digits, as in run.json: the same when every bit is")
       .def_property_readonly(
-          "masses", [](const Whole& whole) { return copied(between_steps(whole).system->masses()); },
-          "(n,) [kg], of the particles")
+          "masses", [](const Whole& whole) { return read_only(between_steps(whole).system->masses()); },
+          "(n,) [kg], of the particles: a copy that cannot be written")
       .def_property(
           "record_systems", [](const Whole& whole) { return whole.recording.on; },
           [](Whole& whole, bool on) { whole.recording.on = on; },

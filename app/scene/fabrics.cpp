@@ -109,10 +109,10 @@ NamedFabric read_fabric_file(const Node& root, const std::string& name, KeyNotes
              "keys whose values make virtual tests give what was measured; `drape fit` looks for them");
   table.read("assumed", named.assumed, "keys whose values nobody measured");
   named.tests = read_measured(table);
-  table.require("area_density");
   named.fabric.weave.compression = usual_compression;
   read_fabric(table, named.fabric, named.record);
-  table.finish();
+  table.finish();  // before what is missing: that may be what a key was meant to be
+  table.require("area_density");
   check_marks(table, root, named);
   return named;
 }

@@ -21,7 +21,8 @@ void tell_of_tear(const ClothEntry& entry, Names& messages) {
   if (!entry.tear || *entry.tear <= largest) return;
   messages.push_back("warning: cloth " + entry.name + ": tear = " + rounded(*entry.tear, 4) +
                      " is a strain of " + rounded(100 * *entry.tear, 4) +
-                     " %, which no cloth bears: was it meant in percent, \"" + rounded(*entry.tear, 4) + " %\"?");
+                     " %, which no cloth bears: was it meant in percent, \"" + rounded(*entry.tear, 4) +
+                     " %\"?");
 }
 
 // A rope of polyamide as thick as an arm weighs 6 kg/m.

@@ -168,6 +168,11 @@ class Refusals(Workshop):
         drape.System(drape.masses(sheet, fabric)).add(forces)
         self.refuses("they belong to a system already", drape.System(drape.masses(sheet, fabric)).add, forces)
 
+    def test_what_is_a_copy_cannot_be_written(self):
+        masses = drape.read_scene(self.folder / "scene.toml").masses
+        with self.assertRaisesRegex(ValueError, "read-only"):
+            masses[:] = 1
+
     def test_objs(self):
         path = self.folder / "bad.obj"
         path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
