@@ -35,6 +35,12 @@ class Constraints {
   void pin_to_body(const std::vector<int>& particles, int body, const VecX& x);
   void pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x, double t = 0);
 
+  // These are free from the next step on, with the velocity that they have; those that are not pinned are passed over.
+  void unpin(const std::vector<int>& particles);
+
+  // Between steps: puts the bodies whose motion is prescribed where they are at the time t [s], as a step that ends then does.
+  void stand_at(double t);
+
   // The particle is the middle of something that is as thick as a ball of this radius [m], such as a rope: it rests at
   // the radius and the margin outside of a body. A particle of a cloth has the radius 0. Throws InputError when the
   // radius is negative or not finite.

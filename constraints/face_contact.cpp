@@ -1,5 +1,6 @@
 #include "constraints/face_contact.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <span>
@@ -27,6 +28,10 @@ constexpr double beside = 0.1;  // normals that are met within this share of it 
 constexpr double apart = 0.1;   // of two points at which a body touches a triangle, as such a share
 // A mean of normals, or its part along the triangle, that is shorter than this tells no direction.
 constexpr double level = 0.1;
+// A normal that is nearer to the body's own than this cosine says is that of a smooth place, not of a corner or a rim.
+constexpr double smooth = 0.99;
+// What a triangle comes to within a step counts as the same side of a body where the normals are nearer than this.
+constexpr double alike = 0.5;
 const Vec3 middle = Vec3::Constant(1.0 / 3);
 
 struct Corners {
@@ -36,11 +41,18 @@ struct Corners {
         b(x.segment<3>(3 * face.particles[1])),
         c(x.segment<3>(3 * face.particles[2])) {}
   Vec3 middle() const { return (a + b + c) / 3; }
+  Vec3 at(const Vec3& weights) const { return weights[0] * a + weights[1] * b + weights[2] * c; }
+  Vec3 normal() const { return twice_area_normal(a, b, c).stableNormalized(); }
   double radius() const {
     const Vec3 m = middle();
     return std::sqrt(std::max({(a - m).squaredNorm(), (b - m).squaredNorm(), (c - m).squaredNorm()}));
   }
 };
+
+// The least turn that takes one direction to the other.
+Mat3 least_turn(const Vec3& from, const Vec3& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+}
 
 struct Lowest {
   Vec3 point;
@@ -106,14 +118,14 @@ Lowest lowest_point(const Corners& t, const Distance& distance, double enough, c
   // All of the triangle is farther off than `enough`.
   if (const double least = here.distance - size; least > enough) return {p, weights, {least, here.normal}};
   if (likely != weights) {
-    const Vec3 q = likely[0] * t.a + likely[1] * t.b + likely[2] * t.c;
+    const Vec3 q = t.at(likely);
     if (const SurfacePoint there = distance(q); there.distance < here.distance) {
       p = q;
       here = there;
       weights = likely;
     }
   }
-  MetNormals met(twice_area_normal(t.a, t.b, t.c).stableNormalized());
+  MetNormals met(t.normal());
   met.add(p, here, here.normal);
   double step = size;
   for (int i = 0; i < most_steps && step > (here.distance > enough ? rough : fine) * size; ++i) {
@@ -141,6 +153,37 @@ Lowest lowest_point(const Corners& t, const Distance& distance, double enough, c
   }
   here.normal = met.straightest(p, here.normal, beside * size, most_met);
   return {p, weights, here};
+}
+
+double half_margin(const MovingBody& body) { return 0.5 * body.obstacle().margin; }
+
+// From where the body touches the triangle when the step begins, to where it will when the step ends. anew: at the lowest
+// point then, where that may be another one; else at the same point. A body that does not react turns with its normal: it
+// feels no moment, and on corners that cloth hangs over at rest the lowest point at the end would be now this, now that.
+FacePoint foresee(const MovingBody& body, const FacePoint& begins, const Corners& now, const Corners& then,
+                  bool anew) {
+  const double offset = half_margin(body);
+  const Vec3 &w = begins.weights, &place = begins.place;
+  const SurfacePoint here = body.at_start(place);
+  const bool corner = begins.normal.dot(body.start().direction_to_world(here.normal)) < smooth;
+  if (corner || !body.reacting()) {
+    const ContactPlane carried = body.plane(place, here, body.carried(place));
+    const Vec3 n = body.reacting() ? Vec3(least_turn(now.normal(), then.normal()) * begins.normal)
+                                   : body.turned(begins.normal);
+    return {w, place, n, carried.gap + offset};
+  }
+  const Vec3 centre = body.reacting()->centre(), shift = then.at(w) - place - (body.carried(centre) - centre);
+  if (anew && std::max(shift.norm(), body.travel(place, then.at(w))) > beside * now.radius()) {
+    const auto at_end = [&](const Vec3& p) { return body.near_end(p); };
+    const Lowest end = lowest_point(then, at_end, offset, w);
+    const Vec3& n = end.surface.normal;
+    if (n.dot(body.turned(begins.normal)) > alike && !end.surface.covered) {
+      const Vec3 p = now.at(end.weights);
+      return {end.weights, p, n, end.surface.distance - offset - n.dot(end.point - body.carried(p))};
+    }
+  }
+  const ContactPlane plane = body.plane(place, here, then.at(w));
+  return {w, place, plane.normal, plane.gap + offset};
 }
 
 // Sets push and slip by the motion that was found, and returns the gap [m].
@@ -286,18 +329,18 @@ void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX
       static_cast<std::size_t>(body.number()) * faces_.size() + static_cast<std::size_t>(f);
   double& room = room_[entry];
   Vec3& likely = likely_[entry];
-  const double offset = 0.5 * body.obstacle().margin, reach = offset + travel(face);
+  const double offset = half_margin(body), reach = offset + travel(face);
   const auto& corners = face.particles;
   if (room > reach || std::any_of(corners.begin(), corners.end(), [&](int i) { return clamped_[i] != 0; }))
     return;
-  const Corners now(face, x);
+  const Corners now(face, x), then(face, x_new);
   const auto at_start = [&](const Vec3& p) { return body.near_start(p); };
   const auto at_end = [&](const Vec3& p) { return body.near_end(p); };
   const Lowest start = lowest_point(now, at_start, reach, likely);
   likely = start.weights;
   room = start.surface.distance;
   if (room > reach) return;
-  if (room > offset && lowest_point(Corners(face, x_new), at_end, offset, likely).surface.distance > offset)
+  if (room > offset && lowest_point(then, at_end, offset, likely).surface.distance > offset)
     return;                           // the triangle passes by
   if (start.surface.covered) return;  // its vertices go with the body
 
@@ -314,35 +357,32 @@ void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX
   const FaceContact* const other = touches_still(last.farthest)  ? last.farthest
                                    : touches_still(last.nearest) ? last.nearest
                                                                  : nullptr;
-  const auto touch = [&](const Vec3& weights, const Vec3& place, const FaceContact* old) {
-    FaceContact contact =
-        make(f, body, weights, place, start.surface.normal, recovery, old ? old : last.nearest);
+  const auto touch = [&](const Vec3& weights, const Vec3& place, bool anew, const FaceContact* old) {
+    const FacePoint point = foresee(body, {weights, place, start.surface.normal, 0}, now, then, anew);
+    FaceContact contact = make(f, body, point, recovery, old ? old : last.nearest);
     contact.active = contact.gap_at(x_new) < 0 || (old && old->active);
     if (old) contact.damper = old->rubbing();
     found.push_back(contact);
   };
-  touch(start.weights, start.point, last.nearest != other ? last.nearest : nullptr);
-  if (other) touch(other->weights, other->at(x), other);
+  touch(start.weights, start.point, true, last.nearest != other ? last.nearest : nullptr);
+  if (other) touch(other->weights, other->at(x), false, other);
 }
 
-FaceContact FaceContacts::make(int f, const MovingBody& body, const Vec3& weights, const Vec3& place,
-                               const Vec3& normal, double recovery, const FaceContact* old) const {
-  const ContactPlane plane = body.plane(place, body.at_start(place), body.carried(place));
-  const double margin = body.obstacle().margin, offset = 0.5 * margin, gap = plane.gap + margin - offset;
-  const double most_sunk = old ? old->sunk - recovery : begins_ ? -gap : 0.0;
-  const double sunk = std::max(std::min(most_sunk, -gap), 0.0);
-  const double depth = std::max(gap + sunk, -std::max(recovery, offset));
-  const Vec3 turned = body.turned(normal);
+FaceContact FaceContacts::make(int f, const MovingBody& body, const FacePoint& point, double recovery,
+                               const FaceContact* old) const {
+  const double most_sunk = old ? old->sunk - recovery : begins_ ? -point.gap : 0.0;
+  const double sunk = std::max(std::min(most_sunk, -point.gap), 0.0);
+  const double gap = std::max(point.gap + sunk, -std::max(recovery, half_margin(body)));
   return {.body = body.number(),
           .face = f,
           .particles = faces_[f].particles,
-          .weights = weights,
+          .weights = point.weights,
           .stiffness = faces_[f].stiffness,
-          .normal = turned,
-          .place = place,
-          .gap = depth - turned.dot(body.carried(place)),
+          .normal = point.normal,
+          .place = point.place,
+          .gap = gap - point.normal.dot(body.carried(point.place)),
           .sunk = sunk,
-          .body_velocity = plane.body_velocity,
+          .body_velocity = body.velocity(point.place),
           .friction = body.obstacle().friction.kinetic};
 }
 

@@ -3,6 +3,9 @@
 // triangle keeps the body off.
 //   p = sum w_k x_k    the point of the triangle that is nearest to the body, or deepest in it. A second contact
 //                      stays at the point of the step before as long as that touches and is not near the first.
+//   n                  the body's normal there. Of a body that reacts both are those where the step is foreseen to end, at
+//                      x + h v: so what pushes a ball goes through its centre, however it moves and turns within the step.
+//                      At a corner or a rim of such a body n is the triangle's own, and turns with that.
 //   g = g_0 + n . (sum w_k (x_k - x_k0) - h v_b)     the gap of p to the surface, offset by half the margin:
 //                                                    a triangle touches nothing where its vertices rest
 //   E = k/2 g^2 for g < 0,   f_k = -k g w_k n,   K_kl = k w_k w_l n n^T
@@ -81,6 +84,12 @@ struct FaceContact {
   double mobility(const StepMotion& step) const;
 };
 
+// Where a body touches a triangle, as the end of a step is foreseen.
+struct FacePoint {
+  Vec3 weights, place, normal;  // place: at the start of the step [m]; normal: at the end
+  double gap;                   // that the point would have if the body carried it along [m]
+};
+
 class FaceContacts {
  public:
   void add(const std::vector<ClothFace>& faces);
@@ -129,8 +138,8 @@ class FaceContacts {
   void look(int face, const MovingBody& body, const VecX& x, const VecX& x_new, double recovery,
             std::vector<FaceContact>& found);
   // old: the contact of the step before that it goes on from; null where it is a new one.
-  FaceContact make(int face, const MovingBody& body, const Vec3& weights, const Vec3& place,
-                   const Vec3& normal, double recovery, const FaceContact* old) const;
+  FaceContact make(int face, const MovingBody& body, const FacePoint& point, double recovery,
+                   const FaceContact* old) const;
   // Of the contacts of a face in the last completed step, those whose points are nearest to these weights and
   // farthest from them. Null where it had none.
   struct Before {

@@ -16,6 +16,12 @@ const SurfaceDistance* MovingBody::surface() const {
   return mesh ? mesh->get() : nullptr;
 }
 
+void MovingBody::stand_at(double t) {
+  if (reacting_) return;
+  now_ = obstacle_.motion.at(t);
+  move(obstacle_.shape, t, t);
+}
+
 void MovingBody::begin_step(double t, double h) {
   h_ = h;
   move(obstacle_.shape, t, t + h);
@@ -109,9 +115,9 @@ ContactPlane MovingBody::plane_at(const Vec3& x, const Vec3& normal, double gap)
 ContactPlane MovingBody::plane(const Vec3& x, const SurfacePoint& at_start, const Vec3& x_new,
                                double radius) const {
   const double offset = obstacle_.margin + radius;
-  if (!turns_ && !deforms()) return plane_at(x, at_start.normal, at_start.distance - offset);
+  if (!turns_ && !deforms() && !reacting_) return plane_at(x, at_start.normal, at_start.distance - offset);
   // Where the particle will be in the body's frame: a particle that slides on a turning body does not turn
-  // with it, and the tilt of the normal would drive it round.
+  // with it, and the tilt of the normal would drive it round, as it would turn a body that the particle pushes.
   const Vec3 X = drape::carried(obstacle_.shape, start_.to_body(x)), way = end_.to_body(x_new) - X;
   const Vec3 n = deforms() ? closest(obstacle_.shape, X, 1).normal : at_start.normal;
   const Vec3 slid = way - n.dot(way) * n;

@@ -8,7 +8,7 @@
 //             with it
 //   plane     the surface at the end of the step that is nearest to where the particle will have slid by
 //             x + h v: its normal n, and its gap from the carried point. v.n = v_b.n - gap / h arrives
-//             exactly on it.
+//             exactly on it. (Of a body that does not turn, deform or react, the surface at the start.)
 //                                                    [Baraff & Witkin 1998, 5.2, in the frame of the body]
 // x [m], v [m/s], t, h [s].
 #pragma once
@@ -47,6 +47,8 @@ class MovingBody {
   Vec3 vertex_at_start(int v) const;
   Vec3 vertex_at_end(int v) const;
 
+  // Between steps: puts a body whose motion is prescribed where it is at the time t [s].
+  void stand_at(double t);
   void begin_step(double t, double h);
   bool end_step();  // false: the reaction has not converged. A step that is abandoned does not move the body.
   // go_back() makes the body what it was at the last keep(), whatever steps have ended since.

@@ -13,6 +13,10 @@ constexpr double facing = 0.9;
 constexpr double still = 1e-9;  // m/s: a smaller slip is not told from none
 // Bodies that leave too little room by more than this have closed on what is between them [m].
 constexpr double closed = 1e-9;
+// Two surfaces are nearest to each other where one normal is as far from the opposite of the other as this cosine says.
+constexpr double opposite = 1 - 1e-6;
+// Steps between two surfaces that come nearer to that place by less than this share lead too far to be foretold.
+constexpr double slowest = 0.99;
 // The angle between one normal and the opposite of another up to which their bodies hold what is between them even without
 // friction [rad]: as much as the planes of one contact have to differ by.
 constexpr double nearly_opposite = 0.1;
@@ -38,6 +42,34 @@ Squeeze squeeze(const MovingBody& a, const MovingBody& b, const Vec3& x) {
       std::atan(a.obstacle().friction.kinetic) + std::atan(b.obstacle().friction.kinetic);  // rad
   return {at_a, at_b, way, (v_a - v_b).dot(at_a.normal - at_b.normal) > still,
           -at_a.normal.dot(at_b.normal) >= std::cos(std::clamp(held, nearly_opposite, widest_held))};
+}
+
+// Where the bodies are nearest to each other beside a particle that they pinch: what lies between them is a layer there, and a
+// ball that rolls on it does not climb over each of its particles. Steps from one surface to the other and back come nearer to
+// that place by a constant share, so two of them tell where they lead [Irons & Tuck 1969]. `beside` is the touch at the particle itself.
+Touch nearest_pair(const MovingBody& a, const MovingBody& b, const Vec3& on_a, const Touch& beside,
+                   double offsets) {
+  const auto step = [&](const Vec3& from) {
+    const SurfacePoint to_b = b.near_start(from);
+    const Vec3 on_b = from - to_b.distance * to_b.normal;
+    const SurfacePoint back = a.near_start(on_b);
+    return Vec3(on_b - back.distance * back.normal);
+  };
+  Vec3 p = on_a;
+  for (int round = 0; round < 3; ++round) {
+    const Vec3 second = step(p), third = step(second), one = second - p, two = third - second;
+    const double share = one.squaredNorm() > 0 ? two.dot(one) / one.squaredNorm() : 0;
+    if (!(share >= 0 && share < slowest)) return beside;
+    p = second + two / (1 - share);
+    const SurfacePoint at_a = a.near_start(p);
+    p -= at_a.distance * at_a.normal;
+    const SurfacePoint at_b = b.near_start(p);
+    if (-at_a.normal.dot(at_b.normal) < opposite) continue;
+    const double gap = at_b.distance - offsets;
+    if (at_b.covered || gap > beside.gap) return beside;
+    return {p - 0.5 * at_b.distance * at_b.normal, (at_b.normal - at_a.normal).normalized(), gap};
+  }
+  return beside;
 }
 
 }  // namespace
@@ -78,17 +110,19 @@ void ParticleContacts::add_nip(const Bodies& bodies, const StepMotion& step, con
   if (at_a.covered || at_b.covered || gap > reach || at_a.normal.dot(at_b.normal) > -facing) return;
   clearance(a, particle) = at_a.distance;
   clearance(b, particle) = at_b.distance;
+  const Touch beside{x, (at_b.normal - at_a.normal).normalized(), gap};
   const auto roughness = [&bodies](int o) { return bodies[o].obstacle().friction.kinetic; };
   const bool a_holds = roughness(a) != roughness(b) ? roughness(a) > roughness(b) : !bodies[a].reacting();
   const int holder = a_holds ? a : b;
   const bool slides = contact.grip == Grip::slide && contact.plane[0].obstacle == holder;
   nip_of_[particle] = static_cast<int>(nips_.size());
-  nips_.push_back({.particle = particle,
-                   .a = a,
-                   .b = b,
-                   .holder = holder,
-                   .runs = slides && step.foresight == Foresight::ahead,
-                   .touch = {x, (at_b.normal - at_a.normal).normalized(), gap}});
+  nips_.push_back(
+      {.particle = particle,
+       .a = a,
+       .b = b,
+       .holder = holder,
+       .runs = slides && step.foresight == Foresight::ahead,
+       .touch = nearest_pair(bodies[a], bodies[b], x - at_a.distance * at_a.normal, beside, offsets)});
 }
 
 // Makes the contact a clamp where two bodies close on its particle, or have closed on it.

@@ -27,6 +27,14 @@ void PinSet::pin_along(const std::vector<int>& particles, const Motion& motion, 
   pin(particles);
 }
 
+void PinSet::unpin(const std::vector<int>& particles) {
+  std::vector<int> sorted = particles;
+  std::ranges::sort(sorted);
+  const auto is_among = [&](int i) { return std::ranges::binary_search(sorted, i); };
+  std::erase_if(moving_, [&](const MovingPin& pin) { return is_among(pin.particle); });
+  std::erase_if(pinned_, is_among);
+}
+
 void PinSet::renumber(const std::vector<int>& number_of) {
   const auto number = [&](int i) { return number_of[i]; };
   std::vector<int> first(number_of.size(), -1);  // new number -> the lowest pinned particle that gets it

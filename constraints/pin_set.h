@@ -23,6 +23,7 @@ class PinSet {
   void pin(const std::vector<int>& particles);
   void pin_to_body(const std::vector<int>& particles, const MovingBody& body, const VecX& x);
   void pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x, double t);
+  void unpin(const std::vector<int>& particles);  // those that are not pinned are passed over
   // Particle i gets the number number[i]; where several pins become one, the pin of the lowest particle
   // stays.
   void renumber(const std::vector<int>& number);

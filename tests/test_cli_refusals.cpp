@@ -33,7 +33,7 @@ TEST_CASE("bad input: one line, exit code 2, nothing written", "[cli]") {
   shop.write("pin.toml", shop.cloth + "pins = [{ group = \"collar\" }]\n");
   shop.write("box.toml", shop.cloth + "pins = [{ box = [[5, 5, 5], [6, 6, 6]] }]\n");
   shop.write("body.toml", shop.cloth + "[[obstacle]]\nshape = \"mesh\"\nmesh = \"none.obj\"\n");
-  shop.write("weightless.toml", "area_densty = \"120 g/m^2\"\nbend = \"8 uN.m\"\n");
+  shop.write("weightless.toml", "bend = \"8 uN.m\"\n");
   shop.write("syntax.toml", shop.cloth + "bend = = 3\n");
   shop.write("binary.toml", std::string("a\0b", 3));
   fs::create_directory(shop.path / "locked");

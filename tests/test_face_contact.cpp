@@ -189,7 +189,7 @@ TEST_CASE("a coarse cloth on a sharp table keeps off its rims and corners", "[fa
 
 TEST_CASE("a sheet that is thrown at a free body gives it what it loses, also where a step is cut short",
           "[faces]") {
-  int rescues = 0;
+  int rescues = 0, guarded = 0;  // the latter of 36 runs
   for (const ClothModel model : {ClothModel::woven, ClothModel::noh_jung})
     for (const int n : {7, 13, 25})
       for (const int kind : kinds)
@@ -219,17 +219,21 @@ TEST_CASE("a sheet that is thrown at a free body gives it what it loses, also wh
               p += both.system->masses()[i] * both.state.v.segment<3>(3 * i);
             return p;
           };
+          bool stopped = false;  // by what knows no momentum
           while (both.state.time < 0.0999) {
             const StepReport report = both.advance(0.01);
             REQUIRE(report.done);
             CHECK(report.converged);
             rescues += report.rescues;
+            stopped = stopped || report.guarded > 0;
           }
+          guarded += stopped;
           const Vec3 expected = cloth_mass * speed + (cloth_mass + mass) * both.state.time * g;
-          CHECK((momentum() - expected).norm() < 2e-4 * cloth_mass * speed.norm());
+          CHECK((momentum() - expected).norm() < (stopped ? 2e-3 : 3e-4) * cloth_mass * speed.norm());
           CHECK(both.constraints->bodies()[0].reacting()->velocity().norm() > 0.008);
         }
   CHECK(rescues > 3);
+  CHECK(guarded <= 3);
 }
 
 TEST_CASE("what begins within the margin of a body comes out to it and gains no speed", "[faces]") {

@@ -27,6 +27,7 @@ TEST_CASE("a quantity that is most often a mistake of its unit is told, and a us
       second = "[[cloth]]\nname = \"d\"\nmesh = \"c.obj\"\ntranslate = [0, 1, 0]\narea_density = ";
   const std::vector<Case> cases = {
       {second + "\"200 g/m^2\"\n", second + "200\n", "cloth d: an area density of 200 kg/m^2"},
+      {"bend = \"8 uN.m\"\n", "bend = 8\n", "cloth c: a bending rigidity of 8 N.m"},
       {"tear = \"40 %\"\n", "tear = 40\n", "was it meant in percent, \"40 %\"?"},
       {rope + "\"65 g/m\"\n", rope + "65\n", "rope r: a mass of 65 kg/m"},
       {plane + "0.5\n", plane + "50\n", "body floor: with a friction of 50 nothing slips"},

@@ -88,7 +88,7 @@ std::vector<BodyRecord> body_records(const Simulation& simulation) {
                       {}};
     if (const auto* const plane = std::get_if<Plane>(&body.obstacle().shape)) record.plane = *plane;
     if (const ReactingBody* const r = body.reacting())
-      record.reacting = {body.obstacle().rigid->mass, r->centre(), r->velocity(), r->momentum()};
+      record.reacting = {body.obstacle().rigid->mass, r->centre(), r->velocity(), r->spin(), r->momentum()};
     records.push_back(record);
   }
   return records;

@@ -84,6 +84,7 @@ Json bodies_json(const std::vector<BodyRecord>& bodies) {
       json.emplace_back("mass", b.reacting->mass);
       json.emplace_back("position", vector_json(b.reacting->position));
       json.emplace_back("velocity", vector_json(b.reacting->velocity));
+      json.emplace_back("spin", vector_json(b.reacting->spin));
       json.emplace_back("momentum", vector_json(b.reacting->momentum));
     }
     list.emplace_back(std::move(json));

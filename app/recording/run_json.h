@@ -48,8 +48,8 @@ struct BodyRecord {
   Json::Members contact = {};     // friction, margin, restitution
 
   struct Reacting {
-    double mass;                        // kg
-    Vec3 position, velocity, momentum;  // m, m/s, N s, of the centre of mass at the end
+    double mass;                              // kg
+    Vec3 position, velocity, spin, momentum;  // m, m/s, rad/s, N s, of the centre of mass at the end
   };
   std::optional<Reacting> reacting;
 };

@@ -206,12 +206,15 @@ bool Run::at_rest(const StepRow& row) const {
          !(row.time < last_motion_);
 }
 
-// Neither cloth nor body with a mass moves. [m/s]
+// Neither cloth nor body with a mass moves, nor turns. [m/s]
 bool Run::slow(double cloth_speed) const {
   if (!(cloth_speed < wanted_.settle_speed)) return false;
-  for (const MovingBody& body : simulation_.constraints->bodies())
-    if (body.reacting() && !(body.reacting()->velocity().norm() < wanted_.settle_speed)) return false;
-  return true;
+  return std::ranges::none_of(simulation_.constraints->bodies(), [&](const MovingBody& body) {
+    const ReactingBody* const r = body.reacting();
+    if (!r) return false;
+    const double size = 0.5 * bounds_of(body.obstacle().shape).diagonal().norm();
+    return !(r->velocity().norm() + size * r->spin().norm() < wanted_.settle_speed);
+  });
 }
 
 void Run::tell_once(bool& told, const std::string& line) {

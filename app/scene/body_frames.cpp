@@ -90,11 +90,34 @@ void want_count(const fs::path& file, int count, const char* noun, const Obstacl
                      " vertices; the frames of a body must have the vertices of its mesh, in the same order");
 }
 
+double mean_edge(const TriangleMesh& mesh) {  // m
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) sum += (mesh.positions[t[k]] - mesh.positions[t[(k + 1) % 3]]).norm();
+  return sum / (3 * std::max(mesh.triangle_count(), 1));
+}
+
+// Bodies breathe, and do not tear: where edges become several times as long, the file is most often another one than was meant.
+void want_same_edges(const TriangleMesh& frame, const fs::path& file, const ObstacleEntry& entry,
+                     const TriangleMesh& rest) {
+  constexpr double most = 3;
+  const double now = mean_edge(frame), then = mean_edge(rest);
+  if (now <= most * then && then <= most * now) return;
+  throw InputError(
+      file.string() + ": its edges are " + rounded(now / then, 3) +
+      " times as long as those of the rest mesh " + entry.mesh.string() +
+      " on average; are its vertices in another order (Blender's exporter has 'Keep Vertex Order'), or "
+      "is it in another unit?");
+}
+
 void add(MeshFrames& frames, double time, std::vector<Vec3> positions, const fs::path& file,
-         const ObstacleEntry& entry) {
+         const ObstacleEntry& entry, const TriangleMesh& rest) {
   TriangleMesh frame;
   frame.positions = std::move(positions);
+  frame.triangles = rest.triangles;
   frame = placed(std::move(frame), entry.placement, file.string());
+  if (std::ranges::all_of(frame.positions, [](const Vec3& p) { return p.allFinite(); }))
+    want_same_edges(frame, file, entry, rest);
   try {
     frames.add(time, frame.positions);
   } catch (const InputError& error) {
@@ -161,14 +184,14 @@ std::shared_ptr<const MeshFrames> load_frames(const ObstacleEntry& entry, const 
     want_count(files[0], cache.points(), "points", entry, rest.vertex_count());
     for (int k = 0; k < cache.samples(); ++k) {
       cache.read(positions);
-      add(*frames, time(k * cache.spacing()), positions, files[0], entry);
+      add(*frames, time(k * cache.spacing()), positions, files[0], entry, rest);
     }
     return frames;
   }
   for (std::size_t k = 0; k < files.size(); ++k) {
     positions = read_obj(files[k]).positions;
     want_count(files[k], static_cast<int>(positions.size()), "vertices", entry, rest.vertex_count());
-    add(*frames, time(static_cast<double>(k)), positions, files[k], entry);
+    add(*frames, time(static_cast<double>(k)), positions, files[k], entry, rest);
   }
   return frames;
 }

@@ -93,9 +93,12 @@ ClothPart load_cloth(const ClothEntry& entry, Names& messages) {
   place_panels(entry, part.mesh, messages);
   const Placement rest_of_it{.rotation = entry.placement.rotation, .translate = entry.placement.translate};
   part.mesh = placed(std::move(part.mesh), rest_of_it, entry.mesh.string());
-  part.report = examine(part.mesh, part.weld);
-  add_messages(*part.report, entry.mesh.string(), messages);
   part.seams = seam_plans(entry, part.mesh);
+  std::vector<int> sewn;
+  for (const SeamPlan& seam : part.seams)
+    for (const auto& [one, two] : seam.pairs) sewn.insert(sewn.end(), {one, two});
+  part.report = examine(part.mesh, part.weld, sewn);
+  add_messages(*part.report, entry.mesh.string(), messages);
   return part;
 }
 

@@ -15,6 +15,15 @@ void tell_of_area_density(const ClothEntry& entry, Names& messages) {
                      " kg/m^2 is heavier than any cloth: was it meant in g/m^2?");
 }
 
+// Leather of a few millimetres has 1 to 10 mN m.
+void tell_of_bend(const ClothEntry& entry, Names& messages) {
+  constexpr double stiffest = 0.1;  // N m
+  if (entry.fabric.bend_spring || entry.fabric.bend <= stiffest) return;
+  messages.push_back("warning: cloth " + entry.name + ": a bending rigidity of " +
+                     rounded(entry.fabric.bend, 3) +
+                     " N.m is stiffer than any cloth, which has 1 to 1000 uN.m: was it meant in uN.m?");
+}
+
 // Yarns break at strains of 3 to 50 %, and knitted cloth at twice its length or three times.
 void tell_of_tear(const ClothEntry& entry, Names& messages) {
   constexpr double largest = 3;
@@ -47,6 +56,7 @@ void tell_of_friction(const std::string& of, double friction, Names& messages) {
 void tell_of_unlikely_values(const Scene& scene, Names& messages) {
   for (const ClothEntry& cloth : scene.cloths) {
     tell_of_area_density(cloth, messages);
+    tell_of_bend(cloth, messages);
     tell_of_tear(cloth, messages);
     if (cloth.self_contact) tell_of_friction("cloth " + cloth.name, cloth.self.friction, messages);
   }

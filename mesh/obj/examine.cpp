@@ -41,7 +41,10 @@ void sort_unique(std::vector<int>& list) {
 
 class Examiner {
  public:
-  Examiner(const TriangleMesh& mesh, bool will_be_welded) : mesh_(mesh), will_be_welded_(will_be_welded) {}
+  Examiner(const TriangleMesh& mesh, bool will_be_welded, const std::vector<int>& sewn)
+      : mesh_(mesh), will_be_welded_(will_be_welded), sewn_(mesh.positions.size(), 0) {
+    for (const int v : sewn) sewn_[static_cast<std::size_t>(v)] = 1;
+  }
 
   MeshReport examine() {
     report_.vertices = mesh_.vertex_count();
@@ -83,6 +86,7 @@ class Examiner {
 
   const TriangleMesh& mesh_;
   bool will_be_welded_;
+  std::vector<char> sewn_;  // by vertex
   MeshReport report_;
   std::vector<int> counted_;
   std::vector<Edge> edges_;
@@ -249,7 +253,7 @@ void Examiner::coincident_vertices() {
   std::sort(line.begin(), line.end());
   const auto close = [&](int v, int w) {
     const Vec3 &x = mesh_.positions[v], &y = mesh_.positions[w];
-    return (x - y).norm() <= tolerance && !(will_be_welded_ && x == y);
+    return (x - y).norm() <= tolerance && !(will_be_welded_ && x == y) && !(sewn_[v] && sewn_[w]);
   };
 
   std::vector<int> joined;
@@ -343,8 +347,8 @@ bool MeshReport::refused() const {
                      [](const Defect& d) { return d.severity == Severity::refusal; });
 }
 
-MeshReport examine(const TriangleMesh& mesh, bool will_be_welded) {
-  return Examiner(mesh, will_be_welded).examine();
+MeshReport examine(const TriangleMesh& mesh, bool will_be_welded, const std::vector<int>& sewn) {
+  return Examiner(mesh, will_be_welded, sewn).examine();
 }
 
 std::string format(const Defect& defect) {

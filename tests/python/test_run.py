@@ -162,7 +162,7 @@ class Callbacks(Runs):
         record = self.complete("o")
         self.assertEqual(record["steps"], 5)
         self.assertEqual(record["state_hash"], simulation.state_hash)
-        simulation.run(out=self.folder / "o")  # and it can go on
+        simulation.run(out=self.folder / "further")  # and it can go on
         self.assertEqual(self.complete("o")["steps"], 15)
 
     def test_a_callback_cannot_step(self):

@@ -76,7 +76,7 @@ class Simulation(_drape.Simulation):
     ) -> Record:
         """Runs for `duration` [s], or for what is left of the scene's, and returns what run.json says.
 
-        out: the folder for the files that `drape simulate` writes. Without one the frames go to a temporary
+        out: the folder for the files that `drape simulate` writes, another one for each run. Without one the frames go to a temporary
         folder for view(), which is gone with the simulation.
         frames: "pc2", "obj" or "none".
         callback: is called with every step, a RunStep; when it returns False, of Python or NumPy, the run ends there.
@@ -120,6 +120,11 @@ class Simulation(_drape.Simulation):
         Nothing of the run before is touched: this one may be refused.
         """
         if out is not None:
+            if self._folder is not None and self._folder.resolve() == out.resolve():
+                raise ValueError(
+                    f"{out}: has the frames of this simulation's run so far, which this one would replace; "
+                    "run into another folder, or make the simulation anew"
+                )
             return _drape.Run(self, out, frames, duration), out, None
         folder = tempfile.mkdtemp(prefix="drape-")
         forget = weakref.finalize(self, _remove, folder, os.getpid())
