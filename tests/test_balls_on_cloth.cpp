@@ -35,8 +35,10 @@ struct BallOnCloth {
     constraints.add_faces(faces);
   }
   void lay(const Vec3& centre, double friction, const Vec3& velocity, const Vec3& spin, const Vec3& gravity) {
-    const RigidBody rigid{weight, 0.4 * weight * radius * radius * Mat3::Identity(), centre, velocity, spin, gravity};
-    constraints.add({.shape = Sphere{centre, radius}, .friction = friction, .margin = margin, .rigid = rigid});
+    const RigidBody rigid{weight, 0.4 * weight * radius * radius * Mat3::Identity(), centre, velocity, spin,
+                          gravity};
+    constraints.add(
+        {.shape = Sphere{centre, radius}, .friction = friction, .margin = margin, .rigid = rigid});
     system.add(face_contact_force(constraints));
   }
   void pin_all() {

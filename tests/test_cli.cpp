@@ -169,6 +169,23 @@ TEST_CASE("quiet says nothing, a settled cloth stops a run, the last step meets 
   CHECK(shop.json("q/run.json")["steps"].get<int>() <= 22);
 }
 
+TEST_CASE("a body that spins in its place is not settled", "[cli]") {
+  const Workshop shop;
+  shop.write("spin.toml", shop.cloth +
+                              "pins = [{ box = [[-9, -9, -9], [9, 9, 9]] }]\n[simulation]\nduration = 0.4\n"
+                              "gravity = [0, 0, 0]\nstop_when_settled = true\n[[obstacle]]\nshape = \"box\"\n"
+                              "centre = [0, 5, 0]\nsize = [0.1, 0.06, 0.02]\nmass = 0.1\n");
+  for (const auto& [rate, state] : {std::pair{"20 rad/s", "moving"}, {"1 mrad/s", "settled"}}) {
+    INFO(rate);
+    const std::string spin = std::string(" --set 'obstacle.0.spin={axis=[0,0,1],rate=\"") + rate + "\"}'";
+    REQUIRE(shop.drape("simulate spin.toml --out o --frames none --quiet" + spin).exit_code == 0);
+    const Json json = shop.json("o/run.json");
+    CHECK(json["state"] == state);
+    CHECK((json["simulated_seconds"].get<double>() > 0.39) == (json["state"] == "moving"));
+    CHECK(json["bodies"][0]["spin"][2].get<double>() > 0);
+  }
+}
+
 TEST_CASE("cloth that is still brought out of a body is not settled", "[cli]") {
   const Workshop shop;
   shop.write("under.toml", shop.cloth +

@@ -1,6 +1,7 @@
 // The frames of a deforming body: in between, before and after; their files, and what is wrong with them.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <random>
 
 #include "app/base/pc2.h"
 #include "app/recording/output.h"
@@ -185,6 +186,31 @@ TEST_CASE("only a mesh has frames", "[moving]") {
   walk.write("s.toml",
              "[[cloth]]\nmesh = \"sheet.obj\"\n[[obstacle]]\nshape = \"plane\"\nframes = \"walk.pc2\"\n");
   CHECK_THROWS_WITH(read_scene(walk.path / "s.toml", {}), Contains("s.toml:5") && Contains("frames"));
+}
+
+TEST_CASE("frames whose vertices are in another order or unit are refused by name", "[moving]") {
+  const Walk walk;
+  TriangleMesh fine = box_mesh({0.4, 0.2, 0.3});
+  const auto write_frames = [&](const Places& second) {
+    write_obj(walk.path / "f1.obj", fine, fine.positions);
+    write_obj(walk.path / "f2.obj", fine, second);
+  };
+  const std::string keys = "frames = [\"f1.obj\", \"f2.obj\"]\n";
+  Places larger = fine.positions;
+  for (Vec3& x : larger) x *= 100;
+  write_frames(larger);
+  CHECK_THROWS_WITH(walk.body(keys), Contains("f2.obj") && Contains("100 times as long") && Contains("unit"));
+  Places breath = fine.positions;
+  for (Vec3& x : breath) x *= 1.2;
+  write_frames(breath);
+  CHECK_NOTHROW(walk.body(keys));
+  // Of a longer mesh, the order of whose vertices is another one.
+  fine = lat_long_sphere(20, 30, 0.2, Vec3::Zero());
+  write_obj(walk.path / "body.obj", fine, fine.positions);
+  Places shuffled = fine.positions;
+  std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(1));
+  write_frames(shuffled);
+  CHECK_THROWS_WITH(walk.body(keys), Contains("f2.obj") && Contains("another order"));
 }
 
 TEST_CASE("results do not replace the frames of a body", "[moving]") {
