@@ -120,16 +120,17 @@ ContactStep Constraints::begin_step(const VecX& x, const VecX& v, const std::vec
   if (bodies_.size() > 1) contacts_.find_nips(bodies_, step_);
   meeting_.begin_step(bodies_, contacts_.nips(), h, options_.recovery_speed);
   pins_.move(bodies_, step_);
-  for (const MovingPin& pin : moving_pins())  // what is led moves as it is led now, not as it came
-    if (pin.body < 0 || !bodies_[pin.body].reacting())
-      step_.v.segment<3>(3 * pin.particle) = pins_.velocity(pin.particle);
+  if (foresight == Foresight::ahead)
+    for (const MovingPin& pin : moving_pins())  // what is led moves as it is led now, not as it came
+      if (pin.body < 0 || !bodies_[pin.body].reacting())
+        step_.v.segment<3>(3 * pin.particle) = pins_.velocity(pin.particle);
   if (!bodies_.empty()) {
     contacts_.open();
     if (foresight != Foresight::none) contacts_.find(bodies_, step_);
     x_new_ = x;
     if (foresight == Foresight::ahead) x_new_ += h * step_.v;
     if (!faces_.all().empty()) {
-      faces_.begin_step(bodies_, contacts_.touching(), x, x_new_, options_.recovery_speed * h);
+      faces_.begin_step(bodies_, contacts_.touching(), x, x_new_, foresight, options_.recovery_speed * h);
       if (foresight != Foresight::ahead) faces_.limit_dampers(masses, h);
     }
   }

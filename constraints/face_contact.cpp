@@ -49,11 +49,6 @@ struct Corners {
   }
 };
 
-// The least turn that takes one direction to the other.
-Mat3 least_turn(const Vec3& from, const Vec3& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
-}
-
 struct Lowest {
   Vec3 point;
   Vec3 weights;
@@ -157,27 +152,40 @@ Lowest lowest_point(const Corners& t, const Distance& distance, double enough, c
 
 double half_margin(const MovingBody& body) { return 0.5 * body.obstacle().margin; }
 
-// From where the body touches the triangle when the step begins, to where it will when the step ends. anew: at the lowest
-// point then, where that may be another one; else at the same point. A body that does not react turns with its normal: it
-// feels no moment, and on corners that cloth hangs over at rest the lowest point at the end would be now this, now that.
+// The least turn of a triangle, and none where it turns over.
+Mat3 turn_of(const Corners& now, const Corners& then) {
+  const Vec3 from = now.normal(), to = then.normal();
+  if (from.dot(to) < alike) return Mat3::Identity();
+  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+}
+
+// Where the body touches the triangle at the end of the step as at its start: it turns with the body.
+FacePoint carried(const MovingBody& body, const FacePoint& begins) {
+  const Vec3& place = begins.place;
+  const ContactPlane plane = body.plane(place, body.at_start(place), body.carried(place));
+  return {begins.weights, place, body.turned(begins.normal), plane.gap + half_margin(body)};
+}
+
+// From where a body that reacts touches the triangle when the step begins, to where it will when the step ends. anew: at the
+// lowest point then, where that may be another one; else at the same point. (A body that does not react feels no moment, and
+// on corners that cloth hangs over at rest the lowest point at the end would be now this, now that.)
 FacePoint foresee(const MovingBody& body, const FacePoint& begins, const Corners& now, const Corners& then,
                   bool anew) {
   const double offset = half_margin(body);
   const Vec3 &w = begins.weights, &place = begins.place;
   const SurfacePoint here = body.at_start(place);
-  const bool corner = begins.normal.dot(body.start().direction_to_world(here.normal)) < smooth;
-  if (corner || !body.reacting()) {
-    const ContactPlane carried = body.plane(place, here, body.carried(place));
-    const Vec3 n = body.reacting() ? Vec3(least_turn(now.normal(), then.normal()) * begins.normal)
-                                   : body.turned(begins.normal);
-    return {w, place, n, carried.gap + offset};
+  if (begins.normal.dot(body.start().direction_to_world(here.normal)) < smooth) {
+    FacePoint corner = carried(body, begins);
+    corner.normal = turn_of(now, then) * begins.normal;
+    return corner;
   }
   const Vec3 centre = body.reacting()->centre(), shift = then.at(w) - place - (body.carried(centre) - centre);
   if (anew && std::max(shift.norm(), body.travel(place, then.at(w))) > beside * now.radius()) {
     const auto at_end = [&](const Vec3& p) { return body.near_end(p); };
     const Lowest end = lowest_point(then, at_end, offset, w);
     const Vec3& n = end.surface.normal;
-    if (n.dot(body.turned(begins.normal)) > alike && !end.surface.covered) {
+    const bool touches = end.surface.distance <= offset && !end.surface.covered;
+    if (touches && n.dot(body.turned(begins.normal)) > alike) {
       const Vec3 p = now.at(end.weights);
       return {end.weights, p, n, end.surface.distance - offset - n.dot(end.point - body.carried(p))};
     }
@@ -270,7 +278,8 @@ double FaceContacts::travel(const ClothFace& face) const {
 }
 
 void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const std::vector<Contact>& contacts,
-                              const VecX& x, const VecX& x_new, double recovery) {
+                              const VecX& x, const VecX& x_new, Foresight foresight, double recovery) {
+  foresight_ = foresight;
   const int n = static_cast<int>(faces_.size()), size = heavy_chunk_size(n);
   if (n == 0 || bodies.empty()) return;
   if (room_.size() != bodies.size() * faces_.size()) {
@@ -357,8 +366,13 @@ void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX
   const FaceContact* const other = touches_still(last.farthest)  ? last.farthest
                                    : touches_still(last.nearest) ? last.nearest
                                                                  : nullptr;
+  const bool ahead = foresight_ == Foresight::ahead && body.reacting();
   const auto touch = [&](const Vec3& weights, const Vec3& place, bool anew, const FaceContact* old) {
-    const FacePoint point = foresee(body, {weights, place, start.surface.normal, 0}, now, then, anew);
+    // The second point has the normal of the first where that is one of a corner, between several faces of the body.
+    Vec3 normal = start.surface.normal;
+    if (ahead && !anew && normal.dot(at_start(start.point).normal) >= smooth) normal = at_start(place).normal;
+    const FacePoint begins{weights, place, normal, 0};
+    const FacePoint point = ahead ? foresee(body, begins, now, then, anew) : carried(body, begins);
     FaceContact contact = make(f, body, point, recovery, old ? old : last.nearest);
     contact.active = contact.gap_at(x_new) < 0 || (old && old->active);
     if (old) contact.damper = old->rubbing();

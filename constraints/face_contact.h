@@ -3,9 +3,9 @@
 // triangle keeps the body off.
 //   p = sum w_k x_k    the point of the triangle that is nearest to the body, or deepest in it. A second contact
 //                      stays at the point of the step before as long as that touches and is not near the first.
-//   n                  the body's normal there. Of a body that reacts both are those where the step is foreseen to end, at
-//                      x + h v: so what pushes a ball goes through its centre, however it moves and turns within the step.
-//                      At a corner or a rim of such a body n is the triangle's own, and turns with that.
+//   n                  the body's normal there. By methods that look ahead p and n of a body that reacts are those where the
+//                      step is foreseen to end, at x + h v: so what pushes a ball goes through its centre, however it moves
+//                      and turns within the step. At a corner or a rim of it p is that of the start, and n turns with the triangle.
 //   g = g_0 + n . (sum w_k (x_k - x_k0) - h v_b)     the gap of p to the surface, offset by half the margin:
 //                                                    a triangle touches nothing where its vertices rest
 //   E = k/2 g^2 for g < 0,   f_k = -k g w_k n,   K_kl = k w_k w_l n n^T
@@ -99,12 +99,12 @@ class FaceContacts {
   void part(const Parting& parting);
   const std::vector<ClothFace>& all() const { return faces_; }
 
-  // x -> x_new is the predicted motion. recovery: how far a triangle that starts inside a body is brought out
+  // x -> x_new is the predicted motion, which there is with Foresight::ahead only; else x_new is x. recovery: how far a triangle that starts inside a body is brought out
   // in this step at most [m]. What is too near to a body when a run begins is not pushed away from it: it comes out by so
   // much in a step, with its vertices.
   // A triangle with a corner that is clamped in `contacts` goes with that corner, and touches nothing.
   void begin_step(const std::vector<MovingBody>& bodies, const std::vector<Contact>& contacts, const VecX& x,
-                  const VecX& x_new, double recovery);
+                  const VecX& x_new, Foresight foresight, double recovery);
   // For methods that take the force as it is at the start of the step: limits the dampers so that they stop
   // sliding within a few steps of h [s] and never throw it back, however many faces share a particle.
   void limit_dampers(const std::vector<double>& masses, double h);
@@ -155,7 +155,8 @@ class FaceContacts {
   std::vector<Vec3> likely_;
   // By particle: how far it moves as seen by the body that is being looked at [m].
   std::vector<double> travel_;
-  std::vector<char> clamped_;  // by particle
+  std::vector<char> clamped_;               // by particle
+  Foresight foresight_ = Foresight::ahead;  // of the step under way
   bool counted_ = false;
   bool begins_ = true;  // whether this is the first step since particles were moved from outside
   // Contacts of this step, and of the last completed one; sorted by body, then by face.

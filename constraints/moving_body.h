@@ -8,7 +8,7 @@
 //             with it
 //   plane     the surface at the end of the step that is nearest to where the particle will have slid by
 //             x + h v: its normal n, and its gap from the carried point. v.n = v_b.n - gap / h arrives
-//             exactly on it. (Of a body that does not turn, deform or react, the surface at the start.)
+//             exactly on it. (Of a body that neither turns, deforms nor reacts: the surface at the start.)
 //                                                    [Baraff & Witkin 1998, 5.2, in the frame of the body]
 // x [m], v [m/s], t, h [s].
 #pragma once

@@ -16,7 +16,7 @@ constexpr double closed = 1e-9;
 // Two surfaces are nearest to each other where one normal is as far from the opposite of the other as this cosine says.
 constexpr double opposite = 1 - 1e-6;
 // Steps between two surfaces that come nearer to that place by less than this share lead too far to be foretold.
-constexpr double slowest = 0.99;
+constexpr double slowest = 0.999;
 // The angle between one normal and the opposite of another up to which their bodies hold what is between them even without
 // friction [rad]: as much as the planes of one contact have to differ by.
 constexpr double nearly_opposite = 0.1;
@@ -65,8 +65,10 @@ Touch nearest_pair(const MovingBody& a, const MovingBody& b, const Vec3& on_a, c
     p -= at_a.distance * at_a.normal;
     const SurfacePoint at_b = b.near_start(p);
     if (-at_a.normal.dot(at_b.normal) < opposite) continue;
-    const double gap = at_b.distance - offsets;
-    if (at_b.covered || gap > beside.gap) return beside;
+    const double there = at_b.distance - offsets;
+    if (at_b.covered || there > beside.gap) return beside;
+    // What the particle does not carry itself is kept from sinking farther, and not lifted.
+    const double gap = beside.gap > 0 ? std::max(there, 0.0) : there;
     return {p - 0.5 * at_b.distance * at_b.normal, (at_b.normal - at_a.normal).normalized(), gap};
   }
   return beside;

@@ -90,6 +90,17 @@ TEST_CASE("a ball that spins on hanging cloth without friction goes on spinning"
   });
 }
 
+TEST_CASE("a ball that is thrown over hanging cloth without friction does not spin", "[reacting]") {
+  const Vec3 down(0, -g, 0);
+  on_sheets([&](int n, Kind kind, double h) {
+    BallOnCloth all(n, kind, down);
+    all.pin_corners();
+    all.lay({-0.08, radius + margin, 0.001}, 0, {1, 0, 0}, Vec3::Zero(), down);
+    all.march(0.1, h);
+    CHECK(radius * all.ball().spin().norm() < (h < 0.005 ? 0.04 : 0.12));
+  });
+}
+
 TEST_CASE("a ball that is thrown over cloth that is held, without friction, gets neither spin nor speed",
           "[reacting][faces]") {
   const Vec3 down(0, -g, 0);

@@ -9,7 +9,8 @@
 using namespace drape;
 using namespace drape::test;
 
-TEST_CASE("cloth that is led away from under another leaves it where it is, without friction", "[self-contact]") {
+TEST_CASE("cloth that is led away from under another leaves it where it is, without friction",
+          "[self-contact]") {
   const Fabric poplin{.area_density = 0.12, .stretch = 500, .bend = 8e-6};
   for (const Kind kind : kinds)
     for (const int n : {7, 11})

@@ -334,8 +334,9 @@ void Run::note_failure(const StepFailure& failure) {
 void Run::tell_of_open_seams() {
   for (const Cloth& cloth : simulation_.cloths)
     for (const Cloth::Stitched& open : cloth.seams) {
-      const bool early = simulation_.state.time < open.seam.close;
-      bool told = !open.seam.merge || record_.failure || (early && record_.interrupted);
+      const double time = simulation_.state.time, whole = simulation_.scene->simulation.duration;
+      const bool early = time < open.seam.close, goes_on = record_.interrupted || time < whole * (1 - 1e-9);
+      bool told = !open.seam.merge || record_.failure || (early && goes_on);
       tell_once(told, "warning: seam " + one_line(open.seam.name) + " of " + cloth.name +
                           " has not closed: it is " +
                           rounded(1000 * open.seam.gap(cloth.embedding, simulation_.state.x), 3) +

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "app/base/pc2.h"
 #include "app/scene/load_mesh.h"
@@ -97,27 +98,27 @@ double mean_edge(const TriangleMesh& mesh) {  // m
   return sum / (3 * std::max(mesh.triangle_count(), 1));
 }
 
-// Bodies breathe, and do not tear: where edges become several times as long, the file is most often another one than was meant.
+// Bodies breathe, and do not tear: where edges are several times as long as in the frame before, the file is most often
+// another one than was meant. edge: the mean length of an edge [m] in the frame before, and then in this one.
 void want_same_edges(const TriangleMesh& frame, const fs::path& file, const ObstacleEntry& entry,
-                     const TriangleMesh& rest) {
+                     double& edge) {
   constexpr double most = 3;
-  const double now = mean_edge(frame), then = mean_edge(rest);
-  if (now <= most * then && then <= most * now) return;
-  throw InputError(
-      file.string() + ": its edges are " + rounded(now / then, 3) +
-      " times as long as those of the rest mesh " + entry.mesh.string() +
-      " on average; are its vertices in another order (Blender's exporter has 'Keep Vertex Order'), or "
-      "is it in another unit?");
+  const double now = mean_edge(frame), before = std::exchange(edge, now);
+  if (now <= most * before && before <= most * now) return;
+  throw InputError(file.string() + ": its edges are " + rounded(now / before, 3) +
+                   " times as long as before, on average; are its vertices in another order than those of " +
+                   entry.mesh.string() +
+                   " (Blender's exporter has 'Keep Vertex Order'), or is it in another unit?");
 }
 
 void add(MeshFrames& frames, double time, std::vector<Vec3> positions, const fs::path& file,
-         const ObstacleEntry& entry, const TriangleMesh& rest) {
+         const ObstacleEntry& entry, const TriangleMesh& rest, double& edge) {
   TriangleMesh frame;
   frame.positions = std::move(positions);
   frame.triangles = rest.triangles;
   frame = placed(std::move(frame), entry.placement, file.string());
   if (std::ranges::all_of(frame.positions, [](const Vec3& p) { return p.allFinite(); }))
-    want_same_edges(frame, file, entry, rest);
+    want_same_edges(frame, file, entry, edge);
   try {
     frames.add(time, frame.positions);
   } catch (const InputError& error) {
@@ -179,19 +180,20 @@ std::shared_ptr<const MeshFrames> load_frames(const ObstacleEntry& entry, const 
   const auto frames = std::make_shared<MeshFrames>();
   const auto time = [&](double frame) { return entry.frames.start + frame / entry.frames.rate; };
   std::vector<Vec3> positions;
+  double edge = mean_edge(rest);
   if (files.size() == 1 && has_extension(files[0], ".pc2")) {
     Pc2Reader cache(files[0]);
     want_count(files[0], cache.points(), "points", entry, rest.vertex_count());
     for (int k = 0; k < cache.samples(); ++k) {
       cache.read(positions);
-      add(*frames, time(k * cache.spacing()), positions, files[0], entry, rest);
+      add(*frames, time(k * cache.spacing()), positions, files[0], entry, rest, edge);
     }
     return frames;
   }
   for (std::size_t k = 0; k < files.size(); ++k) {
     positions = read_obj(files[k]).positions;
     want_count(files[k], static_cast<int>(positions.size()), "vertices", entry, rest.vertex_count());
-    add(*frames, time(static_cast<double>(k)), positions, files[k], entry, rest);
+    add(*frames, time(static_cast<double>(k)), positions, files[k], entry, rest, edge);
   }
   return frames;
 }

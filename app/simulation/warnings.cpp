@@ -234,14 +234,14 @@ void check_place(const ClothEntry& entry, const Cloth& cloth, const VecX& x, Nam
                        " mm apart may be held up; move the scene nearer to the origin");
 }
 
-// The same of any cloth: where its edges are hardly longer than that, what is written is not what was computed.
+// The same of cloth that nothing keeps from itself: where its edges are hardly longer than that, what is written is not what was computed.
 void tell_of_place(const Cloth& cloth, const VecX& x, Names& messages) {
   const double far = x.segment(3 * cloth.first_particle, 3 * (cloth.end_particle - cloth.first_particle))
                          .cwiseAbs()
                          .maxCoeff();
   const double step = far * std::numeric_limits<float>::epsilon();
   if (step > 1e-3 * cloth.report.median_edge)
-    messages.push_back("warning: " + cloth.name + " reaches " + rounded(far, 3) +
+    messages.push_back("warning: cloth " + cloth.name + ": reaches " + rounded(far, 3) +
                        " m from the origin, where the floats of frames tell places to " +
                        rounded(1000 * step, 2) + " mm only, and its edges (median) are " +
                        rounded(1000 * cloth.report.median_edge, 2) +
@@ -414,8 +414,9 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
     tell_of_weld(scene.cloths[k], simulation.cloths[k], simulation.messages);
     warn_if_coarse_for_folds(scene.cloths[k], simulation.cloths[k], simulation.messages);
-    tell_of_place(simulation.cloths[k], simulation.state.x, simulation.messages);
-    if (scene.cloths[k].self_contact)
+    if (!scene.cloths[k].self_contact)
+      tell_of_place(simulation.cloths[k], simulation.state.x, simulation.messages);
+    else
       check_place(scene.cloths[k], simulation.cloths[k], simulation.state.x, simulation.messages);
     tell_of_self_contact(scene.cloths[k], simulation.cloths[k], simulation.messages);
   }

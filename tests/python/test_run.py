@@ -163,7 +163,7 @@ class Callbacks(Runs):
         self.assertEqual(record["steps"], 5)
         self.assertEqual(record["state_hash"], simulation.state_hash)
         simulation.run(out=self.folder / "further")  # and it can go on
-        self.assertEqual(self.complete("o")["steps"], 15)
+        self.assertEqual(self.complete("further")["steps"], 15)
 
     def test_a_callback_cannot_step(self):
         simulation = self.simulation()

@@ -8,7 +8,7 @@ import shutil
 import tempfile
 import weakref
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, Mapping, Optional, Tuple, Union
+from typing import Any, Callable, Dict, Iterator, Mapping, Optional, Set, Tuple, Union
 
 import numpy as np
 
@@ -47,6 +47,7 @@ class Simulation(_drape.Simulation):
         given = dict(scene) if isinstance(scene, Mapping) else scene
         super().__init__(given, dict(settings or {}), folder)
         self._folder: Optional[Path] = None
+        self._own_folders: Set[Path] = set()
         self._forget_scratch: Optional[Callable[[], Any]] = None
 
     def advance(self, h: Optional[float] = None) -> _drape.RunStep:
@@ -120,7 +121,7 @@ class Simulation(_drape.Simulation):
         Nothing of the run before is touched: this one may be refused.
         """
         if out is not None:
-            if self._folder is not None and self._folder.resolve() == out.resolve():
+            if out.resolve() in self._own_folders:
                 raise ValueError(
                     f"{out}: has the frames of this simulation's run so far, which this one would replace; "
                     "run into another folder, or make the simulation anew"
@@ -143,6 +144,7 @@ class Simulation(_drape.Simulation):
                 forget()
             raise
         self._folder = folder
+        self._own_folders.add(folder.resolve())
         if forget is not None:
             if self._forget_scratch is not None:
                 self._forget_scratch()
