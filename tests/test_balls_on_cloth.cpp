@@ -16,22 +16,23 @@ namespace {
 
 constexpr double g = 9.81, radius = 0.03, weight = 0.1, margin = 2e-3, size = 0.3;  // m/s^2, m, kg, m, m
 
+const Fabric poplin{.area_density = 0.12, .stretch = 500, .bend = 8e-6};
+
 // A level sheet, and a ball of 6 cm at x on it or just above it.
 struct BallOnCloth {
   TriangleMesh mesh;
   System system;
   Constraints constraints;
   State state;
-  const Fabric fabric{.area_density = 0.12, .stretch = 500, .bend = 8e-6};
 
   BallOnCloth(int n, Kind kind, const Vec3& gravity)
       : mesh(bent(n, kind, size, [](double, double) { return 0.0; })),
-        system(lumped_mass(mesh, fabric.area_density)),
+        system(lumped_mass(mesh, poplin.area_density)),
         state(at_rest(mesh)) {
-    system.add(woven(mesh, mesh, fabric));
+    system.add(woven(mesh, mesh, poplin));
     system.add(Gravity{gravity});
     std::vector<ClothFace> faces;
-    for (const Triangle& t : mesh.triangles) faces.push_back({{t[0], t[1], t[2]}, fabric.stretch});
+    for (const Triangle& t : mesh.triangles) faces.push_back({{t[0], t[1], t[2]}, poplin.stretch});
     constraints.add_faces(faces);
   }
   void lay(const Vec3& centre, double friction, const Vec3& velocity, const Vec3& spin, const Vec3& gravity) {
