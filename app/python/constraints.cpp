@@ -112,7 +112,11 @@ void add_constraints(py::module_& m) {
           "pin",
           [](Constraints& constraints, const py::object& particles) {
             require_free(&constraints);
-            constraints.pin(particles_of(particles));
+            const std::vector<int> all = particles_of(particles);
+            for (const MovingPin& pin : constraints.moving_pins())
+              if (std::ranges::find(all, pin.particle) != all.end())
+                require_free_particles(constraints, {pin.particle});
+            constraints.pin(all);
           },
           "particles"_a, "These stay where they are: a number, or an array of them.")
       .def(

@@ -39,10 +39,16 @@ class Grippers(unittest.TestCase):
         still = drape.Motion()
         constraints.add(drape.Obstacle(drape.Sphere([0, -1, 0], 0.1)))
         constraints.pin_along(3, still, state)
-        for again in (lambda: constraints.pin_along([2, 3], still, state), lambda: constraints.pin_to_body(3, 0, state)):
+        for again in (
+            lambda: constraints.pin(3),
+            lambda: constraints.pin_along([2, 3], still, state),
+            lambda: constraints.pin_to_body(3, 0, state),
+        ):
             with self.assertRaisesRegex(ValueError, r"particle 3 is pinned already; unpin\(\) it first"):
                 again()
-        np.testing.assert_array_equal(constraints.pinned, [3])
+        constraints.pin([5])
+        constraints.pin([5])  # again the same
+        np.testing.assert_array_equal(constraints.pinned, [3, 5])
 
     def test_a_body_carries_from_where_it_is_at_the_time_of_the_state(self):
         way = np.array([0.5, 0, 0])
