@@ -3,9 +3,10 @@
 // triangle keeps the body off.
 //   p = sum w_k x_k    the point of the triangle that is nearest to the body, or deepest in it. A second contact
 //                      stays at the point of the step before as long as that touches and is not near the first.
-//   n                  the body's normal there. By methods that look ahead p and n of a body that reacts are those where the
-//                      step is foreseen to end, at x + h v: so what pushes a ball goes through its centre, however it moves
-//                      and turns within the step. At a corner or a rim of it p is that of the start, and n turns with the triangle.
+//   n                  the body's normal there. By methods that look ahead p and n of a body that reacts are those where
+//                      the step is foreseen to end, at x + h v: so what pushes a ball goes through its centre, however it
+//                      moves and turns within the step. At a corner or a rim of such a body p is that of the start, and n
+//                      turns with the triangle.
 //   g = g_0 + n . (sum w_k (x_k - x_k0) - h v_b)     the gap of p to the surface, offset by half the margin:
 //                                                    a triangle touches nothing where its vertices rest
 //   E = k/2 g^2 for g < 0,   f_k = -k g w_k n,   K_kl = k w_k w_l n n^T
@@ -99,8 +100,8 @@ class FaceContacts {
   void part(const Parting& parting);
   const std::vector<ClothFace>& all() const { return faces_; }
 
-  // x -> x_new is the predicted motion, which there is with Foresight::ahead only; else x_new is x. recovery: how far a triangle that starts inside a body is brought out
-  // in this step at most [m]. What is too near to a body when a run begins is not pushed away from it: it comes out by so
+  // x -> x_new is the predicted motion, which there is with Foresight::ahead only; else x_new is x. recovery: how far a
+  // triangle that starts inside a body is brought out in this step at most [m]. What is too near to a body when a run begins is not pushed away from it: it comes out by so
   // much in a step, with its vertices.
   // A triangle with a corner that is clamped in `contacts` goes with that corner, and touches nothing.
   void begin_step(const std::vector<MovingBody>& bodies, const std::vector<Contact>& contacts, const VecX& x,

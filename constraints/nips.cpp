@@ -44,9 +44,10 @@ Squeeze squeeze(const MovingBody& a, const MovingBody& b, const Vec3& x) {
           -at_a.normal.dot(at_b.normal) >= std::cos(std::clamp(held, nearly_opposite, widest_held))};
 }
 
-// Where the bodies are nearest to each other beside a particle that they pinch: what lies between them is a layer there, and a
-// ball that rolls on it does not climb over each of its particles. Steps from one surface to the other and back come nearer to
-// that place by a constant share, so two of them tell where they lead [Irons & Tuck 1969]. `beside` is the touch at the particle itself.
+// Where the bodies are nearest to each other beside a particle that they pinch: what lies between them is a layer there, and
+// a ball that rolls on it does not climb over each of its particles. Steps from one surface to the other and back come nearer
+// to that place by a constant share, so two of them tell where they lead [Irons & Tuck 1969].
+// beside: the touch at the particle itself, which is the answer where no such place is found.
 Touch nearest_pair(const MovingBody& a, const MovingBody& b, const Vec3& on_a, const Touch& beside,
                    double offsets) {
   const auto step = [&](const Vec3& from) {

@@ -160,6 +160,13 @@ TEST_CASE("a grid of quads that falls flat stays flat, however its quads are cut
       CHECK(one.v == Approx(v_t * std::tanh(g * 0.3 / v_t)).epsilon(2e-3));
       CHECK(one.spread < 1e-9);
     }
+  // And as a scene puts it together.
+  Assembly sheet({0, -g, 0}, {}, Air{});
+  sheet.add({.mesh = quad_sheet(9, 6, 0.03), .fabric = cloth, .model = ClothModel::choi_ko});
+  sheet.use("implicit-euler", "auto", {});
+  while (sheet.state.time < 0.2) REQUIRE(sheet.advance(0.01).done);
+  for (int i = 0; i < sheet.state.particles(); ++i)
+    CHECK(sheet.state.v[3 * i + 1] == Approx(sheet.state.v[1]).epsilon(1e-9));
 }
 
 TEST_CASE("still air takes energy and never gives any", "[air]") {

@@ -1,8 +1,5 @@
 #include "app/simulation/unlikely.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace drape::app {
 namespace {
 

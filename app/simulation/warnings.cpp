@@ -234,7 +234,8 @@ void check_place(const ClothEntry& entry, const Cloth& cloth, const VecX& x, Nam
                        " mm apart may be held up; move the scene nearer to the origin");
 }
 
-// The same of cloth that nothing keeps from itself: where its edges are hardly longer than that, what is written is not what was computed.
+// The same of cloth that nothing keeps from itself: where floats tell places to a thousandth of its edges only, what is
+// written is not what was computed.
 void tell_of_place(const Cloth& cloth, const VecX& x, Names& messages) {
   const double far = x.segment(3 * cloth.first_particle, 3 * (cloth.end_particle - cloth.first_particle))
                          .cwiseAbs()

@@ -77,8 +77,9 @@ class Simulation(_drape.Simulation):
     ) -> Record:
         """Runs for `duration` [s], or for what is left of the scene's, and returns what run.json says.
 
-        out: the folder for the files that `drape simulate` writes, another one for each run. Without one the frames go to a temporary
-        folder for view(), which is gone with the simulation.
+        out: the folder for the files that `drape simulate` writes, another one for each run: ValueError when this
+        simulation has written there. Without one the frames go to a temporary folder for view(), which is gone
+        with the simulation.
         frames: "pc2", "obj" or "none".
         callback: is called with every step, a RunStep; when it returns False, of Python or NumPy, the run ends there.
 
