@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "mesh/obj/examine.h"
+#include "mesh/obj/obj.h"
 #include "tests/garment.h"
 
 using namespace drape;
@@ -38,6 +40,33 @@ TEST_CASE("a quantity that is most often a mistake of its unit is told, and a us
     INFO(c.unlikely);
     CHECK(told(c.unlikely, c.what));
     CHECK_FALSE(told(c.usual, c.what.substr(0, 12)));
+  }
+}
+
+TEST_CASE("vertices at one place that will be sewn together are no defect", "[scene]") {
+  const TriangleMesh mesh = parse_obj(
+      "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0.1 0 0\nv 0 0 0.1\nv 0.1 0 0.1\nf 1 2 3\nf 4 6 5\n", "c.obj");
+  const auto coincide = [&](const std::vector<int>& sewn) {
+    const std::vector<Defect> defects = examine(mesh, false, sewn).defects;
+    return std::any_of(defects.begin(), defects.end(),
+                       [](const Defect& d) { return d.what.find("coincide") != std::string::npos; });
+  };
+  CHECK(coincide({}));
+  CHECK(coincide({1, 3}));
+  CHECK_FALSE(coincide({1, 3, 2, 4}));
+}
+
+TEST_CASE("cloth far from the origin is told what its frames can tell", "[scene]") {
+  const Folder folder;
+  folder.write("c.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0.1 0 0.1\nf 1 2 3\nf 2 4 3\n");
+  for (const auto& [x, far] : {std::pair{"100", false}, {"1e4", true}}) {
+    INFO(x);
+    const std::string text = std::string("[[cloth]]\nmesh = \"c.obj\"\ntranslate = [") + x + ", 0, 0]\n";
+    const Names told =
+        make_simulation(read_scene(parse_toml(text, "s.toml"), {}, folder.path, "s.toml")).messages;
+    CHECK(far == std::any_of(told.begin(), told.end(), [](const std::string& m) {
+            return m.find("from the origin") != std::string::npos;
+          }));
   }
 }
 

@@ -162,6 +162,9 @@ class Callbacks(Runs):
         record = self.complete("o")
         self.assertEqual(record["steps"], 5)
         self.assertEqual(record["state_hash"], simulation.state_hash)
+        with self.assertRaisesRegex(ValueError, "would replace; run into another folder"):
+            simulation.run(out=self.folder / "x" / ".." / "o")
+        self.assertEqual(self.complete("o"), record)
         simulation.run(out=self.folder / "further")  # and it can go on
         self.assertEqual(self.complete("further")["steps"], 15)
 
