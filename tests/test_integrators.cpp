@@ -203,6 +203,12 @@ TEST_CASE("a time step that is none and the state of another system are refused"
     uneven.v.setZero(3);
     CHECK_THROWS_AS(stepper->advance(larger, 0.01), InputError);
     CHECK_THROWS_AS(stepper->advance(uneven, 0.01), InputError);
+    for (const double wrong : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+      State nowhere = m.start, away = m.start;
+      nowhere.x[4] = away.v[5] = wrong;
+      CHECK_THROWS_WITH(stepper->advance(nowhere, 0.01), Catch::Contains("the position of particle 1"));
+      CHECK_THROWS_WITH(stepper->advance(away, 0.01), Catch::Contains("the velocity of particle 1"));
+    }
     CHECK(state.x == m.start.x);
     CHECK(state.time == 0);
   }

@@ -393,4 +393,27 @@ TEST_CASE("a mistake in a setting names the setting", "[scene]") {
   message_of("tolerance=1", "unknown key");
   message_of("tolerance", "expected PATH=VALUE");
   message_of("=3", "expected PATH=VALUE");
+  message_of("simulation.gravity=[0, -1", "[0, -1 is not TOML");
+  message_of("cloth.0.pins=[{vertices = [3]]", "is not TOML");
+  message_of("cloth.0.bend=\"5 uN.m", "is not TOML");
+}
+
+TEST_CASE("what is given twice by different words is refused, and a refinement is not", "[scene]") {
+  using Words = std::vector<std::string>;
+  const auto settings = [](const Words& words) {
+    std::vector<Setting> all;
+    for (const std::string& word : words) all.push_back(parse_setting(word));
+    return all;
+  };
+  const auto refused = [&](const std::vector<Setting>& all, const char* message) {
+    CHECK_THROWS_WITH(read(cloth, all), Contains(message) && Contains("give one of them"));
+  };
+  refused(settings({"cloth.0.bend=5 uN.m", "cloth.sheet.bend=6 uN.m"}), "--set cloth.sheet.bend: --set cloth.0.bend");
+  std::vector<Setting> with_option = settings({"simulation.duration=1"});
+  with_option.push_back({"simulation.duration", "2", "--duration"});
+  refused(with_option, "--duration: --set simulation.duration");
+  for (const Words& words : {Words{"cloth.0.bend=5 uN.m", "cloth.0.bend=6 uN.m"},
+                             Words{"simulation={duration = 1}", "simulation.duration=2"},
+                             Words{"cloth.0.bend=5 uN.m", "cloth.0.stretch=600"}})
+    CHECK_NOTHROW(read(cloth, settings(words)));
 }

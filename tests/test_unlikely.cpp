@@ -26,6 +26,9 @@ TEST_CASE("a quantity that is most often a mistake of its unit is told, and a us
   const std::string
       rope = "[[rope]]\nname = \"r\"\npoints = [[0, 1, 0], [1, 1, 0]]\nsegments = 4\nmass_per_length = ",
       plane = "[[obstacle]]\nshape = \"plane\"\nname = \"floor\"\npoint = [0, -1, 0]\nfriction = ",
+      ball = "[[obstacle]]\nshape = \"sphere\"\nname = \"b\"\ncentre = [0, -50, 0]\nradius = ",
+      moving = ball + "0.3\nmotion = { velocity = [0, 1, 0], start = ",
+      led = "[[cloth.pins]]\nvertices = [1]\nmotion = { velocity = [0, 1, 0], start = ",
       second = "[[cloth]]\nname = \"d\"\nmesh = \"c.obj\"\ntranslate = [0, 1, 0]\narea_density = ";
   const std::vector<Case> cases = {
       {second + "\"200 g/m^2\"\n", second + "200\n", "cloth d: an area density of 200 kg/m^2"},
@@ -35,6 +38,9 @@ TEST_CASE("a quantity that is most often a mistake of its unit is told, and a us
       {plane + "0.5\n", plane + "50\n", "body floor: with a friction of 50 nothing slips"},
       {"self_contact = true\nfriction = 0.5\n", "self_contact = true\nfriction = 30\n",
        "cloth c: with a friction of 30 nothing slips"},
+      {ball + "0.3\n", ball + "30\n", "body b: a radius of 30 m is"},
+      {moving + "1 }\n", moving + "3 }\n", "body b: moves from 3 s on"},
+      {led + "1 }\n", led + "3 }\n", "what is pinned at s.toml:"},
   };
   for (const Case& c : cases) {
     INFO(c.unlikely);

@@ -20,7 +20,7 @@ struct Setting {
 // "PATH=VALUE", as it came after this option, or after none. Throws InputError.
 Setting parse_setting(const std::string& text, const std::string& option = "--set");
 
-// Throws InputError when the path leads nowhere.
+// Throws InputError when the path leads nowhere, and when another option or setting gave the same value.
 void apply(const Setting& setting, Node& root);
 // The same, with the value as data; value.where stands in messages.
 void apply(const std::string& path, Node value, Node& root);

@@ -35,7 +35,9 @@ void print_report(const std::string& name, const MeshReport& report) {
               rounded(report.smallest_angle * 57.29577951308232, 3).c_str());
   std::printf("  %s, %s, %s\n", counted(report.pieces, "piece").c_str(),
               counted(report.boundary_loops, "boundary loop").c_str(),
-              report.closed ? "closed" : "not closed");
+              report.closed                ? "closed"
+              : report.boundary_loops == 0 ? "without a border, but not closed (see below)"
+                                           : "not closed");
 }
 
 namespace {

@@ -122,7 +122,8 @@ class DropScene {
   void add_cloth() {
     Node cloth = Node::of_table("drape drop");
     cloth.members["mesh"] = Node::of_text(options_.cloth.string(), "drape drop");
-    cloth.members["fabric"] = Node::of_text(options_.fabric, "--fabric");
+    const bool by_default = options_.fabric == DropOptions().fabric;  // which a setting may change
+    cloth.members["fabric"] = Node::of_text(options_.fabric, by_default ? "drape drop" : "--fabric");
     cloth.members["self_contact"] = parse_toml_value("true", "drape drop");
     cloth.members["warp"] = Node::of_text("down", "drape drop");
     if (options_.scale) cloth.members["scale"] = parse_toml_value(*options_.scale, "--scale");

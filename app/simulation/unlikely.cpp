@@ -48,9 +48,26 @@ void tell_of_friction(const std::string& of, double friction, Names& messages) {
                      " nothing slips; cloth has 0.2 to 0.8: was a percentage meant?");
 }
 
+// A motion that the run does not live to see.
+void tell_of_late_motion(const std::string& of, double start, double duration, Names& messages) {
+  if (start < duration) return;
+  messages.push_back("note: " + of + ": moves from " + rounded(start, 4) + " s on, and the duration is " +
+                     rounded(duration, 4) + " s: it stands");
+}
+
+// Shapes are as large as what falls on them, or a few times; a floor is a plane or a box.
+void tell_of_large_ball(const ObstacleEntry& body, double cloth, Names& messages) {
+  constexpr double largest = 20;  // times the cloth
+  const auto* const ball = std::get_if<Sphere>(&body.obstacle.shape);
+  if (!ball || ball->radius <= largest * cloth) return;
+  messages.push_back("note: body " + body.name + ": a radius of " + rounded(ball->radius, 4) + " m is " +
+                     rounded(ball->radius / cloth, 2) +
+                     " times the size of the cloth: was it meant in cm or mm?");
+}
+
 }  // namespace
 
-void tell_of_unlikely_values(const Scene& scene, Names& messages) {
+void tell_of_unlikely_values(const Scene& scene, double size, Names& messages) {
   for (const ClothEntry& cloth : scene.cloths) {
     tell_of_area_density(cloth, messages);
     tell_of_bend(cloth, messages);
@@ -63,8 +80,19 @@ void tell_of_unlikely_values(const Scene& scene, Names& messages) {
   }
   for (const SoftEntry& soft : scene.softs)
     if (soft.self_contact) tell_of_friction("soft body " + soft.name, soft.self.friction, messages);
-  for (const ObstacleEntry& body : scene.obstacles)
+  const double duration = scene.simulation.duration;
+  for (const ObstacleEntry& body : scene.obstacles) {
     tell_of_friction("body " + body.name, body.obstacle.friction.statics, messages);
+    tell_of_large_ball(body, size, messages);
+    if (!body.rigid && body.obstacle.motion.moves())
+      tell_of_late_motion("body " + body.name, body.source.start, duration, messages);
+    if (!body.frames.files.empty())
+      tell_of_late_motion("body " + body.name, body.frames.start, duration, messages);
+  }
+  for (std::size_t part = 0; part < scene.part_count(); ++part)
+    for (const PinEntry& pin : scene.pins_of(part))
+      if (pin.motion && pin.motion->moves())
+        tell_of_late_motion("what is pinned at " + pin.where, pin.source.start, duration, messages);
   for (const FrictionEntry& pair : scene.frictions)
     tell_of_friction(pair.between[0] + " on " + pair.between[1], pair.friction, messages);
 }

@@ -234,6 +234,12 @@ void check_place(const ClothEntry& entry, const Cloth& cloth, const VecX& x, Nam
                        " mm apart may be held up; move the scene nearer to the origin");
 }
 
+double size_of(const VecX& x) {
+  Eigen::AlignedBox3d box;
+  for (Eigen::Index i = 0; i + 2 < x.size(); i += 3) box.extend(Vec3(x.segment<3>(i)));
+  return box.isEmpty() ? 0 : box.diagonal().norm();
+}
+
 // The same of cloth that nothing keeps from itself: where floats tell places to a thousandth of its edges only, what is
 // written is not what was computed.
 void tell_of_place(const Cloth& cloth, const VecX& x, Names& messages) {
@@ -411,7 +417,7 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
     tell_of_damping(cloth, simulation.messages);
     tell_of_directions(cloth, simulation.messages);
   }
-  tell_of_unlikely_values(scene, simulation.messages);
+  tell_of_unlikely_values(scene, size_of(simulation.state.x), simulation.messages);
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
     tell_of_weld(scene.cloths[k], simulation.cloths[k], simulation.messages);
     warn_if_coarse_for_folds(scene.cloths[k], simulation.cloths[k], simulation.messages);

@@ -20,6 +20,12 @@ void check_step(const System& system, const State& state, double h) {
   if (state.particles() != system.particles() || state.v.size() != state.x.size())
     throw InputError("state: " + std::to_string(state.particles()) + " particles, but the system has " +
                      std::to_string(system.particles()));
+  for (const auto& [values, what] : {std::pair{&state.x, "position"}, std::pair{&state.v, "velocity"}})
+    if (!values->allFinite())
+      for (int i = 0; i < state.particles(); ++i)
+        if (!values->segment<3>(3 * i).allFinite())
+          throw InputError("state: the " + std::string(what) + " of particle " + std::to_string(i) +
+                           " is not three finite numbers");
 }
 
 void end_step(ContactStep& contacts, VecX& x, VecX& v, StepReport& report) {

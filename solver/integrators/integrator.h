@@ -114,7 +114,7 @@ class Integrator {
   virtual void count_given(double /*energy*/) {}
 };
 
-// Throws InputError unless h is a time step and the state is one of the system.
+// Throws InputError unless h is a time step and the state is one of the system, of finite numbers.
 void check_step(const System& system, const State& state, double h);
 
 // Lets the constraints end a step at x, v, which they may change, and notes in the report what they found.
