@@ -64,6 +64,27 @@ class Grippers(unittest.TestCase):
                 np.testing.assert_allclose(state.x[0], (time + 0.01) * way, atol=1e-12)
                 np.testing.assert_allclose(constraints.pose(0)[1], (time + 0.01) * way, atol=1e-12)
 
+    def test_what_grippers_pull_is_what_the_momentum_of_the_cloth_gains_and_its_weight(self):
+        step = 0.005
+        for size in (4, 7, 11):
+            with self.subTest(size=size):
+                sheet, fabric = drape.grid(size, size, 0.2, 0.2), drape.Fabric()
+                system, constraints, state = drape.System(drape.masses(sheet, fabric)), drape.Constraints(), drape.at_rest(sheet)
+                for force in (drape.woven(sheet, fabric), drape.gravity([0, -9.81, 0])):
+                    system.add(force)
+                constraints.pin(0)
+                constraints.pin_along([size - 1], drape.Motion.constant([0, 0.3, 0.1]), state)
+                options = drape.StepOptions(tolerance=1e-9, newton_iterations=8, newton_tolerance=1e-9)
+                stepper, mass = drape.ImplicitEuler(system, constraints, "eigen-ldlt", options), system.masses[:, None]
+                weight = 9.81 * system.masses.sum()
+                for _ in range(12):
+                    before = state.v.copy()
+                    self.assertTrue(stepper.advance(state, step).converged)
+                    held = constraints.pinned
+                    pull = mass[held] * (state.v - before)[held] / step - system.force(state)[held]
+                    gained = (mass * (state.v - before)).sum(0) / step + [0, weight, 0]
+                    np.testing.assert_allclose(pull.sum(0), gained, rtol=0, atol=1e-4 * weight)
+
     def test_bodies_tell_how_they_move(self):
         system, constraints, state = self.free_sheet()
         rigid = drape.RigidBody(mass=2, inertia=0.1 * np.eye(3), centre=[0, -1, 0], velocity=[1, 0, 0], spin=[0, 0, 3])
