@@ -3,15 +3,17 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <span>
 
 #include "constraints/inertia.h"
+#include "constraints/lowest_point.h"
 #include "mesh/base/parallel.h"
-#include "mesh/distance/closest_on_triangle.h"
-#include "mesh/triangles/normals.h"
 
 namespace drape {
 namespace {
+
+using internal::FaceCorners;
+using internal::Lowest;
+using internal::lowest_point;
 
 constexpr double slow = 1e-3;  // m/s
 // A damper may rub with this many times mu N, since it is of the N and the slip of the step before.
@@ -20,140 +22,18 @@ constexpr double overrubbed = 1.05;
 constexpr int most_begun = 3;
 // A contact that has changed this often within a step changes again only when no other does, and alone.
 constexpr int most_changes = 3;
-constexpr int most_steps = 24;            // steps of the search for the lowest point
-constexpr int most_met = most_steps + 1;  // where it begins, and where each step leads
-constexpr double fine = 0.001;            // where the search ends, as a share of the size of the triangle
-constexpr double rough = 0.01;            // and where it ends on a triangle that is too far off to touch
-constexpr double beside = 0.1;  // normals that are met within this share of it count as those of one place
-constexpr double apart = 0.1;   // of two points at which a body touches a triangle, as such a share
-// A mean of normals, or its part along the triangle, that is shorter than this tells no direction.
-constexpr double level = 0.1;
+constexpr double apart = 0.1;  // of two points at which a body touches a triangle, as such a share
 // A normal that is nearer to the body's own than this cosine says is that of a smooth place, not of a corner or a rim.
 constexpr double smooth = 0.99;
+// A triangle that moves on against the body by more than this share of its size has another lowest point at the end.
+constexpr double moved = 0.1;
 // What a triangle comes to within a step counts as the same side of a body where the normals are nearer than this.
 constexpr double alike = 0.5;
-const Vec3 middle = Vec3::Constant(1.0 / 3);
-
-struct Corners {
-  Vec3 a, b, c;
-  Corners(const ClothFace& face, const VecX& x)
-      : a(x.segment<3>(3 * face.particles[0])),
-        b(x.segment<3>(3 * face.particles[1])),
-        c(x.segment<3>(3 * face.particles[2])) {}
-  Vec3 middle() const { return (a + b + c) / 3; }
-  Vec3 at(const Vec3& weights) const { return weights[0] * a + weights[1] * b + weights[2] * c; }
-  Vec3 normal() const { return twice_area_normal(a, b, c).stableNormalized(); }
-  double radius() const {
-    const Vec3 m = middle();
-    return std::sqrt(std::max({(a - m).squaredNorm(), (b - m).squaredNorm(), (c - m).squaredNorm()}));
-  }
-};
-
-struct Lowest {
-  Vec3 point;
-  Vec3 weights;
-  SurfacePoint surface;  // its normal is the one that leads straight out of the triangle
-};
-
-// The normals that a search meets. Behind a rim or a corner of the body the lowest point is where two or three of
-// the body's faces are equally near. The normal of none of them leads straight out of the triangle, but that of
-// their means does which is the shortest along the triangle. Where it has a part along the triangle, that part
-// leads along the rim to what is lower [Burke, Lewis & Overton 2005].
-class MetNormals {
- public:
-  explicit MetNormals(const Vec3& upright) : upright_(upright) {}
-  // from: the normal where the search came from. What lies outside the body and faces the other way is another
-  // part of its surface.
-  void add(const Vec3& place, const SurfacePoint& met, const Vec3& from) {
-    if (met.distance <= 0 || met.normal.dot(from) > -0.5)
-      met_[static_cast<std::size_t>(count_++)] = {place, met.normal};
-  }
-
-  Vec3 along(const Vec3& n) const { return n - upright_.dot(n) * upright_; }
-  // The mean that is shortest along the triangle, of `normal` and those of the `last` that were met within this
-  // distance [m] of p. It is found by pairs, and nearly the shortest after two rounds.
-  Vec3 straightest(const Vec3& p, Vec3 normal, double within, int last) const {
-    const int begin = std::max(0, count_ - last);
-    for (int round = 0; round < 2; ++round)
-      for (const Met& met : std::span(met_).subspan(begin, count_ - begin))
-        if ((met.place - p).squaredNorm() <= within * within) normal = between(normal, met.normal);
-    return normal;
-  }
-
- private:
-  struct Met {
-    Vec3 place, normal;
-  };
-  // The mean of a and b that is shortest along the triangle, or a where they nearly cancel each other, as in the
-  // middle of a plate.
-  Vec3 between(const Vec3& a, const Vec3& b) const {
-    const Vec3 change = along(b - a);
-    const double squares = change.squaredNorm();
-    const double share = squares > 0 ? std::clamp(-a.dot(change) / squares, 0.0, 1.0) : 0.0;
-    const Vec3 mean = a + share * (b - a);
-    return mean.norm() < level ? a : Vec3(mean.normalized());
-  }
-
-  Vec3 upright_;
-  std::array<Met, most_met> met_;
-  int count_ = 0;
-};
-
-// Finds the point of the triangle that is nearest to the body. The search starts from the middle of the
-// triangle or from the likely point, whichever is nearer. Its first step goes towards the closest point of
-// the surface (alternating projections, which find a corner or a rim at once) [Cheney & Goldstein 1959]. The
-// further steps go down the slope of the distance along the triangle, halved where they do not come nearer:
-// on a surface as smooth as the cloth that lies on it, projections alone would creep.
-template <class Distance>
-Lowest lowest_point(const Corners& t, const Distance& distance, double enough, const Vec3& likely) {
-  Vec3 p = t.middle();
-  SurfacePoint here = distance(p);
-  Vec3 weights = middle;
-  const double size = t.radius();
-  // All of the triangle is farther off than `enough`.
-  if (const double least = here.distance - size; least > enough) return {p, weights, {least, here.normal}};
-  if (likely != weights) {
-    const Vec3 q = t.at(likely);
-    if (const SurfacePoint there = distance(q); there.distance < here.distance) {
-      p = q;
-      here = there;
-      weights = likely;
-    }
-  }
-  MetNormals met(t.normal());
-  met.add(p, here, here.normal);
-  double step = size;
-  for (int i = 0; i < most_steps && step > (here.distance > enough ? rough : fine) * size; ++i) {
-    const Vec3 steepest = met.along(here.normal);
-    // What was tried in vain last lies two steps away.
-    const Vec3 mean = met.along(met.straightest(p, here.normal, 2.1 * step, 4));
-    const Vec3& slope = mean.norm() > level ? mean : steepest;
-    if (slope.norm() < fine) break;
-    const bool first = i == 0 && here.distance > 0;
-    const Vec3 wanted = p - (first ? Vec3(here.distance * here.normal) : Vec3(step * slope.normalized()));
-    const auto [q, feature] = closest_on_triangle(wanted, t.a, t.b, t.c);
-    if ((q - p).squaredNorm() < fine * fine * size * size) {
-      if (first) continue;
-      break;  // p is at the rim of the triangle, and the slope leads out of it
-    }
-    const SurfacePoint there = distance(q);
-    met.add(q, there, here.normal);
-    if (there.distance < here.distance - 1e-9) {
-      weights = weights_on_triangle(q, feature, t.a, t.b, t.c);
-      p = q;
-      here = there;
-    } else if (!first) {
-      step /= 2;
-    }
-  }
-  here.normal = met.straightest(p, here.normal, beside * size, most_met);
-  return {p, weights, here};
-}
 
 double half_margin(const MovingBody& body) { return 0.5 * body.obstacle().margin; }
 
 // The least turn of a triangle, and none where it turns over.
-Mat3 turn_of(const Corners& now, const Corners& then) {
+Mat3 turn_of(const FaceCorners& now, const FaceCorners& then) {
   const Vec3 from = now.normal(), to = then.normal();
   if (from.dot(to) < alike) return Mat3::Identity();
   return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
@@ -169,8 +49,8 @@ FacePoint carried(const MovingBody& body, const FacePoint& begins) {
 // From where a body that reacts touches the triangle when the step begins, to where it will when the step ends. anew: at the
 // lowest point then, where that may be another one; else at the same point. (A body that does not react feels no moment, and
 // on corners that cloth hangs over at rest the lowest point at the end would be now this, now that.)
-FacePoint foresee(const MovingBody& body, const FacePoint& begins, const Corners& now, const Corners& then,
-                  bool anew) {
+FacePoint foresee(const MovingBody& body, const FacePoint& begins, const FaceCorners& now,
+                  const FaceCorners& then, bool anew) {
   const double offset = half_margin(body);
   const Vec3 &w = begins.weights, &place = begins.place;
   const SurfacePoint here = body.at_start(place);
@@ -180,7 +60,7 @@ FacePoint foresee(const MovingBody& body, const FacePoint& begins, const Corners
     return corner;
   }
   const Vec3 centre = body.reacting()->centre(), shift = then.at(w) - place - (body.carried(centre) - centre);
-  if (anew && std::max(shift.norm(), body.travel(place, then.at(w))) > beside * now.radius()) {
+  if (anew && std::max(shift.norm(), body.travel(place, then.at(w))) > moved * now.radius()) {
     const auto at_end = [&](const Vec3& p) { return body.near_end(p); };
     const Lowest end = lowest_point(then, at_end, offset, w);
     const Vec3& n = end.surface.normal;
@@ -284,7 +164,7 @@ void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const std::
   if (n == 0 || bodies.empty()) return;
   if (room_.size() != bodies.size() * faces_.size()) {
     room_.assign(bodies.size() * faces_.size(), 0.0);
-    likely_.assign(room_.size(), middle);
+    likely_.assign(room_.size(), internal::middle_weights);
     found_.resize(static_cast<std::size_t>(heavy_chunk_count(n)));
   }
   touching_.clear();
@@ -342,7 +222,7 @@ void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX
   const auto& corners = face.particles;
   if (room > reach || std::any_of(corners.begin(), corners.end(), [&](int i) { return clamped_[i] != 0; }))
     return;
-  const Corners now(face, x), then(face, x_new);
+  const FaceCorners now(corners, x), then(corners, x_new);
   const auto at_start = [&](const Vec3& p) { return body.near_start(p); };
   const auto at_end = [&](const Vec3& p) { return body.near_end(p); };
   const Lowest start = lowest_point(now, at_start, reach, likely);
