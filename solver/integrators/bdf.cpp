@@ -105,7 +105,7 @@ class Bdf::ContactSolve {
   }
 
   void changed(const ContactChange& change) {
-    if (change.caught || change.faces) bdf_.history_.restart_touching(contacts_);
+    if (change.caught || change.faces || change.met) bdf_.history_.restart_touching(contacts_);
     if (change.met) {
       tolerance_ = loose();  // the new contacts have to settle first
       const Stopwatch watch(report_.collide_ms);
@@ -159,7 +159,8 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
     if (!p_.x.allFinite()) return fail(report, "the new positions are not finite numbers");
     if (taken == StepTaken::overshot && linear_.residual > 0)
       most_reference_ = linear_.residual_impulse / linear_.residual;
-    newton.took(taken, falls_back() && makes_energy(state, contacts, piece.h), report);
+    const bool energy = history_.order() == 2 && makes_energy(state, contacts, piece.h);
+    newton.took(taken, energy && falls_back(), energy && k().order_2(), report);
   }
   if (k().order_2() && makes_energy(state, contacts, piece.h)) {
     ++report.rescues;
@@ -179,11 +180,14 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
 ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& report) {
   if (A_.follow_system()) {
     const Eigen::Index n = 3 * system_.particles();
-    for (VecX* vector : {&y_, &b_, &b_rubbed_, &dv_, &v_base_, &r_, &end_.x, &end_.v}) vector->setZero(n);
+    for (VecX* vector : {&y_, &b_, &b_rubbed_, &dv_, &v_base_, &rest_, &r_, &end_.x, &end_.v})
+      vector->setZero(n);
     filter_.reserve(static_cast<std::size_t>(system_.particles()));
     friction_.reserve(2 * static_cast<std::size_t>(system_.particles()));  // two bodies may rub a particle
     history_.forget(system_);
+    rest_frame_.follow(A_.matrix().pattern());
   }
+  adrift_ = false;
   linear_ = {};
   most_reference_ = std::numeric_limits<double>::infinity();
   merit_.begin(piece.h);
@@ -231,10 +235,27 @@ double Bdf::residual(ContactStep& contacts) {
   return std::sqrt(dot(b_rubbed_, b_rubbed_));
 }
 
-// The wind may give twice what its power at one end of the step comes to, because the power is not steady.
-bool Bdf::makes_energy(const State& start, const ContactStep& contacts, double h) const {
+// Judged in the frame in which the cloth is at rest: what moves it along there is no work. The wind may give twice what its
+// power at one end of the step comes to, because the power is not steady.
+bool Bdf::makes_energy(const State& start, const ContactStep& contacts, double h) {
   const double power = std::max(system_.given_power(start.x, start.v), system_.given_power(p_.x, p_.v));
-  return merit_.makes_energy(start, p_, contacts.work() + 2 * h * power);
+  contacts.filter(p_.v, filter_);
+  const Vec3& g = system_.gravity_acceleration();
+  rest_frame_.find(contacts, filter_, p_.v, k(), g, adrift_, rest_);
+  // u . (the momentum that the cloth gained - the impulses of the step), which differ by order 2.
+  const double unsteady = sum_chunks(system_.particles(), [&](int begin, int end) {
+    double sum = 0;
+    for (int i = begin; i < end; ++i) {
+      const auto particle = static_cast<std::size_t>(i);
+      const Vec3 v = p_.v.segment<3>(3 * i), u = rest_.segment<3>(3 * i);
+      const double share = k().scale[particle] == 1 ? k().h / k().c : 1 / k().scale[particle];
+      const Vec3 pushed =
+          share * k().mass[particle] * (v - k().v_bar.segment<3>(3 * i) - k().fall[particle] * g);
+      sum += u.dot(system_.masses()[particle] * (v - start.v.segment<3>(3 * i) - k().h * g) - pushed);
+    }
+    return sum;
+  });
+  return merit_.makes_energy(start, p_, rest_, contacts.work() + unsteady + 2 * h * power);
 }
 
 double Bdf::residual_wanted() const {
@@ -269,20 +290,33 @@ bool Bdf::falls(ContactStep& contacts) {
   return merit_.falls(k(), friction(contacts), v_base_, end_.v);
 }
 
-// Sets the velocity towards which a step goes back when it is too long: the last one, or standing still. It meets the
-// constraints, as the step does: the energy that it takes to meet them must not count against the step.
-void Bdf::set_base(ContactStep& contacts, bool standing) {
+// Sets the velocity towards which a step goes back when it is too long: the last one, or that of a cloth at rest. It meets
+// the constraints, as the step does: the energy that it takes to meet them must not count against the step. What only slides
+// is at rest with what it slides on or adrift, whichever has less to spend.
+void Bdf::set_base(ContactStep& contacts, bool at_rest) {
   contacts.filter(p_.v, filter_);
-  if (standing)
-    v_base_ = -p_.v;
-  else
+  const auto from_frame = [&](bool adrift) {
+    const bool slides =
+        rest_frame_.find(contacts, filter_, p_.v, k(), system_.gravity_acceleration(), adrift, rest_);
+    v_base_ = rest_ - p_.v;
+    filter_.impose(v_base_);
+    v_base_ += p_.v;
+    return slides;
+  };
+  if (!at_rest) {
     v_base_.setZero();
-  filter_.impose(v_base_);
-  v_base_ += p_.v;
+    filter_.impose(v_base_);
+    v_base_ += p_.v;
+  } else if (adrift_ = false; from_frame(false)) {
+    const double with_bodies = merit_.potential(k(), friction(contacts), v_base_);
+    from_frame(true);
+    adrift_ = merit_.potential(k(), friction(contacts), v_base_) < with_bodies;
+    if (!adrift_) from_frame(false);
+  }
 }
 
 StepTaken Bdf::descend(ContactStep& contacts, const NewtonLoop& newton) {
-  set_base(contacts, newton.from_standing());
+  set_base(contacts, newton.from_rest());
   return merit_.descend(k(), friction(contacts), v_base_, dv_, newton.may_overshoot(), p_.v);
 }
 

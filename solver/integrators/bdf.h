@@ -17,6 +17,7 @@
 #include "solver/integrators/integrator.h"
 #include "solver/integrators/merit.h"
 #include "solver/integrators/newton_matrix.h"
+#include "solver/integrators/rest_frame.h"
 #include "solver/integrators/step_history.h"
 
 namespace drape {
@@ -51,9 +52,9 @@ class Bdf final : public Integrator {
                  Assembly assembly);
   double residual(ContactStep& contacts);  // N s
   double residual_wanted() const;          // N s
-  bool makes_energy(const State& start, const ContactStep& contacts, double h) const;
+  bool makes_energy(const State& start, const ContactStep& contacts, double h);
   bool falls(ContactStep& contacts);  // whether the first solve of a step lowers Phi
-  void set_base(ContactStep& contacts, bool standing);
+  void set_base(ContactStep& contacts, bool at_rest);
   StepTaken descend(ContactStep& contacts, const internal::NewtonLoop& newton);
   void finish(State& state, ContactStep& contacts, StepReport& report);
   bool good(const LinearReport& linear) const;
@@ -70,8 +71,11 @@ class Bdf final : public Integrator {
   StepHistory history_;
   NewtonMatrix A_;
   Merit merit_;
-  Point p_;  // the current point of Newton's iteration
-  VecX dv_;  // m/s: before a solve its guess, afterwards its solution
+  RestFrame rest_frame_;
+  bool adrift_ =
+      false;  // whether what only slides is at rest with its centre of mass, and not with what it slides on
+  Point p_;   // the current point of Newton's iteration
+  VecX dv_;   // m/s: before a solve its guess, afterwards its solution
   // What residuals are relative to at most [N s]. Where a step overshot that is what they were relative to before, not the
   // large forces there.
   double most_reference_ = 0;
@@ -81,7 +85,7 @@ class Bdf final : public Integrator {
 
   // Scratch of a step.
   Point end_;
-  VecX y_, b_, b_rubbed_, v_base_, r_;
+  VecX y_, b_, b_rubbed_, v_base_, rest_, r_;
   Filter filter_;
   std::vector<ContactFriction> friction_;  // scaled as the rows are
 };

@@ -100,11 +100,13 @@ StepTaken Merit::descend(const StepCoefficients& k, const std::vector<ContactFri
   return StepTaken::cut;
 }
 
-bool Merit::makes_energy(const State& before, const Point& after, double work) const {
-  const double kinetic = system_.kinetic_energy(before.v), stored = system_.stored_energy(after.x);
-  const double start = kinetic + system_.stored_energy(before.x) + system_.gravity_energy(before.x);
+bool Merit::makes_energy(const State& before, const Point& after, const VecX& rest, double work) {
+  x_ = before.v - rest;
+  const double inner = system_.kinetic_energy(x_), stored = system_.stored_energy(after.x);
+  const double start =
+      system_.kinetic_energy(before.v) + system_.stored_energy(before.x) + system_.gravity_energy(before.x);
   const double end = system_.kinetic_energy(after.v) + stored + system_.gravity_energy(after.x);
-  return end > start + work + 0.05 * fall_energy_ + 1e-3 * kinetic + noise_.energy(stored);
+  return end > start + work + 0.005 * fall_energy_ + 1e-3 * inner + noise_.energy(stored);
 }
 
 }  // namespace drape

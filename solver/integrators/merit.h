@@ -1,11 +1,11 @@
 // What an implicit step minimises, and how far a Newton step may go.
 //   Phi(v) = 1/2 |v - v_bar - c g|^2_M + E(x_bar + c v) + c/2 v . D v + what friction of contacts takes in h
-// The first Newton step is judged against standing still (v = 0, except for what is prescribed), each later
-// one against the v before it. A full step that would raise Phi is cut short by halves: so a step of order 1
+// The first Newton step is judged against a cloth at rest (solver/integrators/rest_frame.h; v = 0 where its pins and bodies
+// stand, and what is prescribed), each later one against the v before it. A full step that would raise Phi is cut short by halves: so a step of order 1
 // makes no energy, however stiff the cloth.
 //                                                                [Nocedal & Wright 2006, section 3.1]
 // Where edges go slack, the first Newton step may be taken whole although it raises Phi: the next one knows which edges
-// have become taut, and is judged against standing still in its place.                    [the watchdog of Chamberlain et al. 1982]
+// have become taut, and is judged against a cloth at rest in its place.                    [the watchdog of Chamberlain et al. 1982]
 // Rounding of x and v, in sums of a few terms, disturbs v by e_i = 8 eps (|x_i|/c + |v_i|). With
 // N = sum A_ii e_i^2 it changes Phi, a sum of squares, by at most N + 2 sqrt(Phi N), and the gradient of Phi
 // by |A_ii e_i|. Forces whose energy is a sum of terms that cancel add what these may be off (Force::energy_noise).
@@ -59,8 +59,9 @@ class Merit {
   StepTaken descend(const StepCoefficients& k, const std::vector<ContactFriction>& friction,
                     const VecX& v_base, const VecX& dv, bool may_overshoot, VecX& v);
   // True when the motion has more energy than moving bodies bring and than the error of a smooth motion
-  // explains: a step of order 2 has then looked back across a contact or a slackening of stiff cloth.
-  bool makes_energy(const State& before, const Point& after, double work) const;
+  // explains: a step of order 2 has then looked back across a contact or a slackening of stiff cloth. How fast it is
+  // counts against a cloth at rest, which moves by `rest` [m/s].
+  bool makes_energy(const State& before, const Point& after, const VecX& rest, double work);
 
  private:
   double most(double start) const;

@@ -15,27 +15,31 @@ class NewtonLoop {
 
   bool next() {
     ++k_;
-    return k_ < options_.newton_iterations || taken_ != StepTaken::whole || (makes_energy_ && k_ < most());
+    return k_ < options_.newton_iterations || taken_ != StepTaken::whole || (makes_energy_ && k_ < most()) ||
+           (refines_ && k_ < options_.newton_iterations + most_refined);
   }
   bool first() const { return k_ == 0; }
   bool exhausted() const { return k_ == most(); }
   bool may_stop() const { return k_ > 0 && taken_ == StepTaken::whole; }  // when the residual is small enough
   bool may_overshoot() const { return first() && goes_slack_; }
-  // Whether the next step is judged against standing still, and not against where the last one ended.
-  bool from_standing() const { return first() || taken_ == StepTaken::overshot; }
+  // Whether the next step is judged against a cloth at rest, and not against where the last one ended.
+  bool from_rest() const { return first() || taken_ == StepTaken::overshot; }
   Stiffness stiffness() const {
-    const bool sound = from_standing() || (taken_ == StepTaken::whole && !makes_energy_);
+    const bool sound = from_rest() || (taken_ == StepTaken::whole && !makes_energy_);
     return sound ? Stiffness::chord : Stiffness::majorant;
   }
 
-  void took(StepTaken taken, bool makes_energy, StepReport& report) {
+  // refines: the motion makes energy, and the next step is to find out whether that is only what linearisation left.
+  void took(StepTaken taken, bool makes_energy, bool refines, StepReport& report) {
     ++report.newton_iterations;
     if (taken != StepTaken::whole || makes_energy) ++report.rescues;
     taken_ = taken;
     makes_energy_ = makes_energy;
+    refines_ = refines;
   }
 
  private:
+  static constexpr int most_refined = 2;
   int most() const { return options_.newton_iterations + options_.max_rescues; }
 
   const StepOptions& options_;
@@ -43,6 +47,7 @@ class NewtonLoop {
   int k_ = -1;
   StepTaken taken_ = StepTaken::cut;  // the last step
   bool makes_energy_ = false;         // and so far the motion makes energy
+  bool refines_ = false;
 };
 
 }  // namespace drape::internal

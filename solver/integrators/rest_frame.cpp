@@ -1,0 +1,80 @@
+#include "solver/integrators/rest_frame.h"
+
+#include <numeric>
+
+namespace drape {
+
+void RestFrame::follow(const BlockPattern& pattern) {
+  std::vector<int> first(
+      static_cast<std::size_t>(pattern.rows()));  // by row: one that it hangs together with
+  std::iota(first.begin(), first.end(), 0);
+  const auto least = [&](int row) {
+    while (first[row] != row) row = first[row] = first[first[row]];
+    return row;
+  };
+  for (int row = 0; row < pattern.rows(); ++row)
+    for (int k = pattern.row_start()[row]; k < pattern.row_start()[row + 1]; ++k) {
+      const int a = least(row), b = least(pattern.column()[k]);
+      first[std::max(a, b)] = std::min(a, b);
+    }
+  std::vector<int> number(first.size(), -1);  // of the piece, by its first row
+  piece_.resize(first.size());
+  int pieces = 0;
+  for (std::size_t particle = 0; particle < piece_.size(); ++particle) {
+    int& piece = number[least(pattern.row_of()[particle])];
+    if (piece < 0) piece = pieces++;
+    piece_[particle] = piece;
+  }
+  next_.resize(static_cast<std::size_t>(pieces));
+  groups_.resize(next_.size());
+}
+
+int RestFrame::root(int piece) const {
+  while (next_[piece] != piece) piece = next_[piece];
+  return piece;
+}
+
+void RestFrame::join_touching(const ContactStep& contacts) {
+  std::iota(next_.begin(), next_.end(), 0);
+  if (next_.size() == 1) return;
+  for (const SelfContact& c : contacts.touching_cloth()) {
+    if (!c.active) continue;
+    int first = -1;
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (c.weights[k] == 0) continue;
+      const int own = root(piece_[c.particles[k]]);
+      if (first >= 0 && own != first) next_[std::max(own, first)] = std::min(own, first);
+      first = first < 0 ? own : std::min(own, first);
+    }
+  }
+}
+
+bool RestFrame::find(const ContactStep& contacts, const Filter& filter, const VecX& v,
+                     const StepCoefficients& k, const Vec3& gravity, bool adrift, VecX& u) {
+  join_touching(contacts);
+  std::fill(groups_.begin(), groups_.end(), Group());
+  for (const FilterEntry& e : filter.entries())
+    if (e.S.isZero(0)) group_of(e.particle).held.add(v.segment<3>(3 * e.particle) + e.z, 1);
+  for (const Contact& c : contacts.touching())
+    if (c.planes > 0) group_of(c.particle).slides.add(c.plane[0].body_velocity, 1);
+  for (const FaceContact& c : contacts.touching_faces())
+    if (c.active) group_of(c.particles[0]).slides.add(c.body_velocity, 1);
+  const int n = static_cast<int>(piece_.size());
+  for (int i = 0; i < n; ++i) {
+    const auto particle = static_cast<std::size_t>(i);
+    if (const double m = k.mass[particle]; m > 0)
+      group_of(i).moves.add(k.v_bar.segment<3>(3 * i) + k.fall[particle] * gravity, m);
+  }
+  bool any_slides = false;
+  for (Group& group : groups_) {
+    const bool slides = group.held.weight == 0 && group.slides.weight > 0;
+    any_slides = any_slides || slides;
+    Mean& mean = group.held.weight > 0 ? group.held : slides && !adrift ? group.slides : group.moves;
+    if (mean.weight > 0) mean.sum /= mean.weight;
+    group.moves = mean;
+  }
+  for (int i = 0; i < n; ++i) u.segment<3>(3 * i) = group_of(i).moves.sum;
+  return any_slides;
+}
+
+}  // namespace drape
