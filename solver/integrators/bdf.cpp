@@ -105,7 +105,7 @@ class Bdf::ContactSolve {
   }
 
   void changed(const ContactChange& change) {
-    if (change.caught || change.faces || change.met) bdf_.history_.restart_touching(contacts_);
+    if (change.caught || change.faces) bdf_.history_.restart_touching(contacts_);
     if (change.met) {
       tolerance_ = loose();  // the new contacts have to settle first
       const Stopwatch watch(report_.collide_ms);
@@ -235,27 +235,12 @@ double Bdf::residual(ContactStep& contacts) {
   return std::sqrt(dot(b_rubbed_, b_rubbed_));
 }
 
-// Judged in the frame in which the cloth is at rest: what moves it along there is no work. The wind may give twice what its
-// power at one end of the step comes to, because the power is not steady.
+// The wind may give twice what its power at one end of the step comes to, because the power is not steady.
 bool Bdf::makes_energy(const State& start, const ContactStep& contacts, double h) {
   const double power = std::max(system_.given_power(start.x, start.v), system_.given_power(p_.x, p_.v));
   contacts.filter(p_.v, filter_);
-  const Vec3& g = system_.gravity_acceleration();
-  rest_frame_.find(contacts, filter_, p_.v, k(), g, adrift_, rest_);
-  // u . (the momentum that the cloth gained - the impulses of the step), which differ by order 2.
-  const double unsteady = sum_chunks(system_.particles(), [&](int begin, int end) {
-    double sum = 0;
-    for (int i = begin; i < end; ++i) {
-      const auto particle = static_cast<std::size_t>(i);
-      const Vec3 v = p_.v.segment<3>(3 * i), u = rest_.segment<3>(3 * i);
-      const double share = k().scale[particle] == 1 ? k().h / k().c : 1 / k().scale[particle];
-      const Vec3 pushed =
-          share * k().mass[particle] * (v - k().v_bar.segment<3>(3 * i) - k().fall[particle] * g);
-      sum += u.dot(system_.masses()[particle] * (v - start.v.segment<3>(3 * i) - k().h * g) - pushed);
-    }
-    return sum;
-  });
-  return merit_.makes_energy(start, p_, rest_, contacts.work() + unsteady + 2 * h * power);
+  rest_frame_.find(contacts, filter_, p_.v, k(), system_.gravity_acceleration(), adrift_, rest_);
+  return merit_.makes_energy(k(), start, p_, rest_, contacts.work() + 2 * h * power);
 }
 
 double Bdf::residual_wanted() const {

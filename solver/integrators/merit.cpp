@@ -100,13 +100,38 @@ StepTaken Merit::descend(const StepCoefficients& k, const std::vector<ContactFri
   return StepTaken::cut;
 }
 
-bool Merit::makes_energy(const State& before, const Point& after, const VecX& rest, double work) {
-  x_ = before.v - rest;
-  const double inner = system_.kinetic_energy(x_), stored = system_.stored_energy(after.x);
-  const double start =
-      system_.kinetic_energy(before.v) + system_.stored_energy(before.x) + system_.gravity_energy(before.x);
-  const double end = system_.kinetic_energy(after.v) + stored + system_.gravity_energy(after.x);
-  return end > start + work + 0.005 * fall_energy_ + 1e-3 * inner + noise_.energy(stored);
+// In the frame in which the cloth is at rest, what moves it along with velocity u does the work u . J less, with J the impulses
+// of the step but gravity's. (Of order 2 these are not what the momentum gains, because it looks back.)
+bool Merit::makes_energy(const StepCoefficients& k, const State& before, const Point& after, const VecX& rest,
+                         double work) {
+  const Vec3& g = system_.gravity_acceleration();
+  struct Sums {
+    double gained = 0, inner = 0,
+           kinetic = 0;  // J: but for what is stored; kinetic energy at rest, and in the scene
+    void operator+=(const Sums& other) {
+      gained += other.gained;
+      inner += other.inner;
+      kinetic += other.kinetic;
+    }
+  };
+  const Sums sums = sum_chunks(system_.particles(), [&](int begin, int end) {
+    Sums sum;
+    for (int i = begin; i < end; ++i) {
+      const auto particle = static_cast<std::size_t>(i);
+      const Vec3 v = after.v.segment<3>(3 * i), from = before.v.segment<3>(3 * i), u = rest.segment<3>(3 * i);
+      const Vec3 way = after.x.segment<3>(3 * i) - before.x.segment<3>(3 * i);
+      const double m = system_.masses()[particle];
+      const double share = k.scale[particle] == 1 ? k.h / k.c : 1 / k.scale[particle];
+      const Vec3 pushed = share * k.mass[particle] * (v - k.v_bar.segment<3>(3 * i) - k.fall[particle] * g);
+      sum.gained += m * (0.5 * (v - from).dot(v + from - 2 * u) - g.dot(way - k.h * u)) + u.dot(pushed);
+      sum.inner += 0.5 * m * (from - u).squaredNorm();
+      sum.kinetic += 0.5 * m * from.squaredNorm();
+    }
+    return sum;
+  });
+  const double stored = system_.stored_energy(after.x), more = stored - system_.stored_energy(before.x);
+  return sums.gained + more >
+         work + 0.005 * fall_energy_ + 3e-4 * sums.inner + noise_.energy(stored + sums.kinetic);
 }
 
 }  // namespace drape

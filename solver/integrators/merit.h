@@ -61,7 +61,8 @@ class Merit {
   // True when the motion has more energy than moving bodies bring and than the error of a smooth motion
   // explains: a step of order 2 has then looked back across a contact or a slackening of stiff cloth. How fast it is
   // counts against a cloth at rest, which moves by `rest` [m/s].
-  bool makes_energy(const State& before, const Point& after, const VecX& rest, double work);
+  bool makes_energy(const StepCoefficients& k, const State& before, const Point& after, const VecX& rest,
+                    double work);
 
  private:
   double most(double start) const;

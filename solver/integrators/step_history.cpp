@@ -84,7 +84,7 @@ void StepHistory::mark_touching(const ContactStep& contacts) {
       for (int i : c.particles) touched_[i] = 1;
   for (const SelfContact& c : contacts.touching_cloth())
     for (std::size_t k = 0; k < 4; ++k)
-      if (c.active && c.weights[k] != 0) touched_[c.particles[k]] = 1;
+      if (c.body >= 0 && c.active && c.weights[k] != 0) touched_[c.particles[k]] = 1;
 }
 
 }  // namespace drape
