@@ -131,7 +131,7 @@ bool Merit::makes_energy(const StepCoefficients& k, const State& before, const P
   });
   const double stored = system_.stored_energy(after.x), more = stored - system_.stored_energy(before.x);
   return sums.gained + more >
-         work + 0.005 * fall_energy_ + 3e-4 * sums.inner + noise_.energy(stored + sums.kinetic);
+         work + 5e-4 * fall_energy_ + 3e-4 * sums.inner + noise_.energy(stored + sums.kinetic);
 }
 
 }  // namespace drape
