@@ -204,6 +204,8 @@ TEST_CASE("drawings that are refused", "[pattern]") {
        "p.svg:2: path 'a': the outline has no area", ""},
       {svg(kPage, "<path id=\"a\" d=\"M10 10 L nan 10 L50 10 Z\"/>"),
        "p.svg:2: <path>: the path cannot be read", "nan"},
+      {svg(kPage, "<rect id=\"a\" x=\"10%\" y=\"1\" width=\"50\" height=\"50\"/>"),
+       "p.svg:2: ", "x=\"10%\": expected a number"},
       {svg(kPage, square + square), "p.svg:3: path 'a': there is another panel 'a'", ""},
       {svg(kPage, square + "<path id=\"b\" d=\"M50 50 H140 V140 H50 Z\"/>"),
        "p.svg:2: path 'a': panel 'a' overlaps panel 'b'", ""},

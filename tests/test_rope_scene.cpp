@@ -117,6 +117,8 @@ TEST_CASE("an end that is not where it has to be is told by how far it is off", 
   refused("[[rope]]\nmesh = \"lines.obj\"\n" + of_file, "1:", "has 2 lines; expected the name of one: a, b");
   refused("[[rope]]\nmesh = \"lines.obj\"\nline = \"c\"\n" + of_file, "1:", "no line 'c'");
   refused("[[rope]]\nmesh = \"faces.obj\"\n" + of_file, "1:", "has no lines");
+  shop.write("ring.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3 1\n");
+  refused("[[rope]]\nmesh = \"ring.obj\"\n" + of_file, "1:", "a line that ends where it begins, at vertex 1");
   shop.write("beyond.obj", "v 0 0 0\nv 1 0 0\nl 1 2 9\n");
   refused("[[rope]]\nmesh = \"beyond.obj\"\n" + of_file, "1:", "beyond.obj:3: ");
   const std::string points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 2 1 0\nv 3 1 0\n";

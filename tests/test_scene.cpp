@@ -390,6 +390,10 @@ TEST_CASE("a mistake in a setting names the setting", "[scene]") {
   message_of("simulation.duration=-1", "greater than zero");
   message_of("cloth..bend=1", "empty part");
   message_of("cloth.0.mesh.x=1", "has no parts");
+  message_of("simulation.tolerance=1e-30", "which round-off leaves");
+  message_of("cloth.0.area_density=1e400", "is not a finite number");
+  message_of("cloth.0.translate=[0, 1e400, 0]", "is not a finite number");
+  message_of("pair.0={friction = 0.5}", "");
   message_of("tolerance=1", "unknown key");
   message_of("tolerance", "expected PATH=VALUE");
   message_of("=3", "expected PATH=VALUE");
@@ -408,7 +412,8 @@ TEST_CASE("what is given twice by different words is refused, and a refinement i
   const auto refused = [&](const std::vector<Setting>& all, const char* message) {
     CHECK_THROWS_WITH(read(cloth, all), Contains(message) && Contains("give one of them"));
   };
-  refused(settings({"cloth.0.bend=5 uN.m", "cloth.sheet.bend=6 uN.m"}), "--set cloth.sheet.bend: --set cloth.0.bend");
+  refused(settings({"cloth.0.bend=5 uN.m", "cloth.sheet.bend=6 uN.m"}),
+          "--set cloth.sheet.bend: --set cloth.0.bend");
   std::vector<Setting> with_option = settings({"simulation.duration=1"});
   with_option.push_back({"simulation.duration", "2", "--duration"});
   refused(with_option, "--duration: --set simulation.duration");

@@ -202,6 +202,8 @@ TEST_CASE("drape stability: table, JSON and CSV of one search", "[stability]") {
   for (const auto& [words, message] : {std::pair{"stability", "SCENE is required"},
                                        {"stability none.toml", "none.toml: no such file"},
                                        {"stability s.toml --integrators rk5", "there is no integrator 'rk5'"},
+                                       {"stability s.toml --integrator bdf2", "give --integrators"},
+                                       {"stability s.toml --time-step 5ms", "give --longest and --shortest"},
                                        {"stability s.toml --time '2 m'", "--time 2 m"},
                                        {"stability s.toml --time 0", "--time 0"},
                                        {"stability s.toml --longest 9", "--longest 9: is longer than a run"},

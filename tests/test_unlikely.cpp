@@ -32,6 +32,8 @@ TEST_CASE("a quantity that is most often a mistake of its unit is told, and a us
       second = "[[cloth]]\nname = \"d\"\nmesh = \"c.obj\"\ntranslate = [0, 1, 0]\narea_density = ";
   const std::vector<Case> cases = {
       {second + "\"200 g/m^2\"\n", second + "200\n", "cloth d: an area density of 200 kg/m^2"},
+      {second + "\"20 g/m^2\"\n", second + "\"0.15 g/m^2\"\n", "cloth d: an area density of 0.15 g/m^2"},
+      {"stretch = \"5 kN/m\"\n", "stretch = 1e12\n", "cloth c: a membrane stiffness of 1e+12 N/m"},
       {"bend = \"8 uN.m\"\n", "bend = 8\n", "cloth c: a bending rigidity of 8 N.m"},
       {"tear = \"40 %\"\n", "tear = 40\n", "was it meant in percent, \"40 %\"?"},
       {rope + "\"65 g/m\"\n", rope + "65\n", "rope r: a mass of 65 kg/m"},

@@ -1,5 +1,6 @@
 #include "app/base/settings.h"
 
+#include <algorithm>
 #include <charconv>
 
 #include "app/base/words.h"
@@ -47,6 +48,9 @@ Node& entry(Node& list, const std::string& part, const std::string& where) {
     known.push_back(entry_name(item));
     if (!is_index && known.back() == part) return item;
   }
+  if (std::all_of(known.begin(), known.end(), [](const std::string& name) { return name.empty(); }))
+    throw InputError(where + ": there is no '" + part + "' in the list; it has " +
+                     counted(static_cast<long>(known.size()), "value") + ", counted from 0");
   throw InputError(where + ": there is no '" + part + "' in the list; it has, from 0: " + listed(known));
 }
 
@@ -71,8 +75,9 @@ void apply(const std::string& path, Node value, Node& root) {
     if (node->kind == Node::Kind::array) {
       node = &entry(*node, parts[i], where);
     } else if (node->kind == Node::Kind::table) {
-      const bool is_list =
-          i == 0 && !last && (parts[0] == "cloth" || parts[0] == "soft" || parts[0] == "obstacle");
+      const bool is_list = i == 0 && !last &&
+                           (parts[0] == "cloth" || parts[0] == "soft" || parts[0] == "rope" ||
+                            parts[0] == "obstacle" || parts[0] == "pair");
       if (is_list && !node->members.contains(parts[0]))
         throw InputError(where + ": there is no [[" + parts[0] + "]]");
       node = &node->members.try_emplace(parts[i], Node::of_table(where)).first->second;

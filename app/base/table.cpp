@@ -69,7 +69,8 @@ double quantity(const Node& node, const Dimension& dimension, Range range) {
   } else if (dimension.needs_unit) {
     throw InputError("has no unit; " + expected(dimension));
   }
-  if (!std::isfinite(value)) throw InputError("is not a finite number; " + expected(dimension));
+  if (!(std::abs(value) < std::numeric_limits<double>::max()))  // to which the reader of TOML cuts 1e400
+    throw InputError("is not a finite number; " + expected(dimension));
   if (is_number(node) && std::abs(value) > dimension.most_alone) {
     const std::string unit(dimension.unit);
     throw InputError("has no unit, and " + unit + " may not be meant; " + expected(dimension) + ", or \"" +

@@ -154,9 +154,10 @@ Node parse_toml_value(std::string_view text, const std::string& where) {
       node = parse_toml("value = " + std::string(text), where).members.at("value");
     } catch (const InputError&) {  // not a TOML value: a text without quotes
       if (text.find_first_of("[{\"'") == 0)
-        throw InputError(where + ": " + std::string(text) +
-                         " is not TOML: its brackets, its quotes or what stands between them; expected such as "
-                         "[0, -9.81, 0], { axis = [0, 1, 0], angle = \"90 deg\" } or \"5 mm\"");
+        throw InputError(
+            where + ": " + std::string(text) +
+            " is not TOML: its brackets, its quotes or what stands between them; expected such as "
+            "[0, -9.81, 0], { axis = [0, 1, 0], angle = \"90 deg\" } or \"5 mm\"");
     }
   }
   const auto place = [&](const auto& self, Node& n) -> void {

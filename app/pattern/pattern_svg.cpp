@@ -180,6 +180,7 @@ class SvgReader {
     const std::string text = node.attribute(key).value();
     if (text.empty()) return 0;
     try {
+      if (text.find('%') != text.npos) throw InputError("a share of the page");
       return parse_quantity(text, dimension::number);
     } catch (const InputError&) {
       throw InputError(at(node) + ": " + key + "=\"" + text +

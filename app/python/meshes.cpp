@@ -203,7 +203,8 @@ void add_meshes(py::module_& m) {
   m.def("write_obj", &write, py::arg("path"), py::arg("mesh"), py::arg("positions") = py::none(),
         "Writes the mesh with these positions, (n, 3) [m], or its own: vertices in the input's order, its "
         "polygons,\n"
-        "uv, groups and materials, normals anew. The file appears when it is complete.");
+        "uv, groups and materials of the file that it was read from, normals anew. A mesh made of arrays is\n"
+        "written without its groups, which OBJ files have by faces. The file appears when it is complete.");
   m.def("edges", &edges_of, py::arg("mesh"), "(e, 2) int32: the vertices of every edge, sorted, each once.");
   m.def(
       "vertex_areas", [](const TriangleMesh& mesh) { return copied(vertex_areas(mesh)); }, py::arg("mesh"),

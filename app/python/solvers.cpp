@@ -27,8 +27,9 @@ Array by_particle(const LinearSystem& system, const VecX& rows) {
 
 SolveReport solve(LinearSolver& solver, const LinearSystem& system, std::optional<double> tolerance,
                   int max_iterations) {
-  if (tolerance && !(*tolerance > 0 && *tolerance < 1))
-    throw py::value_error("tolerance: expected a part of the residual, greater than 0 and less than 1");
+  if (tolerance && !(*tolerance >= least_tolerance && *tolerance < 1))
+    throw py::value_error(
+        "tolerance: expected a part of the residual, from 1e-14, which round-off leaves, to less than 1");
   if (max_iterations < 0)
     throw py::value_error("max_iterations: expected a number of iterations, or 0 for the usual limit");
   const InUse in_use({&solver});

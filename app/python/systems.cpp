@@ -55,7 +55,8 @@ auto with_state(F f) {
 void add_systems(py::module_& m) {
   py::class_<Gravity>(m, "Gravity", "An acceleration that acts on all particles.")
       .def_readonly("g", &Gravity::g, "(3,) [m/s^2]");
-  m.def("gravity", &gravity, py::arg("g"), "The acceleration (3,) [m/s^2], for System.add, where it takes the place of the one before.");
+  m.def("gravity", &gravity, py::arg("g"),
+        "The acceleration (3,) [m/s^2], for System.add, where it takes the place of the one before.");
 
   py::class_<System, std::shared_ptr<System>>(m, "System", "Masses and forces: all that pushes.")
       .def(py::init([](const py::object& masses) { return System(list_of(masses, "masses")); }),

@@ -83,8 +83,13 @@ Polyline line_of(const RopeEntry& entry, const TriangleMesh& mesh) {
   if (found.size() > 1)
     throw InputError(start + counted(static_cast<long>(found.size()), "line") +
                      "; expected the name of one: " + listed(names));
-  if (found.front()->vertices.size() < 2)
+  const std::vector<int>& along = found.front()->vertices;
+  if (along.size() < 2)
     throw InputError(start + "a line of one vertex; a rope goes through two points at least");
+  if (along.front() == along.back())
+    throw InputError(
+        start + "a line that ends where it begins, at vertex " + std::to_string(along.front() + 1) +
+        "; a rope has two ends: leave out the last piece, or make two ropes and join their ends");
   return *found.front();
 }
 

@@ -5,7 +5,11 @@ namespace {
 
 // Woven and knitted cloth weighs 10 to 1000 g/m^2.
 void tell_of_area_density(const ClothEntry& entry, Names& messages) {
-  constexpr double heaviest = 10;  // kg/m^2
+  constexpr double heaviest = 10, lightest = 2e-3;  // kg/m^2
+  if (entry.fabric.area_density < lightest)
+    messages.push_back("warning: cloth " + entry.name + ": an area density of " +
+                       rounded(1000 * entry.fabric.area_density, 3) +
+                       " g/m^2 is lighter than any cloth: was it meant in kg/m^2?");
   if (entry.fabric.area_density <= heaviest) return;
   messages.push_back("warning: cloth " + entry.name + ": an area density of " +
                      rounded(entry.fabric.area_density, 3) +
@@ -19,6 +23,15 @@ void tell_of_bend(const ClothEntry& entry, Names& messages) {
   messages.push_back("warning: cloth " + entry.name + ": a bending rigidity of " +
                      rounded(entry.fabric.bend, 3) +
                      " N.m is stiffer than any cloth, which has 1 to 1000 uN.m: was it meant in uN.m?");
+}
+
+// Webbing of aramid bears 1e6 N/m at a strain of 1 by its straight part.
+void tell_of_stretch(const ClothEntry& entry, Names& messages) {
+  constexpr double stiffest = 1e7;  // N/m
+  if (entry.fabric.stretch_spring || entry.fabric.stretch <= stiffest) return;
+  messages.push_back("warning: cloth " + entry.name + ": a membrane stiffness of " +
+                     rounded(entry.fabric.stretch, 3) +
+                     " N/m is stiffer than any cloth, which has 100 to 100000 N/m: is the unit right?");
 }
 
 // Yarns break at strains of 3 to 50 %, and knitted cloth at twice its length or three times.
@@ -70,6 +83,7 @@ void tell_of_large_ball(const ObstacleEntry& body, double cloth, Names& messages
 void tell_of_unlikely_values(const Scene& scene, double size, Names& messages) {
   for (const ClothEntry& cloth : scene.cloths) {
     tell_of_area_density(cloth, messages);
+    tell_of_stretch(cloth, messages);
     tell_of_bend(cloth, messages);
     tell_of_tear(cloth, messages);
     if (cloth.self_contact) tell_of_friction("cloth " + cloth.name, cloth.self.friction, messages);

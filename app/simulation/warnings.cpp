@@ -10,6 +10,7 @@
 #include "app/simulation/unlikely.h"
 #include "mesh/base/errors.h"
 #include "mesh/distance/triangle_crossings.h"
+#include "mesh/pattern/panels.h"
 #include "mesh/triangles/extent.h"
 #include "mesh/triangles/topology.h"
 #include "solver/forces/choi_ko.h"
@@ -234,6 +235,14 @@ void check_place(const ClothEntry& entry, const Cloth& cloth, const VecX& x, Nam
                        " mm apart may be held up; move the scene nearer to the origin");
 }
 
+// Seams that the drawing or the mesh declares and the scene does not ask for.
+void tell_of_open_seams(const ClothEntry& entry, const Cloth& cloth, Names& messages) {
+  if (!entry.seams.empty()) return;
+  if (const auto seams = static_cast<long>(declared_seams(cloth.mesh).size()); seams > 0)
+    messages.push_back("note: cloth " + cloth.name + ": its mesh declares " + counted(seams, "seam") +
+                       ", and none is sewn: seams = [{}] sews " + (seams == 1 ? "it" : "them"));
+}
+
 double size_of(const VecX& x) {
   Eigen::AlignedBox3d box;
   for (Eigen::Index i = 0; i + 2 < x.size(); i += 3) box.extend(Vec3(x.segment<3>(i)));
@@ -420,6 +429,7 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
   tell_of_unlikely_values(scene, size_of(simulation.state.x), simulation.messages);
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
     tell_of_weld(scene.cloths[k], simulation.cloths[k], simulation.messages);
+    tell_of_open_seams(scene.cloths[k], simulation.cloths[k], simulation.messages);
     warn_if_coarse_for_folds(scene.cloths[k], simulation.cloths[k], simulation.messages);
     if (!scene.cloths[k].self_contact)
       tell_of_place(simulation.cloths[k], simulation.state.x, simulation.messages);

@@ -79,6 +79,12 @@ StabilityOptions options_of(const StabilityWords& words, const Scene& scene) {
 }  // namespace
 
 int stability(const std::filesystem::path& path, const StabilityWords& words, const CommonOptions& common) {
+  for (const Setting& setting : common.settings)
+    for (const auto& [option, instead] :
+         {std::pair{"--integrator", "--integrators"}, {"--time-step", "--longest and --shortest"}})
+      if (setting.where == option)
+        throw InputError(std::string(option) + ": stability looks for steps of several integrators; give " +
+                         instead);
   const Scene scene = read_scene(path, common.settings);
   StabilityTable table;
   table.scene = scene.label;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <numeric>
 
@@ -66,6 +67,10 @@ std::string shortest(double value) {
 
 std::string rounded(double value, int digits) {
   char buffer[40];
+  if (std::abs(value) < 1e4 && std::abs(value) >= std::pow(10, digits) - 0.5) {  // 100 rather than 1e+02
+    std::snprintf(buffer, sizeof buffer, "%.0f", value);
+    return buffer;
+  }
   std::snprintf(buffer, sizeof buffer, "%.*g", digits, value);
   return buffer;
 }

@@ -21,7 +21,7 @@ std::string suggestion(std::string_view word, const Names& known);
 std::string counted(long count, std::string_view noun);  // "1 vertex", "3 vertices", "2 cloths"
 
 std::string shortest(double value);             // as few digits as give the same number again
-std::string rounded(double value, int digits);  // %.{digits}g
+std::string rounded(double value, int digits);  // %.{digits}g, but with all digits of numbers below 10000
 std::string one_line(std::string text);         // line ends and other control characters become blanks
 
 }  // namespace drape

@@ -24,6 +24,8 @@ enum class StopReason {
 };
 std::string_view name(StopReason reason);
 
+constexpr double least_tolerance = 1e-14;  // that round-off lets be reached
+
 struct LinearOptions {
   double tolerance =
       1e-6;  // of the residual, relative to the larger of |S (b - A z)| and scale, but to most_scale at most, and
