@@ -393,7 +393,8 @@ TEST_CASE("a mistake in a setting names the setting", "[scene]") {
   message_of("simulation.tolerance=1e-30", "which round-off leaves");
   message_of("cloth.0.area_density=1e400", "is not a finite number");
   message_of("cloth.0.translate=[0, 1e400, 0]", "is not a finite number");
-  message_of("pair.0={friction = 0.5}", "");
+  message_of("pair.0.friction=0.5", "there is no [[pair]]");
+  message_of("rope.0.bend=0.5", "there is no [[rope]]");
   message_of("tolerance=1", "unknown key");
   message_of("tolerance", "expected PATH=VALUE");
   message_of("=3", "expected PATH=VALUE");

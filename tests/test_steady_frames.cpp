@@ -1,6 +1,7 @@
 // A motion is the same in a frame that moves steadily or falls, and what flies makes no energy of its flight.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <tuple>
 
 #include "solver/assembly/assembly.h"
 #include "tests/sheets.h"

@@ -191,7 +191,7 @@ int compare(const std::filesystem::path& path, const CompareWords& words, const 
     for (const double h : options.time_steps)
       if (const double end = grid_of(scene).time(options.steps); h > (1 + 1e-9) * end)
         throw InputError("--time-steps " + rounded(h, 4) + " s: is longer than the runs, " + rounded(end, 4) +
-                         " s by --steps " + std::to_string(options.steps));
+                         " s or " + counted(options.steps, "step") + " of the scene; ask for more --steps");
   if (scene.simulation.threads > 0) set_threads(scene.simulation.threads);
   Simulation simulation;
   if (options.sizes.empty()) simulation = make_simulation(scene);

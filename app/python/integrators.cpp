@@ -49,7 +49,8 @@ void check(const StepOptions& o) {
   require(o.newton_iterations >= 1, "newton_iterations: expected 1 or more");
   require(o.newton_tolerance > 0, "newton_tolerance: expected a number greater than zero");
   require(o.tolerance >= least_tolerance && o.tolerance < 1,
-          "tolerance: expected a part of the residual, from 1e-14, which round-off leaves, to less than 1");
+          "tolerance: expected a part of the residual, less than 1 and no less than 1e-14, which round-off "
+          "leaves");
   require(o.max_linear_iterations >= 0, "max_linear_iterations: expected 0 or more");
   require(contact_tolerance(o) > 0, "contact_tolerance: expected a number greater than zero");
   require(o.max_contact_solves >= 1, "max_contact_solves: expected 1 or more");

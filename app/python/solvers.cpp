@@ -29,7 +29,8 @@ SolveReport solve(LinearSolver& solver, const LinearSystem& system, std::optiona
                   int max_iterations) {
   if (tolerance && !(*tolerance >= least_tolerance && *tolerance < 1))
     throw py::value_error(
-        "tolerance: expected a part of the residual, from 1e-14, which round-off leaves, to less than 1");
+        "tolerance: expected a part of the residual, less than 1 and no less than 1e-14, which round-off "
+        "leaves");
   if (max_iterations < 0)
     throw py::value_error("max_iterations: expected a number of iterations, or 0 for the usual limit");
   const InUse in_use({&solver});

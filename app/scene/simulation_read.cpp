@@ -28,9 +28,9 @@ void read_step(Table& table, StepOptions& step) {
   table.read("tolerance", step.tolerance, dimension::number, Range::positive,
              "relative residual of the linear solve; less than 1");
   if (!(step.tolerance < 1) || step.tolerance < least_tolerance)
-    table.fail(
-        "tolerance",
-        "expected a part of the residual, from 1e-14, which round-off leaves, to less than 1, such as 1e-6");
+    table.fail("tolerance",
+               "expected a part of the residual, less than 1 and no less than 1e-14, which round-off leaves, "
+               "such as 1e-6");
   table.read(
       "max_linear_iterations", step.max_linear_iterations, 0,
       "0: chosen by size, and reaching it is a failure; given: the solve stops there and the step counts "

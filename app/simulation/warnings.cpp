@@ -237,7 +237,7 @@ void check_place(const ClothEntry& entry, const Cloth& cloth, const VecX& x, Nam
 
 // Seams that the drawing or the mesh declares and the scene does not ask for.
 void tell_of_open_seams(const ClothEntry& entry, const Cloth& cloth, Names& messages) {
-  if (!entry.seams.empty()) return;
+  if (!entry.seams.empty() || entry.weld) return;
   if (const auto seams = static_cast<long>(declared_seams(cloth.mesh).size()); seams > 0)
     messages.push_back("note: cloth " + cloth.name + ": its mesh declares " + counted(seams, "seam") +
                        ", and none is sewn: seams = [{}] sews " + (seams == 1 ? "it" : "them"));

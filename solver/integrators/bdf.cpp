@@ -143,6 +143,7 @@ class Bdf::ContactSolve {
 
 bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
   ContactStep contacts = begin(state, piece, report);  // what touches; c = gamma h; the first (x, v) and dv
+  bool energy = false;                                 // whether the motion makes some, of "bdf2"
   for (NewtonLoop newton(options_, system_.goes_slack()); newton.next();) {
     if (newton.exhausted()) return fail(report, "no step lowers the energy");
     // A = M + c D + c^2 K,  b = M (v_bar - v) + c (f - K y)                            [BW98, eq. 6 and 18]
@@ -159,10 +160,10 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
     if (!p_.x.allFinite()) return fail(report, "the new positions are not finite numbers");
     if (taken == StepTaken::overshot && linear_.residual > 0)
       most_reference_ = linear_.residual_impulse / linear_.residual;
-    const bool energy = history_.order() == 2 && makes_energy(state, contacts, piece.h);
+    energy = history_.order() == 2 && makes_energy(state, contacts, piece.h);
     newton.took(taken, energy && falls_back(), energy && k().order_2(), report);
   }
-  if (k().order_2() && makes_energy(state, contacts, piece.h)) {
+  if (k().order_2() && energy) {
     ++report.rescues;
     return attempt(state, {piece.h, piece.halvings, piece.shortest, true}, report);  // taken again by order 1
   }
@@ -239,8 +240,11 @@ double Bdf::residual(ContactStep& contacts) {
 bool Bdf::makes_energy(const State& start, const ContactStep& contacts, double h) {
   const double power = std::max(system_.given_power(start.x, start.v), system_.given_power(p_.x, p_.v));
   contacts.filter(p_.v, filter_);
-  rest_frame_.find(contacts, filter_, p_.v, k(), system_.gravity_acceleration(), adrift_, rest_);
-  return merit_.makes_energy(k(), start, p_, rest_, contacts.work() + 2 * h * power);
+  rest_frame_.find(A_.matrix(), constraints_, contacts, filter_, p_, k(), system_.gravity_acceleration(),
+                   adrift_, rest_);
+  // What the solve left over is not told from an impulse.
+  const double left = h / k().c * linear_.residual_impulse * std::sqrt(dot(rest_, rest_));
+  return merit_.makes_energy(k(), start, p_, rest_, contacts.work() + 2 * h * power + left);
 }
 
 double Bdf::residual_wanted() const {
@@ -281,8 +285,8 @@ bool Bdf::falls(ContactStep& contacts) {
 void Bdf::set_base(ContactStep& contacts, bool at_rest) {
   contacts.filter(p_.v, filter_);
   const auto from_frame = [&](bool adrift) {
-    const bool slides =
-        rest_frame_.find(contacts, filter_, p_.v, k(), system_.gravity_acceleration(), adrift, rest_);
+    const bool slides = rest_frame_.find(A_.matrix(), constraints_, contacts, filter_, p_, k(),
+                                         system_.gravity_acceleration(), adrift, rest_);
     v_base_ = rest_ - p_.v;
     filter_.impose(v_base_);
     v_base_ += p_.v;

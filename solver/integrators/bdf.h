@@ -8,8 +8,8 @@
 // of first order only.
 // The iteration is Newton's for the minimum of the incremental potential; solver/integrators/merit.h keeps it
 // from ending above where it began. Contacts are settled within each of its solves (solver/integrators/contact_loop.h).
-// A step of order 2 that made energy is taken again by order 1 (and counted in rescues). Such a step goes on
-// with Newton's iteration until it makes none: one solve bounds the energy of a motion that the scheme itself
+// A step of order 2 that made energy goes on with two more iterations at most. If it still makes energy, it is taken again by
+// order 1 (and counted in rescues). Such a step goes on with Newton's iteration until it makes none: one solve bounds the energy of a motion that the scheme itself
 // damps, but not that of one which order 2 has kept alive.
 // x [m], v [m/s], M [kg], f [N], h [s].
 #pragma once

@@ -1,8 +1,11 @@
 // How long Newton's iteration goes on, and with which stiffness: it takes as many steps as were asked for,
 // and more until one is taken whole. Where edges go slack the first may overshoot: what was slack where it was
 // linearised has become taut, and the next one knows that. After a step that had to be cut short, the next one uses the majorant.
-// The same is done, max_rescues times at most, while the motion that the iteration came to makes energy.
+// The same is done, max_rescues times at most, while the motion that the iteration of a step of order 1 came to makes energy.
+// One of order 2 that makes energy goes on with the stiffness that it has, twice at most.
 #pragma once
+
+#include <algorithm>
 
 #include "solver/integrators/integrator.h"
 #include "solver/integrators/merit.h"
@@ -16,7 +19,7 @@ class NewtonLoop {
   bool next() {
     ++k_;
     return k_ < options_.newton_iterations || taken_ != StepTaken::whole || (makes_energy_ && k_ < most()) ||
-           (refines_ && k_ < options_.newton_iterations + most_refined);
+           (refines_ && k_ < std::min(options_.newton_iterations + most_refined, most()));
   }
   bool first() const { return k_ == 0; }
   bool exhausted() const { return k_ == most(); }

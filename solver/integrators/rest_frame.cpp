@@ -1,5 +1,6 @@
 #include "solver/integrators/rest_frame.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace drape {
@@ -34,31 +35,45 @@ int RestFrame::root(int piece) const {
   return piece;
 }
 
-void RestFrame::join_touching(const ContactStep& contacts) {
+// By the blocks of the overlay that act.
+void RestFrame::join_touching(const BlockMatrix& A) {
   std::iota(next_.begin(), next_.end(), 0);
-  if (next_.size() == 1) return;
-  for (const SelfContact& c : contacts.touching_cloth()) {
-    if (!c.active) continue;
-    int first = -1;
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (c.weights[k] == 0) continue;
-      const int own = root(piece_[c.particles[k]]);
-      if (first >= 0 && own != first) next_[std::max(own, first)] = std::min(own, first);
-      first = first < 0 ? own : std::min(own, first);
-    }
-  }
+  const BlockOverlay& overlay = A.overlay();
+  const std::vector<int>& particle_of = A.pattern().particle_of();
+  for (int k = 0; k < overlay.row_count(); ++k)
+    overlay.in_row(k, [&](const BlockOverlay::Entry& e) {
+      if (e.transposed || A.at(e.slot).isZero(0)) return;
+      const int a = root(piece_[particle_of[overlay.row(k)]]), b = root(piece_[particle_of[e.column]]);
+      next_[std::max(a, b)] = std::min(a, b);
+    });
+  for (int& next : next_) next = next_[next];  // what it names is lower, and is done already
 }
 
-bool RestFrame::find(const ContactStep& contacts, const Filter& filter, const VecX& v,
-                     const StepCoefficients& k, const Vec3& gravity, bool adrift, VecX& u) {
-  join_touching(contacts);
-  std::fill(groups_.begin(), groups_.end(), Group());
-  for (const FilterEntry& e : filter.entries())
-    if (e.S.isZero(0)) group_of(e.particle).held.add(v.segment<3>(3 * e.particle) + e.z, 1);
+// The bodies on which a piece slides.
+void RestFrame::add_bodies(const Constraints& constraints, const ContactStep& contacts, const VecX& x) {
   for (const Contact& c : contacts.touching())
     if (c.planes > 0) group_of(c.particle).slides.add(c.plane[0].body_velocity, 1);
   for (const FaceContact& c : contacts.touching_faces())
     if (c.active) group_of(c.particles[0]).slides.add(c.body_velocity, 1);
+  for (const SelfContact& c : contacts.touching_cloth()) {
+    if (c.body < 0 || !c.active) continue;
+    for (std::size_t k = 0; k < 4; ++k)
+      if (c.weights[k] != 0) {
+        const int i = c.particles[k];
+        group_of(i).slides.add(constraints.bodies()[c.body].velocity(x.segment<3>(3 * i)), 1);
+      }
+  }
+}
+
+bool RestFrame::find(const BlockMatrix& A, const Constraints& constraints, const ContactStep& contacts,
+                     const Filter& filter, const Point& point, const StepCoefficients& k, const Vec3& gravity,
+                     bool adrift, VecX& u) {
+  constexpr double nothing = 1e-9;  // of what a particle that is held wholly may do
+  join_touching(A);
+  std::fill(groups_.begin(), groups_.end(), Group());
+  for (const FilterEntry& e : filter.entries())
+    if (e.S.isZero(nothing)) group_of(e.particle).held.add(point.v.segment<3>(3 * e.particle) + e.z, 1);
+  add_bodies(constraints, contacts, point.x);
   const int n = static_cast<int>(piece_.size());
   for (int i = 0; i < n; ++i) {
     const auto particle = static_cast<std::size_t>(i);

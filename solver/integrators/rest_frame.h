@@ -1,9 +1,9 @@
 // The velocity at which a piece of cloth would go if nothing in it moved: what an implicit step is judged against
-// (solver/integrators/merit.h). A piece is what springs join, with what it touches of other cloth. It is at rest
+// (solver/integrators/merit.h). A piece is what forces join in this step, those of contact among them. It is at rest
 //   with what holds it:  the mean velocity of its particles that are held wholly, by pins or by friction
 //   else with the bodies that it slides on:  the mean of their velocities where it touches them
 //   else with its own centre of mass:  u = sum m (v_bar + fall g) / sum m,  as it would move in this step without forces
-// So a step has as much energy to spend as its motion within such a frame has: what flies, falls or is driven along may not
+// (All pieces that only slide may be asked to go with their centres of mass, too.) So a step has as much energy to spend as its motion within such a frame has: what flies, falls or is driven along may not
 // turn the energy of that into another one, and the step is the same in any frame that moves steadily.
 // v [m/s], m [kg].
 #pragma once
@@ -12,7 +12,7 @@
 
 #include "constraints/contact_step.h"
 #include "solver/integrators/step_history.h"
-#include "solver/matrix/block_pattern.h"
+#include "solver/matrix/block_matrix.h"
 
 namespace drape {
 
@@ -20,10 +20,11 @@ class RestFrame {
  public:
   void follow(const BlockPattern& pattern);  // finds the pieces
 
-  // Sets u, 3 numbers a particle [m/s]. The filter is that of the velocity v. adrift: pieces that only slide go with
-  // their centre of mass, too. Returns whether there are such pieces.
-  bool find(const ContactStep& contacts, const Filter& filter, const VecX& v, const StepCoefficients& k,
-            const Vec3& gravity, bool adrift, VecX& u);
+  // Sets u, 3 numbers a particle [m/s], for the system A of a step with these coefficients. The filter is that of the
+  // velocity of the point. adrift: pieces that only slide go with their centre of mass. Returns whether there are such.
+  bool find(const BlockMatrix& A, const Constraints& constraints, const ContactStep& contacts,
+            const Filter& filter, const Point& point, const StepCoefficients& k, const Vec3& gravity,
+            bool adrift, VecX& u);
 
  private:
   struct Mean {
@@ -38,7 +39,8 @@ class RestFrame {
     Mean held, slides, moves;
   };
   int root(int piece) const;
-  void join_touching(const ContactStep& contacts);
+  void join_touching(const BlockMatrix& A);
+  void add_bodies(const Constraints& constraints, const ContactStep& contacts, const VecX& x);
   Group& group_of(int particle) { return groups_[root(piece_[particle])]; }
 
   std::vector<int> piece_;     // by particle
