@@ -386,7 +386,7 @@ TEST_CASE("what is said of a start that contact cannot take as it is", "[cli]") 
   const Outcome far = warned(guarded + "translate = [0, 0, -5000]\n");
   CHECK(far.exit_code == 2);
   CHECK(lines_of(far.err) == 1);
-  CHECK_THAT(far.err, StartsWith("error: w.toml:1: cloth sheet: reaches 5e+03 m from the origin") &&
+  CHECK_THAT(far.err, StartsWith("error: w.toml:1: cloth sheet: reaches 5000 m from the origin") &&
                           Contains("move the scene nearer to the origin"));
   CHECK(warned("translate = [0, 0, -5000]\n").exit_code == 0);
   CHECK_THAT(warned("[[obstacle]]\nshape = \"plane\"\npoint = [0, 0.349, 0]\nmargin = \"1 cm\"\n").out,

@@ -49,10 +49,19 @@ void RestFrame::join_touching(const BlockMatrix& A) {
   for (int& next : next_) next = next_[next];  // what it names is lower, and is done already
 }
 
-// The bodies on which a piece slides.
-void RestFrame::add_bodies(const Constraints& constraints, const ContactStep& contacts, const VecX& x) {
-  for (const Contact& c : contacts.touching())
-    if (c.planes > 0) group_of(c.particle).slides.add(c.plane[0].body_velocity, 1);
+// What holds a piece: pins, with the velocity that they prescribe; and bodies, with their own. (A contact that arrives in this
+// step prescribes how the particle comes to the body.)
+void RestFrame::add_bodies(const Constraints& constraints, const ContactStep& contacts, const Filter& filter,
+                           const Point& point) {
+  const std::vector<int>& pinned = constraints.pinned();
+  for (const FilterEntry& e : filter.entries())
+    if (std::binary_search(pinned.begin(), pinned.end(), e.particle))
+      group_of(e.particle).held.add(point.v.segment<3>(3 * e.particle) + e.z, 1);
+  for (const Contact& c : contacts.touching()) {
+    if (c.planes == 0) continue;
+    Group& group = group_of(c.particle);
+    (c.grip == Grip::stick || c.clamped ? group.held : group.slides).add(c.plane[0].body_velocity, 1);
+  }
   for (const FaceContact& c : contacts.touching_faces())
     if (c.active) group_of(c.particles[0]).slides.add(c.body_velocity, 1);
   for (const SelfContact& c : contacts.touching_cloth()) {
@@ -60,7 +69,7 @@ void RestFrame::add_bodies(const Constraints& constraints, const ContactStep& co
     for (std::size_t k = 0; k < 4; ++k)
       if (c.weights[k] != 0) {
         const int i = c.particles[k];
-        group_of(i).slides.add(constraints.bodies()[c.body].velocity(x.segment<3>(3 * i)), 1);
+        group_of(i).slides.add(constraints.bodies()[c.body].velocity(point.x.segment<3>(3 * i)), 1);
       }
   }
 }
@@ -68,12 +77,9 @@ void RestFrame::add_bodies(const Constraints& constraints, const ContactStep& co
 bool RestFrame::find(const BlockMatrix& A, const Constraints& constraints, const ContactStep& contacts,
                      const Filter& filter, const Point& point, const StepCoefficients& k, const Vec3& gravity,
                      bool adrift, VecX& u) {
-  constexpr double nothing = 1e-9;  // of what a particle that is held wholly may do
   join_touching(A);
   std::fill(groups_.begin(), groups_.end(), Group());
-  for (const FilterEntry& e : filter.entries())
-    if (e.S.isZero(nothing)) group_of(e.particle).held.add(point.v.segment<3>(3 * e.particle) + e.z, 1);
-  add_bodies(constraints, contacts, point.x);
+  add_bodies(constraints, contacts, filter, point);
   const int n = static_cast<int>(piece_.size());
   for (int i = 0; i < n; ++i) {
     const auto particle = static_cast<std::size_t>(i);

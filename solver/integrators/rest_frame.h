@@ -40,7 +40,8 @@ class RestFrame {
   };
   int root(int piece) const;
   void join_touching(const BlockMatrix& A);
-  void add_bodies(const Constraints& constraints, const ContactStep& contacts, const VecX& x);
+  void add_bodies(const Constraints& constraints, const ContactStep& contacts, const Filter& filter,
+                  const Point& point);
   Group& group_of(int particle) { return groups_[root(piece_[particle])]; }
 
   std::vector<int> piece_;     // by particle
