@@ -49,13 +49,14 @@ void RestFrame::join_touching(const BlockMatrix& A) {
   for (int& next : next_) next = next_[next];  // what it names is lower, and is done already
 }
 
-// What holds a piece: pins, with the velocity that they prescribe; and bodies, with their own. (A contact that arrives in this
-// step prescribes how the particle comes to the body.)
+// What holds a piece: pins and particles without mass, with the velocity that is prescribed; and bodies, with their own.
+// (A contact that arrives in this step prescribes how the particle comes to the body.)
 void RestFrame::add_bodies(const Constraints& constraints, const ContactStep& contacts, const Filter& filter,
-                           const Point& point) {
+                           const Point& point, const StepCoefficients& k) {
   const std::vector<int>& pinned = constraints.pinned();
   for (const FilterEntry& e : filter.entries())
-    if (std::binary_search(pinned.begin(), pinned.end(), e.particle))
+    if (k.mass[static_cast<std::size_t>(e.particle)] == 0 ||
+        std::binary_search(pinned.begin(), pinned.end(), e.particle))
       group_of(e.particle).held.add(point.v.segment<3>(3 * e.particle) + e.z, 1);
   for (const Contact& c : contacts.touching()) {
     if (c.planes == 0) continue;
@@ -66,9 +67,9 @@ void RestFrame::add_bodies(const Constraints& constraints, const ContactStep& co
     if (c.active) group_of(c.particles[0]).slides.add(c.body_velocity, 1);
   for (const SelfContact& c : contacts.touching_cloth()) {
     if (c.body < 0 || !c.active) continue;
-    for (std::size_t k = 0; k < 4; ++k)
-      if (c.weights[k] != 0) {
-        const int i = c.particles[k];
+    for (std::size_t corner = 0; corner < 4; ++corner)
+      if (c.weights[corner] != 0) {
+        const int i = c.particles[corner];
         group_of(i).slides.add(constraints.bodies()[c.body].velocity(point.x.segment<3>(3 * i)), 1);
       }
   }
@@ -79,7 +80,7 @@ bool RestFrame::find(const BlockMatrix& A, const Constraints& constraints, const
                      bool adrift, VecX& u) {
   join_touching(A);
   std::fill(groups_.begin(), groups_.end(), Group());
-  add_bodies(constraints, contacts, filter, point);
+  add_bodies(constraints, contacts, filter, point, k);
   const int n = static_cast<int>(piece_.size());
   for (int i = 0; i < n; ++i) {
     const auto particle = static_cast<std::size_t>(i);

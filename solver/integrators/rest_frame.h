@@ -41,7 +41,7 @@ class RestFrame {
   int root(int piece) const;
   void join_touching(const BlockMatrix& A);
   void add_bodies(const Constraints& constraints, const ContactStep& contacts, const Filter& filter,
-                  const Point& point);
+                  const Point& point, const StepCoefficients& k);
   Group& group_of(int particle) { return groups_[root(piece_[particle])]; }
 
   std::vector<int> piece_;     // by particle
