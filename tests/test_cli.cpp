@@ -253,6 +253,17 @@ TEST_CASE("a cloth is dropped onto shapes, meshes and the floor", "[cli]") {
   }
   CHECK_THAT(shop.json("o/run.json")["scene"].get<std::string>(), StartsWith("drape drop sheet.obj --floor"));
   CHECK(shop.drape("drop sheet.obj --duration 0.05").exit_code == 0);
+  for (const std::string words :  // what drop sets by itself may be given by any way
+       {"--tolerance 1e-3 --time-step '5 ms' --integrator bdf2 --linear-solver mpcg --threads 1 --scale 1",
+        "--set simulation.tolerance=1e-3 --set simulation.stop_when_settled=false --set "
+        "cloth.0.fabric=polyester-plain",
+        "--set cloth.0.self_contact=false --set cloth.0.warp=[1,0,0] --set simulation.gravity=[0,-1,0]"}) {
+    INFO(words);
+    const Outcome run =
+        shop.drape("drop sheet.obj --onto sphere:0.3 --floor --duration 0.02 --out o " + words);
+    INFO(run.err);
+    CHECK(run.exit_code == 0);
+  }
   CHECK(shop.files("out/sheet") == without_bodies);
   CHECK(shop.drape("drop sheet.obj --onto sphere:0.3 --friction 0.1 --margin '3 mm' --fabric polyester-plain "
                    "--scale 0.5 "

@@ -114,7 +114,7 @@ class DropScene {
     Node simulation = Node::of_table("drape drop");
     simulation.members["duration"] = Node::of_text("3 s", "drape drop");
     // A drape wants no more: a ten-thousandth of the cloth's weight.
-    simulation.members["tolerance"] = number(1e-4);
+    simulation.members["tolerance"] = Node::of_number(1e-4, "drape drop");
     simulation.members["stop_when_settled"] = parse_toml_value("true", "drape drop");
     root_.members["simulation"] = std::move(simulation);
   }

@@ -100,8 +100,9 @@ StepTaken Merit::descend(const StepCoefficients& k, const std::vector<ContactFri
   return StepTaken::cut;
 }
 
-// In the frame in which the cloth is at rest, what moves it along with velocity u does the work u . J less, with J the impulses
-// of the step but gravity's. (Of order 2 these are not what the momentum gains, because it looks back.)
+// Energies are summed in the frame in which the cloth is at rest, which moves by u. There pins and bodies do less work, by
+// u . J, where J are the impulses of the step but gravity's. (A step of order 2 looks back, so J is not what the momentum
+// gains.)
 bool Merit::makes_energy(const StepCoefficients& k, const State& before, const Point& after, const VecX& rest,
                          double work) {
   const Vec3& g = system_.gravity_acceleration();

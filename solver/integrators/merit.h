@@ -1,8 +1,8 @@
 // What an implicit step minimises, and how far a Newton step may go.
 //   Phi(v) = 1/2 |v - v_bar - c g|^2_M + E(x_bar + c v) + c/2 v . D v + what friction of contacts takes in h
 // The first Newton step is judged against a cloth at rest (solver/integrators/rest_frame.h; v = 0 where its pins and
-// bodies stand, and what is prescribed), each later one against the v before it. A full step that would raise Phi is cut short by halves: so a step of order 1
-// makes no energy, however stiff the cloth.
+// bodies stand, and what is prescribed), each later one against the v before it. A full step that would raise Phi is
+// cut short by halves: so a step of order 1 makes no energy, however stiff the cloth.
 //                                                                [Nocedal & Wright 2006, section 3.1]
 // Where edges go slack, the first Newton step may be taken whole although it raises Phi: the next one knows which edges
 // have become taut, and is judged against a cloth at rest in its place.                    [the watchdog of Chamberlain et al. 1982]

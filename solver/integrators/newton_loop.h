@@ -50,7 +50,7 @@ class NewtonLoop {
   int k_ = -1;
   StepTaken taken_ = StepTaken::cut;  // the last step
   bool makes_energy_ = false;         // and so far the motion makes energy
-  bool refines_ = false;
+  bool refines_ = false;              // the last step makes energy, and the next one refines it
 };
 
 }  // namespace drape::internal
