@@ -208,6 +208,65 @@ TEST_CASE("a rope in free flight keeps momentum, and angular momentum with the t
   CHECK(gained < 1e-12);  // J, of 0.1
 }
 
+TEST_CASE("the bending of a rope is damped as a beam's, on any division and in any plane", "[rope]") {
+  const double length = 0.5, line = 0.05, B = 1e-2, zeta = 0.05;
+  const double omega = M_PI * M_PI / (length * length) * std::sqrt(B / line), period = 2 * M_PI / omega;
+  const Vec3 along = Vec3(1, 0.7, -0.4).normalized(), side = along.unitOrthogonal();
+  for (const int segments : {10, 20, 40})
+    for (const double amplitude : {1e-3, 1e-5})
+      for (const Vec3& way : {side, Vec3(along.cross(side))}) {
+        CAPTURE(segments, amplitude);
+        Rope rope(straight(Vec3::Zero(), length * along, segments),
+                  {.mass_per_length = line, .stretch = 50, .bend = B, .bend_damping = B * 2 * zeta / omega},
+                  Vec3::Zero());
+        rope.hold({0, segments});
+        for (int i = 1; i < segments; ++i)
+          rope.state.v.segment<3>(3 * i) = amplitude * omega * std::sin(M_PI * i / segments) * way;
+        rope.use("bdf2", "eigen-ldlt", precise());
+        const double before = rope.system->total_energy(rope.state);
+        rope.go(period / 200, 400);
+        const double decay = std::log(before / rope.system->total_energy(rope.state));
+        CHECK(decay / (2 * zeta * omega * 2 * period) == Approx(1).epsilon(0.03));
+      }
+}
+
+// The direction in which a straight rope is bent is that of round-off.
+TEST_CASE("a straight rope whose bending is damped goes its way by every integrator", "[rope]") {
+  for (const std::string& name : integrator_names())
+    for (const int segments : {10, 20, 30})
+      for (const double damping : {1e-4, 1e-3, 1e-2}) {
+        if (!bears_stiff(name) || name == "newton-kinsol") continue;  // KINSOL may find no solution (docs/limits.md)
+        CAPTURE(name, segments, damping);
+        Rope rope(straight(Vec3::Zero(), {0.3, 0.2, 0.1}, segments),
+                  {.mass_per_length = 0.06, .bend_damping = damping});
+        rope.hold({0});
+        rope.use(name, "eigen-ldlt");
+        for (int n = 0; n < 10; ++n) {
+          const StepReport report = rope.advance(0.01);
+          INFO("step " << n << ": " << report.failure.what);
+          REQUIRE(report.done);
+          CHECK(report.substeps == 1);
+        }
+        double most = 0;
+        for (int k = 0; k <= segments; ++k)
+          most = std::max(most, std::abs(rope.at(k).norm() - rope.start[k].norm()));
+        CHECK(most < 0.05);
+        CHECK(rope.state.v.norm() > 0);
+      }
+}
+
+TEST_CASE("a straight rope that hangs is at rest by \"pbd\", however its bending is damped", "[rope][pbd]") {
+  for (const int segments : {20, 40, 80})
+    for (const double damping : {0.0, 1e-5, 1e-4, 1e-3}) {
+      CAPTURE(segments, damping);
+      Rope rope(straight(Vec3::Zero(), {0, -0.5, 0}, segments), {.bend_damping = damping});
+      rope.hold({0});
+      rope.use("pbd", "mpcg");
+      rope.go(0.01, 50);
+      CHECK(rope.state.v.cwiseAbs().maxCoeff() < 0.5);
+    }
+}
+
 TEST_CASE("the axis of a rope rests at its radius and the margin, by every integrator", "[rope]") {
   for (const Method& method : methods()) {
     CAPTURE(method.label);

@@ -305,6 +305,16 @@ TEST_CASE("what a scene gives and its integrator or model does not use is told",
   for (const IntegratorInfo& one : integrators())
     if (one.name.starts_with("cvode-")) CHECK(idle(std::string(one.name)) == Names{"substeps", "alpha"});
   CHECK(read("[simulation]\ntolerance = 1e-4\n" + cloth).simulation.idle_keys.empty());
+  for (const IntegratorInfo& one : integrators()) {
+    INFO(one.name);
+    const std::string name(one.name);
+    const Names found = read("[simulation]\nintegrator = \"" + name +
+                             "\"\nlinear_solver = \"mpcg\"\nnewton_iterations = 2\n" + cloth)
+                            .simulation.idle_keys;
+    const Names without_a_system = {"pbd", "explicit-euler", "midpoint", "rk4", "symplectic-euler", "sb-implicit"};
+    const bool solves = std::ranges::count(without_a_system, name) == 0;
+    CHECK(found == (solves ? Names{} : Names{"linear_solver", "newton_iterations"}));
+  }
 
   const std::string warp = cloth + "warp = [1, 0, 0]\n";
   CHECK(read(warp + "model = \"noh-jung\"\nviscosity = { bend = \"1 ms\" }\n").cloths[0].idle_keys ==

@@ -98,6 +98,8 @@ Names idle_keys(const Table& table, const std::string& integrator) {
   look(integrator.starts_with("cvode-") || integrator.starts_with("arkode-"),
        {"relative_tolerance", "absolute_tolerance_position", "absolute_tolerance_velocity",
         "max_inner_steps"});
+  const bool solves = contact_mode(integrator, {}) == ContactMode::constraint;
+  look(solves, {"linear_solver", "newton_iterations", "newton_tolerance", "max_linear_iterations"});
   return idle;
 }
 

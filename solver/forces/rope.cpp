@@ -9,6 +9,8 @@
 namespace drape {
 namespace {
 
+constexpr double least_curvature = 1e-3;  // q_0 / d [1/m]
+
 // Of each segment [m].
 std::vector<double> lengths_of(const std::vector<Vec3>& points) {
   if (points.size() < 2)
@@ -52,20 +54,24 @@ std::vector<std::unique_ptr<Force>> rope_forces(const std::vector<Vec3>& points,
   const std::vector<double> L = lengths_of(points);
   std::vector<PairForce<RopeStretch>::Element> segments;
   std::vector<StencilForce<RopeBend>::Element> bends;
+  std::vector<StencilForce<RopeBendDamping>::Element> dampers;
   for (std::size_t k = 0; k < L.size(); ++k) {
     const int i = particles[k], j = particles[k + 1];
     if (i != j) segments.push_back({{i, j}, {L[k], material.stretch / L[k]}});
     if (k == 0) continue;
     const int before = particles[k - 1];
     const double d = 0.5 * (L[k - 1] + L[k]);
-    if (before != i && i != j && before != j)  // else two of them have been sewn together
-      bends.push_back({{before, i, j}, {L[k - 1], L[k], material.bend / d, material.bend_damping / d}});
+    if (before == i || i == j || before == j) continue;  // two of them have been sewn together
+    if (material.bend > 0) bends.push_back({{before, i, j}, {L[k - 1], L[k], material.bend / d}});
+    if (material.bend_damping > 0)
+      dampers.push_back({{before, i, j}, {material.bend_damping / d, least_curvature * d}});
   }
   std::vector<std::unique_ptr<Force>> forces;
   if (!segments.empty())
     forces.push_back(std::make_unique<PairForce<RopeStretch>>(std::move(segments), material.damping));
-  if (!bends.empty() && (material.bend > 0 || material.bend_damping > 0))
-    forces.push_back(std::make_unique<StencilForce<RopeBend>>(std::move(bends)));
+  if (!bends.empty()) forces.push_back(std::make_unique<StencilForce<RopeBend>>(std::move(bends)));
+  if (!dampers.empty())
+    forces.push_back(std::make_unique<StencilForce<RopeBendDamping>>(std::move(dampers)));
   return forces;
 }
 

@@ -15,38 +15,52 @@ struct RopeBend {
   static constexpr int particles = 3;
   struct Rest {
     double a, b;  // m
-    double k, c;  // B / d [N m], C_b / d [N m s]
+    double k;     // B / d [N m]
   };
   struct Common {};
 
   static std::array<double, 3> weights(const Rest& r) { return {1 / r.a, -1 / r.a - 1 / r.b, 1 / r.b}; }
 
   static double energy(const Common&, const Rest& r, const Vec3& p) { return 0.5 * r.k * p.squaredNorm(); }
-  static double dissipation(const Common&, const Rest& r, const Vec3& p, const auto& velocity) {
-    const double rate = r.c == 0 ? 0 : direction(p).dot(velocity());
-    return 0.5 * r.c * rate * rate;
-  }
-  static Vec3 pull(const Common&, const Rest& r, const Vec3& p, const auto& velocity) {
-    if (r.c == 0) return r.k * p;
-    const Vec3 n = direction(p);
-    return r.k * p + r.c * n.dot(velocity()) * n;
-  }
-  static VectorResponse linearised(const Common&, const Rest& r, const Vec3& p, const auto& velocity,
+  static double dissipation(const Common&, const Rest&, const Vec3&, const auto&) { return 0; }
+  static Vec3 pull(const Common&, const Rest& r, const Vec3& p, const auto&) { return r.k * p; }
+  static VectorResponse linearised(const Common&, const Rest& r, const Vec3& p, const auto&,
                                    const auto& shift, double c, Stiffness) {
-    VectorResponse response{.acts = true};
-    response.impulse = c * r.k * (p + shift());
-    response.block = c * c * r.k * Mat3::Identity();
-    if (r.c == 0) return response;
-    const Vec3 n = direction(p);
-    response.impulse += c * r.c * n.dot(velocity()) * n;
-    response.block += c * r.c * (n * n.transpose());
-    return response;
+    return {.impulse = c * r.k * (p + shift()), .block = c * c * r.k * Mat3::Identity(), .acts = true};
   }
+};
 
- private:
-  static Vec3 direction(const Vec3& p) {
-    const double size = p.norm();
-    return size == 0 ? Vec3::Zero() : Vec3(p / size);
+struct RopeBendDamping {
+  static constexpr const char* name = "bend damping";
+  static constexpr int particles = 3;
+  struct Rest {
+    double c;      // C_b / d [N m s]
+    double least;  // q_0
+  };
+  struct Common {};
+
+  static double energy(const Common&, const Rest&, const Points<3>&) { return 0; }
+  static Points<3> gradient(const Common&, const Rest&, const Points<3>&) { return Points<3>::Zero(); }
+  static Blocks<3> hessian(const Common&, const Rest&, const Points<3>&, Stiffness) {
+    return Blocks<3>::Zero();
+  }
+  static bool damped(const Common&) { return true; }
+  // With Q = dq/dX: C_b / d (q_0^2 Q^T Q + Q^T q q^T Q) / (|q|^2 + q_0^2). Zero where a segment has no length.
+  static Blocks<3> damping(const Common&, const Rest& r, const Points<3>& X) {
+    const Vec3 first = X.col(1) - X.col(0), second = X.col(2) - X.col(1);
+    const double a = first.norm(), b = second.norm();
+    if (a == 0 || b == 0) return Blocks<3>::Zero();
+    const Vec3 t = first / a, u = second / b, q = u - t;
+    const Mat3 of_first = (Mat3::Identity() - t * t.transpose()) / a;
+    const Mat3 of_second = (Mat3::Identity() - u * u.transpose()) / b;
+    Eigen::Matrix<double, 3, 9> Q;
+    Q << of_first, -of_first - of_second, of_second;
+    const Eigen::Matrix<double, 9, 1> along = Q.transpose() * q;
+    const double small2 = r.least * r.least;
+    Blocks<3> D = along * along.transpose();
+    for (int k = 0; k < 9; ++k)
+      for (int l = k; l < 9; ++l) D(k, l) = D(l, k) += small2 * Q.col(k).dot(Q.col(l));
+    return r.c / (q.squaredNorm() + small2) * D;
   }
 };
 

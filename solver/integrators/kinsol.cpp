@@ -264,7 +264,7 @@ double NewtonKinsol::potential(const VecX& v) {
     const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
     rubbed += 0.5 * h_ * slip.dot(f.damping * slip) - f.impulse.dot(slip);
   }
-  return inertia + potential_of_forces(system_, x_, v, h_) + rubbed;
+  return inertia + potential_of_forces(system_, x_, x_, v, h_) + rubbed;
 }
 
 // Sets F = M (v - v_n) - h f(x_bar + h v, v) + friction, without the filter.

@@ -27,9 +27,10 @@ RoundOff round_off(const System& system, const BlockMatrix& A, const VecX& x, co
   return {.least = all.energy, .impulse = std::sqrt(all.squares), .terms = terms};
 }
 
-double potential_of_forces(const System& system, const VecX& x, const VecX& v, double c) {
+double potential_of_forces(const System& system, const VecX& x, const VecX& damped_at, const VecX& v,
+                           double c) {
   double phi = 0;
-  for (const auto& force : system.forces()) phi += force->energy(x) + c * force->dissipation(x, v);
+  for (const auto& force : system.forces()) phi += force->energy(x) + c * force->dissipation(damped_at, v);
   return phi;
 }
 
@@ -51,6 +52,7 @@ double Merit::speed_noise(double residual) const {
 
 void Merit::measure(const BlockMatrix& A, const Point& p, double c) {
   noise_ = round_off(system_, A, p.x, p.v, c);
+  linearised_at_ = p.x;
 }
 
 // What friction takes is mu N |slip|, as Coulomb's law has it: its linearisation grows with the square of a slip that
@@ -71,7 +73,7 @@ double Merit::potential(const StepCoefficients& k, const std::vector<ContactFric
   double rubbed = 0;
   for (const ContactFriction& f : friction)
     rubbed += f.most * (f.along * (v.segment<3>(3 * f.particle) - f.body_velocity)).norm();
-  return inertia + potential_of_forces(system_, x_, v, k.c) + rubbed;
+  return inertia + potential_of_forces(system_, x_, linearised_at_, v, k.c) + rubbed;
 }
 
 // The largest Phi that counts as not above `start`. A tenth of the energy that the fall of one step brings may

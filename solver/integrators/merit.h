@@ -32,8 +32,8 @@ struct RoundOff {
 };
 RoundOff round_off(const System& system, const BlockMatrix& A, const VecX& x, const VecX& v, double c);
 
-double potential_of_forces(const System& system, const VecX& x, const VecX& v,
-                           double c);  // E(x) + c/2 v . D v [J]
+// E(x) + c/2 v . D v [J], with D at the point damped_at.
+double potential_of_forces(const System& system, const VecX& x, const VecX& damped_at, const VecX& v, double c);
 
 // How far a Newton step was taken: whole, whole although Phi rose, or cut short.
 enum class StepTaken { whole, overshot, cut };
@@ -72,6 +72,7 @@ class Merit {
   double weight_impulse_ = 0;  // h |m g| [N s]
   double fall_energy_ = 0;     // sum of m (h g)^2 [J]
   RoundOff noise_;             // at the point where it was measured last
+  VecX linearised_at_;         // x there [m]
   VecX x_;                     // scratch
 };
 
