@@ -242,6 +242,8 @@ double ParticleContacts::wrong_friction(const Bodies& bodies, const StepMotion& 
 void ParticleContacts::settle(const Bodies& bodies, const StepMotion& step, const VecX& v, const VecX& r) {
   for (Contact& c : trial_) {
     if (!c.active() || c.clamped) continue;
+    const std::array<double, 3> lambda = presses(c, r.segment<3>(3 * c.particle));
+    for (int k = 0; k < c.planes; ++k) c.impulse[k] = std::max(lambda[k], 0.0);
     c.normal_impulse = pressed(c, r.segment<3>(3 * c.particle));
     const double slip = tangential(c, v.segment<3>(3 * c.particle) - c.body_velocity()).norm();
     const double most = friction_of(bodies, c).kinetic * c.normal_impulse;

@@ -138,6 +138,7 @@ TEST_CASE("without frames the steps are those asked for, and the last is what is
   CHECK(walked(Schedule(StepGrid(0.02), 0, 0.05)).steps.size() == 3);
   CHECK(walked(Schedule(StepGrid(0.02), 0, 0.05)).steps.back() == Approx(0.01));
   CHECK(walked(Schedule(StepGrid(0.02), 0, 0.06)).steps == std::vector<double>(3, 0.02));
+  CHECK(Schedule(StepGrid(1e6), 0.4, 1e6 + 0.4).time() == 0.4);  // not the time 0, a part of a step before
   const Walk later = walked(Schedule(StepGrid(0.02), 0.06, 0.12));
   CHECK(later.times == std::vector<double>{3 * 0.02, 4 * 0.02, 5 * 0.02, 0.12});
   CHECK(walked(Schedule(StepGrid(0.02), 0.013, 0.053)).times.back() == 0.053);

@@ -235,7 +235,8 @@ TEST_CASE("a straight rope whose bending is damped goes its way by every integra
   for (const std::string& name : integrator_names())
     for (const int segments : {10, 20, 30})
       for (const double damping : {1e-4, 1e-3, 1e-2}) {
-        if (!bears_stiff(name) || name == "newton-kinsol") continue;  // KINSOL may find no solution (docs/limits.md)
+        if (!bears_stiff(name) || name == "newton-kinsol")
+          continue;  // KINSOL may find no solution (docs/limits.md)
         CAPTURE(name, segments, damping);
         Rope rope(straight(Vec3::Zero(), {0.3, 0.2, 0.1}, segments),
                   {.mass_per_length = 0.06, .bend_damping = damping});

@@ -311,7 +311,8 @@ TEST_CASE("what a scene gives and its integrator or model does not use is told",
     const Names found = read("[simulation]\nintegrator = \"" + name +
                              "\"\nlinear_solver = \"mpcg\"\nnewton_iterations = 2\n" + cloth)
                             .simulation.idle_keys;
-    const Names without_a_system = {"pbd", "explicit-euler", "midpoint", "rk4", "symplectic-euler", "sb-implicit"};
+    const Names without_a_system = {"pbd", "explicit-euler",   "midpoint",
+                                    "rk4", "symplectic-euler", "sb-implicit"};
     const bool solves = std::ranges::count(without_a_system, name) == 0;
     CHECK(found == (solves ? Names{} : Names{"linear_solver", "newton_iterations"}));
   }

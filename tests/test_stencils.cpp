@@ -146,7 +146,8 @@ struct DampedRope {  // bent a hundred times as far as q_0, and so little that i
   static Law::Rest rest() { return {.c = 0.4, .least = 0.01 * percent}; }
   static Law::Common common() { return {}; }
 };
-using Cases = std::tuple<FullSpring, Distance, Area, PointTriangle, BentRope, DampedRope<1>, DampedRope<10000>, Woven<100>, Woven<30>>;
+using Cases = std::tuple<FullSpring, Distance, Area, PointTriangle, BentRope, DampedRope<1>,
+                         DampedRope<10000>, Woven<100>, Woven<30>>;
 
 // Of the direct solvers; a multigrid may make its levels anew whenever they work badly.
 bool analyses_are_kept(std::string_view solver) { return solver == "cholmod" || solver == "eigen-ldlt"; }

@@ -66,14 +66,17 @@ std::vector<TouchingParticle> touching(const Constraints& constraints) {
   require_free(&constraints);
   std::vector<TouchingParticle> all;
   for (const Contact& contact : constraints.contacts())
-    if (contact.active())
-      all.push_back({contact.particle, contact.plane[0].obstacle, contact.grip == Grip::stick,
-                     contact.plane[0].normal, contact.plane[0].gap, contact.normal_impulse});
+    for (int k = 0; k < contact.planes; ++k) {
+      const ContactPlane& plane = contact.plane[k];
+      all.push_back({contact.particle, plane.obstacle, contact.grip == Grip::stick, plane.normal, plane.gap,
+                     contact.impulse[k]});
+    }
   return all;
 }
 
 void add_touches(py::module_& m) {
-  py::class_<TouchingParticle>(m, "Contact", "A particle that touches a body, after the last step.")
+  py::class_<TouchingParticle>(
+      m, "Contact", "A particle that touches a body, after the last step: one for each plane that holds it.")
       .def_readonly("particle", &TouchingParticle::particle)
       .def_readonly("body", &TouchingParticle::body, "number of the obstacle, from 0")
       .def_readonly("sticks", &TouchingParticle::sticks, "else it slides")
@@ -157,7 +160,10 @@ void add_constraints(py::module_& m) {
           "int32, ascending; a copy")
       .def_property_readonly(
           "bodies", [](const Constraints& constraints) { return constraints.bodies().size(); }, "how many")
-      .def_property_readonly("contacts", &touching, "what touches after the last step, by particle")
+      .def_property_readonly(
+          "contacts", &touching,
+          "what touches after the last step, by particle: in a corner one for each plane that "
+          "holds it. Of cloth that two bodies clamp one of them, with an impulse of 0")
       .def(
           "penetration",
           [](Constraints& constraints, const State& state) {

@@ -60,8 +60,9 @@ void read_material(Table& table, RopeMaterial& material) {
   table.read("bend", material.bend, dimension::rope_bend, Range::not_negative, "B, it rests straight");
   table.read("damping", material.damping, dimension::rope_damping, Range::not_negative,
              "of stretch: the force at a rate of strain of 1/s");
-  table.read("bend_damping", material.bend_damping, dimension::rope_bend_damping, Range::not_negative,
-             "of bending: the moment at a rate of curvature of 1/(m s); a bend that goes round is not damped");
+  table.read(
+      "bend_damping", material.bend_damping, dimension::rope_bend_damping, Range::not_negative,
+      "of bending: the moment at a rate of curvature of 1/(m s); a bend that goes round is not damped");
   table.read("radius", material.radius, dimension::length, Range::positive,
              "its axis rests that far, and a margin, off a body, and as far off cloth, beside half of its "
              "thickness; "

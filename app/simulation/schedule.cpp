@@ -41,7 +41,7 @@ std::optional<long> StepGrid::index(double t) const {
   const double nearest = std::round(t / step_);
   if (!(std::abs(nearest) < 1e15)) return {};
   const long i = std::lround(nearest);
-  if (std::abs(t - time(i)) <= whole * step_) return i;
+  if (std::abs(t - time(i)) <= whole * std::min(step_, 1.0)) return i;
   return {};
 }
 

@@ -161,8 +161,9 @@ void check_slopes(const NamedFabric& named, const Names& names, const Eigen::Mat
   for (Eigen::Index k = 0; k < slopes.cols(); ++k) {
     const double size = slopes.col(k).norm();  // in tolerances, for a change to e times the value
     if (!(size > 0.05))
-      throw InputError(named.name + ": nothing measured depends on " + names[static_cast<std::size_t>(k)] +
-                       "; give it, or measure what does");
+      throw InputError(named.name + ": as simulated, nothing measured depends on " +
+                       names[static_cast<std::size_t>(k)] +
+                       "; give it, measure what does, or take a finer --mesh");
     unit.col(k) /= size;
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(unit);

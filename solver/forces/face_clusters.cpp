@@ -127,8 +127,9 @@ void FaceClusterForce::relax(const FaceCluster& face, Substep& substep, Pull& pu
   double softness = 1 / face.stiffness;
   if (viscosity_ > 0) {
     const Axes start = gradient(face, substep.start);
-    B += viscosity_ / (h + viscosity_) * (polar(start).transpose() * start - B);
-    softness /= 1 + viscosity_ / h;
+    const double viscosity = substep.counted(viscosity_ * face.stiffness * C.trace() / h) * viscosity_;
+    B += viscosity / (h + viscosity) * (polar(start).transpose() * start - B);
+    softness /= 1 + viscosity / h;
   }
   C.diagonal().array() += softness;
   const Matrix2d S = C.inverse();

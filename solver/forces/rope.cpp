@@ -70,8 +70,7 @@ std::vector<std::unique_ptr<Force>> rope_forces(const std::vector<Vec3>& points,
   if (!segments.empty())
     forces.push_back(std::make_unique<PairForce<RopeStretch>>(std::move(segments), material.damping));
   if (!bends.empty()) forces.push_back(std::make_unique<StencilForce<RopeBend>>(std::move(bends)));
-  if (!dampers.empty())
-    forces.push_back(std::make_unique<StencilForce<RopeBendDamping>>(std::move(dampers)));
+  if (!dampers.empty()) forces.push_back(std::make_unique<StencilForce<RopeBendDamping>>(std::move(dampers)));
   return forces;
 }
 

@@ -151,7 +151,10 @@ class StencilProjection {
     Slopes impulse = h * Law::gradient(common, link.rest, p);
     for (Mat3* block : {&K.uu, &K.uv, &K.vv}) *block *= h * h;
     if (Law::damped(common)) {
-      const SlopeBlocks D = Law::damping(common, link.rest, p);
+      SlopeBlocks D = Law::damping(common, link.rest, p);
+      const double takes = h * (W(0, 0) * D.uu.trace() + 2 * W(0, 1) * D.uv.trace() + W(1, 1) * D.vv.trace());
+      const double share = substep.counted(takes);
+      for (Mat3* block : {&D.uu, &D.uv, &D.vv}) *block *= share;
       const Slopes v = (p - start) / h;
       impulse.col(0) += h * (D.uu * v.col(0) + D.uv * v.col(1));
       impulse.col(1) += h * (D.uv.transpose() * v.col(0) + D.vv * v.col(1));
@@ -189,7 +192,8 @@ class StencilProjection {
     Block B = h * h * Law::hessian(common, link.rest, X, Stiffness::tangent);
     if constexpr (requires { Law::damping(common, link.rest, X); })
       if (Law::damped(common)) {
-        const Block hD = h * Law::damping(common, link.rest, X);
+        Block hD = h * Law::damping(common, link.rest, X);
+        hD *= substep.counted(root.cwiseAbs2().dot(hD.diagonal()));
         const Points<n> v = (X - start) / h;
         residual += hD * Eigen::Map<const Impulse>(v.data());
         B += hD;

@@ -33,7 +33,8 @@ struct RoundOff {
 RoundOff round_off(const System& system, const BlockMatrix& A, const VecX& x, const VecX& v, double c);
 
 // E(x) + c/2 v . D v [J], with D at the point damped_at.
-double potential_of_forces(const System& system, const VecX& x, const VecX& damped_at, const VecX& v, double c);
+double potential_of_forces(const System& system, const VecX& x, const VecX& damped_at, const VecX& v,
+                           double c);
 
 // How far a Newton step was taken: whole, whole although Phi rose, or cut short.
 enum class StepTaken { whole, overshot, cut };

@@ -145,6 +145,20 @@ class Step(unittest.TestCase):
         self.assertGreater(moved.max(), 0.005)
         np.testing.assert_array_equal(constraints.pinned, [0, 6])
 
+    def test_each_plane_of_a_corner_tells_its_own_impulse(self):
+        system = drape.System([1.0])
+        system.add(drape.gravity([-1, -9.81, -2]))
+        constraints = drape.Constraints()
+        for normal in np.eye(3):
+            constraints.add(drape.Obstacle(drape.Plane([0, 0, 0], normal), friction=0.0, margin=0.0))
+        integrator = drape.ImplicitEuler(system, constraints, "eigen-ldlt")
+        state = drape.State([[0.01, 0.05, 0.01]])
+        for _ in range(60):
+            integrator.advance(state, 0.01)
+        told = sorted((contact.body, contact.impulse / 0.01) for contact in constraints.contacts)
+        self.assertEqual([body for body, _ in told], [0, 1, 2])
+        np.testing.assert_allclose([force for _, force in told], [1, 9.81, 2], rtol=1e-6)
+
     def test_contacts_are_told(self):
         system, constraints, state = falling_sheet()
         stepper = drape.ImplicitEuler(system, constraints)
