@@ -58,12 +58,13 @@ struct Contact {
   int known = 0;   // those that hold it, and behind them those that were let go in this step
   std::array<ContactPlane, 3> plane;  // of those that hold, the deepest first
   Grip grip = Grip::stick;
-  bool clamped = false;                // it sticks whatever pulls
-  bool comes_out = false;              // it began inside the body, and is being brought out
-  int changes = 0;                     // how often the grip has changed within this step
-  int catches = 0;                     // how often a plane that was let go in this step has held it again
-  double normal_impulse = 0;           // sum over the planes [N s], of the last solve
-  std::array<double, 3> impulse = {};  // of each plane that holds, at the end of a step [N s]
+  bool clamped = false;       // it sticks whatever pulls
+  bool comes_out = false;     // it began inside the body, and is being brought out
+  int changes = 0;            // how often the grip has changed within this step
+  int catches = 0;            // how often a plane that was let go in this step has held it again
+  double normal_impulse = 0;  // sum over the planes [N s], of the last solve
+  std::array<double, 3> impulse =
+      {};                      // of each plane that holds, at the end of a step; of what is clamped 0 [N s]
   int turns = 0;               // how often it has gone up after down, or down after up, within this step
   double last_change = 0;      // by how much the last solve asked for another one [N s]
   double relaxed = 1;          // by which share of that it followed

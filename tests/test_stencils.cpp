@@ -143,7 +143,7 @@ struct BentRope {
 template <int percent>
 struct DampedRope {  // bent a hundred times as far as q_0, and so little that it is the other way round
   using Law = RopeBendDamping;
-  static Law::Rest rest() { return {.c = 0.4, .least = 0.01 * percent}; }
+  static Law::Rest rest() { return {.a = 0.3, .b = 0.5, .c = 0.4, .least = 0.01 * percent}; }
   static Law::Common common() { return {}; }
 };
 using Cases = std::tuple<FullSpring, Distance, Area, PointTriangle, BentRope, DampedRope<1>,

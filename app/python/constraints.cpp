@@ -59,7 +59,7 @@ struct TouchingParticle {
   int particle, body;
   bool sticks;
   Vec3 normal;
-  double gap, impulse;
+  double impulse;
 };
 
 std::vector<TouchingParticle> touching(const Constraints& constraints) {
@@ -68,15 +68,16 @@ std::vector<TouchingParticle> touching(const Constraints& constraints) {
   for (const Contact& contact : constraints.contacts())
     for (int k = 0; k < contact.planes; ++k) {
       const ContactPlane& plane = contact.plane[k];
-      all.push_back({contact.particle, plane.obstacle, contact.grip == Grip::stick, plane.normal, plane.gap,
-                     contact.impulse[k]});
+      all.push_back(
+          {contact.particle, plane.obstacle, contact.grip == Grip::stick, plane.normal, contact.impulse[k]});
     }
   return all;
 }
 
 void add_touches(py::module_& m) {
-  py::class_<TouchingParticle>(
-      m, "Contact", "A particle that touches a body, after the last step: one for each plane that holds it.")
+  py::class_<TouchingParticle>(m, "Contact",
+                               "A particle that touches a body, after the last step: between several bodies "
+                               "one for each that holds it.")
       .def_readonly("particle", &TouchingParticle::particle)
       .def_readonly("body", &TouchingParticle::body, "number of the obstacle, from 0")
       .def_readonly("sticks", &TouchingParticle::sticks, "else it slides")
@@ -162,8 +163,8 @@ void add_constraints(py::module_& m) {
           "bodies", [](const Constraints& constraints) { return constraints.bodies().size(); }, "how many")
       .def_property_readonly(
           "contacts", &touching,
-          "what touches after the last step, by particle: in a corner one for each plane that "
-          "holds it. Of cloth that two bodies clamp one of them, with an impulse of 0")
+          "what touches after the last step, by particle: between several bodies one for each that holds it. "
+          "Of cloth that two bodies clamp one of them, with an impulse of 0")
       .def(
           "penetration",
           [](Constraints& constraints, const State& state) {

@@ -98,8 +98,10 @@ Names idle_keys(const Table& table, const std::string& integrator) {
   look(integrator.starts_with("cvode-") || integrator.starts_with("arkode-"),
        {"relative_tolerance", "absolute_tolerance_position", "absolute_tolerance_velocity",
         "max_inner_steps"});
-  const bool solves = contact_mode(integrator, {}) == ContactMode::constraint;
-  look(solves, {"linear_solver", "newton_iterations", "newton_tolerance", "max_linear_iterations"});
+  const bool newton = integrator == "implicit-euler" || integrator == "bdf2" || integrator == "newton-kinsol";
+  look(newton, {"newton_iterations", "newton_tolerance"});
+  look(newton || integrator == "cvode-bdf" || integrator == "arkode-dirk",
+       {"linear_solver", "max_linear_iterations"});
   return idle;
 }
 

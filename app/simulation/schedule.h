@@ -21,7 +21,7 @@ class StepGrid {
   double frame_rate() const { return rate_; }    // 1/s
   bool as_asked() const;                         // whether the step used is the one asked for
   double time(long i) const;                     // s, t_i
-  std::optional<long> index(double time) const;  // the i whose t_i is this time to 1e-6 of a step
+  std::optional<long> index(double time) const;  // the i whose t_i is this time to 1e-6 of a step and 1 us
   double rounded(double time) const;             // s, t_i where the time is one, else the time itself
 
  private:

@@ -127,7 +127,7 @@ void FaceClusterForce::relax(const FaceCluster& face, Substep& substep, Pull& pu
   double softness = 1 / face.stiffness;
   if (viscosity_ > 0) {
     const Axes start = gradient(face, substep.start);
-    const double viscosity = substep.counted(viscosity_ * face.stiffness * C.trace() / h) * viscosity_;
+    const double viscosity = substep.counted(3 * viscosity_ * face.stiffness * C.trace() / h) * viscosity_;
     B += viscosity / (h + viscosity) * (polar(start).transpose() * start - B);
     softness /= 1 + viscosity / h;
   }

@@ -64,7 +64,7 @@ std::vector<std::unique_ptr<Force>> rope_forces(const std::vector<Vec3>& points,
     if (before == i || i == j || before == j) continue;  // two of them have been sewn together
     if (material.bend > 0) bends.push_back({{before, i, j}, {L[k - 1], L[k], material.bend / d}});
     if (material.bend_damping > 0)
-      dampers.push_back({{before, i, j}, {material.bend_damping / d, least_curvature * d}});
+      dampers.push_back({{before, i, j}, {L[k - 1], L[k], material.bend_damping / d, least_curvature * d}});
   }
   std::vector<std::unique_ptr<Force>> forces;
   if (!segments.empty())

@@ -14,7 +14,7 @@
 //   W = C_b / (2 d) ((q . q')^2 + q_0^2 |q'|^2) / (|q|^2 + q_0^2),      q' = dq/dt
 // What is hardly bent, |q| < q_0, is damped in all directions; what is bent further only as far as |q| changes. A bend that goes
 // round keeps |q|: it is not damped, because nothing tells it from a rope that turns as a whole and must keep
-// its spin (twist would). q_0 / d is 1e-3 1/m. Without it the direction of q would be that of round-off where a rope is straight.
+// its spin (twist would). Where a segment is pressed to less than half of its length, C_b counts for less. q_0 / d is 1e-3 1/m. Without it the direction of q would be that of round-off where a rope is straight.
 //   A segment resists compression as it resists tension. A rope that is pushed does not become shorter, it bows out, and
 // its particles do that by themselves. With springs that go slack, nothing would keep the particles of a rope apart that
 // nothing pulls. Twist is not modelled: a particle has no direction of its own.

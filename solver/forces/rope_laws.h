@@ -1,6 +1,8 @@
 // The laws of a rope's segments and of its bends; solver/forces/rope.h has the equations.
 #pragma once
 
+#include <algorithm>
+
 #include "solver/forces/linear_spring.h"
 
 namespace drape {
@@ -34,6 +36,7 @@ struct RopeBendDamping {
   static constexpr const char* name = "bend damping";
   static constexpr int particles = 3;
   struct Rest {
+    double a, b;   // m
     double c;      // C_b / d [N m s]
     double least;  // q_0
   };
@@ -45,7 +48,9 @@ struct RopeBendDamping {
     return Blocks<3>::Zero();
   }
   static bool damped(const Common&) { return true; }
-  // With Q = dq/dX: C_b / d (q_0^2 Q^T Q + Q^T q q^T Q) / (|q|^2 + q_0^2). Zero where a segment has no length.
+  static double square(double number) { return number * number; }
+  // With Q = dq/dX: C_b / d (q_0^2 Q^T Q + Q^T q q^T Q) / (|q|^2 + q_0^2). Less where a segment is pressed to less than half
+  // of its length: or D would grow without bounds, since what is short turns fast.
   static Blocks<3> damping(const Common&, const Rest& r, const Points<3>& X) {
     const Vec3 first = X.col(1) - X.col(0), second = X.col(2) - X.col(1);
     const double a = first.norm(), b = second.norm();
@@ -60,7 +65,8 @@ struct RopeBendDamping {
     Blocks<3> D = along * along.transpose();
     for (int k = 0; k < 9; ++k)
       for (int l = k; l < 9; ++l) D(k, l) = D(l, k) += small2 * Q.col(k).dot(Q.col(l));
-    return r.c / (q.squaredNorm() + small2) * D;
+    const double c = r.c * square(std::min(1.0, 2 * a / r.a)) * square(std::min(1.0, 2 * b / r.b));
+    return c / (q.squaredNorm() + small2) * D;
   }
 };
 

@@ -5,8 +5,7 @@
 //     lambda' + h (dE/dp + D v_p) = 0   at   p + h W (lambda' - lambda),   W = sum w_k^2 / m_k
 //   by one step of Newton's method, which is exact where the element is linear:
 //     lambda' - lambda = -(1 + W (h^2 K + h D))^-1 (lambda + h (dE/dp + D v_p)),   x_k += h w_k / m_k (lambda' - lambda)
-// Of a damper that takes more than half of a velocity in one iteration less counts: h W D is at most 1 for each iteration of the
-// substep. Elements are taken by turns, and one that hardly lets p change would keep what those before it have left wrong:
+// Of a strong damper less counts: the trace of h W D is at most the number of iterations of the substep. Elements are taken by turns, and one that hardly lets p change would keep what those before it have left wrong:
 // woven cloth with a viscosity of 10 ms stretched to twice its length, and gained energy.
 //   Of a spring of stiffness k this is equation 18 of [Macklin, Muller & Chentanez 2016] with the compliance 1/k; the
 //   multiplier there is h times lambda. Repeated until nothing changes, it is the step of implicit Euler.

@@ -304,8 +304,11 @@ void Bdf::set_base(ContactStep& contacts, bool at_rest) {
   }
 }
 
+// Dampers count as they were linearised last. So a motion that was below rest need not be so any more; then the step is
+// judged against rest once more, or several iterations could make energy.
 StepTaken Bdf::descend(ContactStep& contacts, const NewtonLoop& newton) {
-  set_base(contacts, newton.from_rest());
+  set_base(contacts, true);
+  if (!newton.from_rest() && merit_.falls(k(), friction(contacts), v_base_, p_.v)) set_base(contacts, false);
   return merit_.descend(k(), friction(contacts), v_base_, dv_, newton.may_overshoot(), p_.v);
 }
 

@@ -101,7 +101,7 @@ class NewtonKinsol final : public Integrator {
   double h_ = 0, scale_ = 0, mass_ = 0;  // s, N s, norm of all masses [kg]
   RoundOff noise_;                       // at the point where A was assembled last
   bool solved_ = false;                  // whether the last equation was solved to its tolerance
-  VecX x_, x_bar_, v_, v_n_, v_here_, F_, f_scale_, one_, b_, dv_, minus_F_;
+  VecX x_, x_bar_, damped_at_, v_, v_n_, v_here_, F_, f_scale_, one_, b_, dv_, minus_F_;
 };
 
 StepReport NewtonKinsol::advance(State& state, double h) {
@@ -242,6 +242,7 @@ int NewtonKinsol::iterate(double wanted, double& norm) {
 // Returns the fraction of the direction that lowers Phi enough.  [Nocedal & Wright 2006, section 3.1]
 double NewtonKinsol::step_length(const VecX& v, const VecX& dv, double slope) {
   if (search_.strategy != KIN_NONE) return 1;  // KINSOL finds the length itself
+  damped_at_ = x_bar_ + h_ * v;
   const double start = potential(v), allowed = start + noise_.energy(start);
   double length = 1;
   for (int halvings = 0; halvings < 20; ++halvings, length *= 0.5)
@@ -264,7 +265,7 @@ double NewtonKinsol::potential(const VecX& v) {
     const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
     rubbed += 0.5 * h_ * slip.dot(f.damping * slip) - f.impulse.dot(slip);
   }
-  return inertia + potential_of_forces(system_, x_, x_, v, h_) + rubbed;
+  return inertia + potential_of_forces(system_, x_, damped_at_, v, h_) + rubbed;
 }
 
 // Sets F = M (v - v_n) - h f(x_bar + h v, v) + friction, without the filter.

@@ -1,5 +1,6 @@
 // What an implicit step minimises, and how far a Newton step may go.
 //   Phi(v) = 1/2 |v - v_bar - c g|^2_M + E(x_bar + c v) + c/2 v . D v + what friction of contacts takes in h
+// with D where the step was linearised last, as the matrix has it: it may turn with the motion.
 // The first Newton step is judged against a cloth at rest (solver/integrators/rest_frame.h; v = 0 where its pins and
 // bodies stand, and what is prescribed), each later one against the v before it. A full step that would raise Phi is
 // cut short by halves: so a step of order 1 makes no energy, however stiff the cloth.
@@ -43,9 +44,10 @@ class Merit {
  public:
   explicit Merit(const System& system) : system_(system) {}
 
-  void begin(double h);                                          // begins a step of h [s]
-  void measure(const BlockMatrix& A, const Point& p, double c);  // measures the round-off at p
-  double weight_impulse() const { return weight_impulse_; }      // h |m g| [N s]
+  void begin(double h);  // begins a step of h [s]
+  void measure(const BlockMatrix& A, const Point& p,
+               double c);  // a step was linearised at p: measures the round-off there
+  double weight_impulse() const { return weight_impulse_; }  // h |m g| [N s]
   // The change of a particle's velocity that a residual of this norm [N s] makes, if it is spread evenly; at most
   // a fiftieth of what gravity changes it by, so that a coarse solve decides contacts, too [m/s].
   double speed_noise(double residual) const;
