@@ -181,7 +181,7 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
 ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& report) {
   if (A_.follow_system()) {
     const Eigen::Index n = 3 * system_.particles();
-    for (VecX* vector : {&y_, &b_, &b_rubbed_, &dv_, &v_base_, &rest_, &r_, &end_.x, &end_.v})
+    for (VecX* vector : {&y_, &b_, &b_rubbed_, &dv_, &v_base_, &at_rest_, &rest_, &r_, &end_.x, &end_.v})
       vector->setZero(n);
     filter_.reserve(static_cast<std::size_t>(system_.particles()));
     friction_.reserve(2 * static_cast<std::size_t>(system_.particles()));  // two bodies may rub a particle
@@ -304,11 +304,15 @@ void Bdf::set_base(ContactStep& contacts, bool at_rest) {
   }
 }
 
-// Dampers count as they were linearised last. So a motion that was below rest need not be so any more; then the step is
-// judged against rest once more, or several iterations could make energy.
+// Dampers, friction and contacts count as they are now. So a motion that was below rest need not be so any more; then the step
+// is judged against rest once more, or several iterations could make energy.
 StepTaken Bdf::descend(ContactStep& contacts, const NewtonLoop& newton) {
   set_base(contacts, true);
-  if (!newton.from_rest() && merit_.falls(k(), friction(contacts), v_base_, p_.v)) set_base(contacts, false);
+  if (!newton.from_rest()) {
+    at_rest_ = v_base_;
+    set_base(contacts, false);
+    if (!merit_.falls(k(), friction(contacts), at_rest_, v_base_)) v_base_.swap(at_rest_);
+  }
   return merit_.descend(k(), friction(contacts), v_base_, dv_, newton.may_overshoot(), p_.v);
 }
 

@@ -85,7 +85,7 @@ class Bdf final : public Integrator {
 
   // Scratch of a step.
   Point end_;
-  VecX y_, b_, b_rubbed_, v_base_, rest_, r_;
+  VecX y_, b_, b_rubbed_, v_base_, at_rest_, rest_, r_;
   Filter filter_;
   std::vector<ContactFriction> friction_;  // scaled as the rows are
 };

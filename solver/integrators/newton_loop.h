@@ -25,7 +25,7 @@ class NewtonLoop {
   bool exhausted() const { return k_ == most(); }
   bool may_stop() const { return k_ > 0 && taken_ == StepTaken::whole; }  // when the residual is small enough
   bool may_overshoot() const { return first() && goes_slack_; }
-  // Whether the next step is judged against a cloth at rest, and not against where the last one ended.
+  // Whether the next step is judged against a cloth at rest in any case, and not against where the last one ended.
   bool from_rest() const { return first() || taken_ == StepTaken::overshot; }
   Stiffness stiffness() const {
     const bool sound = from_rest() || (taken_ == StepTaken::whole && !makes_energy_);
