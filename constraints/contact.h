@@ -63,8 +63,8 @@ struct Contact {
   int changes = 0;            // how often the grip has changed within this step
   int catches = 0;            // how often a plane that was let go in this step has held it again
   double normal_impulse = 0;  // sum over the planes [N s], of the last solve
-  std::array<double, 3> impulse =
-      {};                      // of each plane that holds, at the end of a step; of what is clamped 0 [N s]
+  // Of each plane that holds, at the end of a step [N s]; 0 of what is clamped.
+  std::array<double, 3> impulse = {};
   int turns = 0;               // how often it has gone up after down, or down after up, within this step
   double last_change = 0;      // by how much the last solve asked for another one [N s]
   double relaxed = 1;          // by which share of that it followed

@@ -2,8 +2,8 @@
 //   Phi(v) = 1/2 |v - v_bar - c g|^2_M + E(x_bar + c v) + c/2 v . D v + what friction of contacts takes in h
 // with D where the step was linearised last, as the matrix has it: it may turn with the motion.
 // The first Newton step is judged against a cloth at rest (solver/integrators/rest_frame.h; v = 0 where its pins and
-// bodies stand, and what is prescribed), each later one against the v before it, unless that has come to be above rest. A full step that would raise Phi is
-// cut short by halves: so a step of order 1 makes no energy, however stiff the cloth.
+// bodies stand, and what is prescribed), each later one against the v before it, unless that has come to be above rest.
+// A full step that would raise Phi is cut short by halves: so a step of order 1 makes no energy, however stiff the cloth.
 //                                                                [Nocedal & Wright 2006, section 3.1]
 // Where edges go slack, the first Newton step may be taken whole although it raises Phi: the next one knows which edges
 // have become taut, and is judged against a cloth at rest in its place.                    [the watchdog of Chamberlain et al. 1982]
