@@ -96,6 +96,7 @@ void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<s
   beside_.due.assign(beside_.list.size(), never);
   beside_.normal.assign(beside_.list.size(), Vec3::Zero());
   clock_.assign(particles, {});
+  limits_.assign(particles, 0);
   spread(x, start_);
   end_ = start_;
   boxes_.emplace(faces_, start_, 1, of_cloth_);
@@ -352,6 +353,7 @@ void Encounters::make_list(Group& group, double gap) const {
   group.gap = gap;
   group.clock = {};
   group.due = {never, never};
+  group.wanted = never;
   group.start_off = group.end_off = 0;
 }
 
@@ -392,6 +394,20 @@ void Encounters::read_clocks(const VecX& x, const VecX& x_new) {
       clock_[i].end = clock_[i].start + 2 * std::sqrt(most);
     }
   });
+}
+
+// Where the limits rise, pairs are wanted sooner.
+void Encounters::take(const std::vector<double>& limits, double gap) {
+  const auto limit = [&](int i) { return std::min(gap, limits[i]); };
+  const int patches = static_cast<int>(patch_start_.size()) - 1;
+  rises_.assign(static_cast<std::size_t>(patches), 0);
+  for_chunks<Work::heavy>(patches, [&](int begin, int end) {
+    for (int p = begin; p < end; ++p)
+      for (int k = patch_start_[p]; k < patch_start_[p + 1]; ++k)
+        rises_[p] = std::max(rises_[p], limit(patch_[k]) - limits_[patch_[k]]);
+  });
+  for (Group& g : groups_) g.wanted -= std::max(rises_[g.first], rises_[g.second]);
+  for (int i = 0; i < static_cast<int>(limits_.size()); ++i) limits_[i] = limit(i);
 }
 
 void Encounters::went(const VecX& x, const VecX& x_new) {

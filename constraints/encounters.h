@@ -55,10 +55,11 @@ class Encounters {
   enum class Kind { vertices = 1, edges = 2, both = 3 };
   // Asks look(pair, corners at x, corners at x_new, the normal found last), which returns an Approach, of the pairs of
   // these kinds that could come within gap_of(pair), at most `gap`, by all threads. Returns those that are not apart, in a
-  // fixed order. They stay until the next call.
+  // fixed order. They stay until the next call. limits: gap_of(pair) is at most the least of these of its particles [m];
+  // one caller may give some for edges, so that lists are not gone through of which no pair can be near enough.
   template <class GapOf, class Look>
   std::vector<Meeting>& select(Kind kind, const VecX& x, const VecX& x_new, double gap, const GapOf& gap_of,
-                               const Look& look);
+                               const Look& look, const std::vector<double>* limits = nullptr);
   // The step has gone from x to x_new.
   void went(const VecX& x, const VecX& x_new);
   void forget();  // the particles were moved from outside
@@ -89,12 +90,13 @@ class Encounters {
   // searched for by at most `room`.
   struct Group {
     int first = 0, second = 0;  // patches
-    Pairs pairs;
-    int edges_from = 0;  // where the second part of the list begins
     Clock clock;
     Due due = {};
-    double gap = -1, room = 0;          // m
+    double wanted = 0;  // when the first pair of edges can be nearer than the limits of its particles
     double start_off = 0, end_off = 0;  // by how much the two ends of the motion differ by now at most [m]
+    double gap = -1, room = 0;          // m
+    Pairs pairs;
+    int edges_from = 0;  // where the second part of the list begins
   };
   void list(int first, int second, std::vector<Encounter>& found) const;
   void spread(const VecX& x, std::vector<Vec3>& places) const;
@@ -112,9 +114,13 @@ class Encounters {
   void adapt_room(std::size_t pairs);
   bool search(Group& group, double within, std::size_t most) const;
   void read_clocks(const VecX& x, const VecX& x_new);
+  void take(const std::vector<double>& limits, double gap);
+  double limit_of(const Encounter& e) const {
+    return std::min({limits_[e.v[0]], limits_[e.v[1]], limits_[e.v[2]], limits_[e.v[3]]});
+  }
   template <class GapOf, class Look>
-  double select_pair(Pairs& pairs, std::size_t k, Clock clock, const VecX& x, const VecX& x_new, double gap,
-                     const GapOf& gap_of, const Look& look, std::vector<Meeting>& found) const;
+  void select_pair(Pairs& pairs, std::size_t k, Clock clock, const VecX& x, const VecX& x_new,
+                   const GapOf& gap_of, const Look& look, std::vector<Meeting>& found) const;
   template <class Select>
   void select_chunks(int n, int in_a_chunk, const Select& select);
 
@@ -131,6 +137,7 @@ class Encounters {
   std::vector<int> beside_start_, beside_edges_;
   std::vector<Due> beside_due_;
   std::vector<Clock> clock_;            // by vertex
+  std::vector<double> limits_;          // given last, by particle, at most the gap [m]
   std::vector<Group> groups_;           // sorted by patches
   std::vector<Vec3> start_, end_;       // of the motion that was followed last
   double gap_ = -1, mean_edge_ = 0;     // m
@@ -138,6 +145,7 @@ class Encounters {
   double start_off_ = 0,
          end_off_ = 0;  // by how much any two vertices moved differently since patches were grouped [m]
   Ranges of_start_, of_end_, of_motion_;      // scratch
+  std::vector<double> rises_;                 // scratch of take(), by patch [m]
   std::vector<Group> old_, spare_;            // scratch of group_patches()
   std::vector<std::pair<int, int>> near_;     // scratch
   std::vector<int> stale_;                    // scratch: numbers of groups
@@ -147,37 +155,49 @@ class Encounters {
 
 template <class GapOf, class Look>
 std::vector<Meeting>& Encounters::select(Kind kind, const VecX& x, const VecX& x_new, double gap,
-                                         const GapOf& gap_of, const Look& look) {
+                                         const GapOf& gap_of, const Look& look,
+                                         const std::vector<double>* limits) {
   constexpr int groups_in_a_chunk = 8;
+  constexpr double never = std::numeric_limits<double>::infinity();
   selected_.clear();
-  // The pairs of a list that begin at these three places, of which the last is its end.
-  const auto select_list = [&](Pairs& pairs, const std::array<int, 3>& from, const Clock& clock, Due& due,
-                               std::vector<Meeting>& found) {
-    for (std::size_t part = 0; part < 2; ++part) {
-      if ((static_cast<unsigned>(kind) >> part & 1u) == 0 || due[part] - clock.end > gap) continue;
-      due[part] = std::numeric_limits<double>::infinity();
-      for (int k = from[part]; k < from[part + 1];) {
-        // Most pairs are not due, and are looked at by fours.
-        const int next = std::min(k + 4, from[part + 1]);
-        double first = pairs.due[k];
-        for (int other = k + 1; other < next; ++other) first = std::min(first, pairs.due[other]);
-        if (first - clock.end > gap) {
-          due[part] = std::min(due[part], first);
-          k = next;
-        }
-        for (; k < next; ++k)
-          due[part] = std::min(due[part], select_pair(pairs, k, clock, x, x_new, gap, gap_of, look, found));
+  if (limits) take(*limits, gap);
+  // The pairs of a part of a list, from `begin` to `end`. wanted: of the list, or null.
+  const auto select_part = [&](Pairs& pairs, int begin, int end, const Clock& clock, double& due,
+                               double* wanted, std::vector<Meeting>& found) {
+    if (due - clock.end > gap || (wanted && *wanted > clock.end)) return;
+    due = never;
+    if (wanted) *wanted = never;
+    for (int k = begin; k < end;) {
+      // Most pairs are not due, and are looked at by fours.
+      const int next = std::min(k + 4, end);
+      double first = pairs.due[k];
+      for (int other = k + 1; other < next; ++other) first = std::min(first, pairs.due[other]);
+      if (first - clock.end > gap) {
+        due = std::min(due, first);
+        if (wanted) *wanted = std::min(*wanted, first - gap);
+        k = next;
+      }
+      for (; k < next; ++k) {
+        if (pairs.due[k] - clock.end <= gap) select_pair(pairs, k, clock, x, x_new, gap_of, look, found);
+        due = std::min(due, pairs.due[k]);
+        if (wanted) *wanted = std::min(*wanted, pairs.due[k] - limit_of(pairs.list[k]));
       }
     }
   };
+  const auto select_list = [&](Pairs& pairs, const std::array<int, 3>& from, const Clock& clock, Due& due,
+                               double* wanted, std::vector<Meeting>& found) {
+    if (kind != Kind::edges) select_part(pairs, from[0], from[1], clock, due[0], nullptr, found);
+    if (kind != Kind::vertices) select_part(pairs, from[1], from[2], clock, due[1], wanted, found);
+  };
   select_chunks(static_cast<int>(groups_.size()), groups_in_a_chunk, [&](int k, std::vector<Meeting>& found) {
     Group& g = groups_[k];
-    select_list(g.pairs, {0, g.edges_from, static_cast<int>(g.pairs.list.size())}, g.clock, g.due, found);
+    select_list(g.pairs, {0, g.edges_from, static_cast<int>(g.pairs.list.size())}, g.clock, g.due,
+                limits ? &g.wanted : nullptr, found);
   });
   const int count = static_cast<int>(clock_.size());
   select_chunks(count, heavy_chunk_size(count), [&](int c, std::vector<Meeting>& found) {
     select_list(beside_, {beside_start_[c], beside_edges_[c], beside_start_[c + 1]}, clock_[c],
-                beside_due_[c], found);
+                beside_due_[c], nullptr, found);
   });
   return selected_;
 }
@@ -195,20 +215,17 @@ void Encounters::select_chunks(int n, int in_a_chunk, const Select& select) {
   for (int k = 0; k < count; ++k) selected_.insert(selected_.end(), chunks_[k].begin(), chunks_[k].end());
 }
 
-// Returns when the pair is due.
+// Of a pair that is due.
 template <class GapOf, class Look>
-double Encounters::select_pair(Pairs& pairs, std::size_t k, Clock clock, const VecX& x, const VecX& x_new,
-                               double gap, const GapOf& gap_of, const Look& look,
-                               std::vector<Meeting>& found) const {
+void Encounters::select_pair(Pairs& pairs, std::size_t k, Clock clock, const VecX& x, const VecX& x_new,
+                             const GapOf& gap_of, const Look& look, std::vector<Meeting>& found) const {
   const double least = pairs.due[k] - clock.end;  // so far apart it stays at least [m]
-  if (least > gap) return pairs.due[k];
   const Encounter& e = pairs.list[k];
-  if (least > gap_of(e)) return pairs.due[k];
+  if (least > gap_of(e)) return;
   Meeting one{.who = e, .approach = look(e, corners(x, e), corners(x_new, e), pairs.normal[k])};
   pairs.due[k] = clock.start + one.approach.start;
   pairs.normal[k] = one.approach.last.normal;
   if (!one.approach.apart) found.push_back(one);
-  return pairs.due[k];
 }
 
 }  // namespace drape::internal

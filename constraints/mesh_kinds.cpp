@@ -38,9 +38,9 @@ Eigen::AlignedBox3d bounds_of(const LevelSetBody& body) {
   return box;
 }
 
-TriangleMesh mesh_of(const MeshBody& body) { return body->mesh(); }
-TriangleMesh mesh_of(const DeformingBody& body) { return body.surface->mesh(); }
-TriangleMesh mesh_of(const LevelSetBody&) { return {}; }
+TriangleMesh mesh_of(const MeshBody& body, int) { return body->mesh(); }
+TriangleMesh mesh_of(const DeformingBody& body, int) { return body.surface->mesh(); }
+TriangleMesh mesh_of(const LevelSetBody&, int) { return {}; }
 
 std::optional<UniformSolid> uniform_solid(const MeshBody& body, double mass) {
   if (!body->closed()) return std::nullopt;

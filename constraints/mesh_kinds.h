@@ -38,9 +38,9 @@ Eigen::AlignedBox3d bounds_of(const MeshBody& body);
 Eigen::AlignedBox3d bounds_of(const DeformingBody& body);
 Eigen::AlignedBox3d bounds_of(const LevelSetBody& body);
 
-TriangleMesh mesh_of(const MeshBody& body);
-TriangleMesh mesh_of(const DeformingBody& body);
-TriangleMesh mesh_of(const LevelSetBody& body);
+TriangleMesh mesh_of(const MeshBody& body, int coarser);
+TriangleMesh mesh_of(const DeformingBody& body, int coarser);
+TriangleMesh mesh_of(const LevelSetBody& body, int coarser);
 
 std::optional<UniformSolid> uniform_solid(const MeshBody& body, double mass);
 std::optional<UniformSolid> uniform_solid(const DeformingBody& body, double mass);

@@ -1,5 +1,7 @@
 #include "constraints/moving_body.h"
 
+#include <algorithm>
+
 namespace drape {
 
 MovingBody::MovingBody(Obstacle obstacle, int number) : obstacle_(std::move(obstacle)), number_(number) {
@@ -8,6 +10,15 @@ MovingBody::MovingBody(Obstacle obstacle, int number) : obstacle_(std::move(obst
   now_ = start_ = end_ = obstacle_.motion.at(0);
   move(obstacle_.shape, 0, 0);
   if (obstacle_.rigid) reacting_.emplace(*obstacle_.rigid, now_);
+  constexpr int coarser = 2;
+  if (!surface() && convex(obstacle_.shape) && (reacting_ || obstacle_.motion.moves()))
+    polyhedron_ = std::make_shared<const TriangleMesh>(mesh_of(obstacle_.shape, coarser));
+  if (!polyhedron_) return;
+  const std::vector<Vec3>& x = polyhedron_->positions;
+  for (const Triangle& t : polyhedron_->triangles) {
+    const Vec3 middle = (x[t[0]] + x[t[1]] + x[t[2]]) / 3;
+    skin_depth_ = std::max(skin_depth_, -closest(obstacle_.shape, middle).distance);
+  }
 }
 
 const SurfaceDistance* MovingBody::surface() const {
@@ -64,8 +75,17 @@ SurfacePoint MovingBody::near_end(const Vec3& x) const {
   return {s.distance, end_.direction_to_world(s.normal), s.covered};
 }
 
-Vec3 MovingBody::vertex_at_start(int v) const { return start_.to_world(surface()->vertex(v, 0)); }
-Vec3 MovingBody::vertex_at_end(int v) const { return end_.to_world(surface()->vertex(v, 1)); }
+const TriangleMesh* MovingBody::skin() const {
+  if (const SurfaceDistance* const mesh = surface()) return &mesh->mesh();
+  return polyhedron_ && !polyhedron_->triangles.empty() ? polyhedron_.get() : nullptr;
+}
+
+Vec3 MovingBody::vertex_at_start(int v) const {
+  return start_.to_world(surface() ? surface()->vertex(v, 0) : polyhedron_->positions[v]);
+}
+Vec3 MovingBody::vertex_at_end(int v) const {
+  return end_.to_world(surface() ? surface()->vertex(v, 1) : polyhedron_->positions[v]);
+}
 
 double MovingBody::distance(const Vec3& x) const {
   return closest(obstacle_.shape, now_.to_body(x), 1).distance;

@@ -13,6 +13,7 @@
 // x [m], v [m/s], t, h [s].
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -41,9 +42,12 @@ class MovingBody {
   };
   Mark mark(const Vec3& x) const;
 
-  // Of a body that is a mesh, its surface and where the vertices of that are when the step begins and ends [m]; null for
-  // all others.
+  // The surface of a body that is a mesh; null for all others.
   const SurfaceDistance* surface() const;
+  // The triangles that meet the triangles of cloth, and where their vertices are when the step begins and ends [m]: those of
+  // a mesh, and a polyhedron in a convex shape that moves. Null for all others.
+  const TriangleMesh* skin() const;
+  double skin_depth() const { return skin_depth_; }  // of the polyhedron below the surface at most [m]
   Vec3 vertex_at_start(int v) const;
   Vec3 vertex_at_end(int v) const;
 
@@ -104,6 +108,8 @@ class MovingBody {
   bool deforms() const { return deforming(obstacle_.shape) != nullptr; }
 
   Obstacle obstacle_;
+  std::shared_ptr<const TriangleMesh> polyhedron_;
+  double skin_depth_ = 0;  // m
   int number_;
   double h_ = 0;
   bool turns_ = false;  // whether the body turns in this step

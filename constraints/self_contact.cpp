@@ -246,7 +246,7 @@ void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<Movi
 void SelfContacts::pinch(const Contact& contact, const MovingBody& body) {
   constexpr double deep = 1e-6;  // m
   const double depth = -body.obstacle().margin - contact.plane[0].gap;
-  const bool inside = body.surface() && depth > deep;
+  const bool inside = body.skin() && depth > deep + body.skin_depth();
   if (any() && surfaces_->any() && (contact.clamped || inside)) surfaces_->pinch(contact.particle);
 }
 

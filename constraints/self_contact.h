@@ -277,10 +277,17 @@ class SelfContacts {
   std::vector<internal::Meeting>& meetings(const VecX& x, const VecX& x_new);
   // Prepares both searches for this motion; false: so much is near that there is no list.
   bool follow_all(const VecX& x, const VecX& x_new);
-  std::vector<internal::Meeting>& near_ones(const StepMotion& step, internal::Encounters& encounters,
-                                            double thickest, double reach_of_all, bool edges);
-  void find_near_ones(const StepMotion& step, double thickest, bool edges);
-  double farthest_of_edges(const Encounter& e, double reach) const;
+  Approach approach_of(const StepMotion& step, const Encounter& e, const FourPoints& start,
+                       const FourPoints& end, double thickest, const Vec3& likely) const;
+  bool meets_bodies(const StepMotion& step) const;
+  std::vector<internal::Meeting>& near_vertices(const StepMotion& step, internal::Encounters& encounters,
+                                                double thickest, double reach);
+  std::vector<internal::Meeting>& near_edges(const StepMotion& step, internal::Encounters& encounters,
+                                             double thickest, double reach);
+  std::vector<internal::Meeting>& edges_that_go_on(const StepMotion& step, double thickest);
+  void add_found(const std::vector<internal::Meeting>& more);
+  double farthest_of_edges(const Encounter& e) const;
+  void find_limits(bool on_bodies);
   bool is_borne_otherwise(const internal::Meeting& edges) const;
   void look_at_ends(std::vector<internal::Meeting>::iterator begin,
                     std::vector<internal::Meeting>::iterator end) const;
@@ -328,10 +335,10 @@ class SelfContacts {
   std::vector<Encounter> last_ones_;          // scratch: the pairs of last_, in its order
   // Scratch: where in last_ the pairs of vertices, and those of edges, begin whose first particle is this one.
   std::array<std::vector<int>, 2> last_from_;
-  std::vector<SelfContact> met_;                 // scratch
-  std::vector<internal::Meeting> found_;         // scratch
-  std::vector<double> way_, shorter_, nearest_;  // scratch, by particle
-  std::vector<char> has_edge_;                   // scratch, by particle: whether an edge of it is in last_
+  std::vector<SelfContact> met_;                          // scratch
+  std::vector<internal::Meeting> found_;                  // scratch
+  std::vector<internal::Meeting> going_on_;               // scratch
+  std::vector<double> way_, shorter_, nearest_, limits_;  // scratch, by particle
   // Of the guard: in one zone are particles with the same root; the others are by root.
   std::vector<int> zone_;
   std::vector<Vec3> common_, kept_;

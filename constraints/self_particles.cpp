@@ -153,7 +153,7 @@ void SelfContacts::set_particles(const StepMotion& step) {
   ropes_->set(segments_, faces_, rest_, static_cast<int>(n));
   way_.assign(n, 1);
   nearest_.assign(n, 0);
-  has_edge_.assign(n, 0);
+  limits_.assign(n, 0);
 }
 
 // Pieces hang together by faces, and by the segments of ropes. A particle inside a soft body has neither, and is numbered

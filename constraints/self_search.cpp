@@ -160,40 +160,88 @@ bool SelfContacts::follow_all(const VecX& x, const VecX& x_new) {
   return !surfaces_->any() || on_bodies_->follow(x, x_new, body_reach_);
 }
 
-// How far apart two edges may be to become a contact, at most `reach` [m]. It takes nearest_ of their ends.
-double SelfContacts::farthest_of_edges(const Encounter& e, double reach) const {
-  if (ropes_->is_rope(e)) return reach;
-  double farthest = reach;
+// How far apart two edges may be to become a contact [m]. It takes nearest_ of their ends.
+double SelfContacts::farthest_of_edges(const Encounter& e) const {
+  double farthest = infinity;
+  if (ropes_->is_rope(e)) return farthest;
   for (int v : e.v)
     if (!is_on_body(e) || v >= cloth_particles()) farthest = std::min(farthest, clearly_nearer * nearest_[v]);
-  const bool may_go_on = std::all_of(e.v.begin(), e.v.end(), [&](int v) { return has_edge_[v] != 0; });
-  return farthest < reach && may_go_on && last_of(e) ? reach : farthest;
+  return farthest;
 }
 
-// The pairs of vertices with triangles, or of edges, that come within the thickness, and a little more, on the way to ahead_.
-// thickest: of pairs without a rope.
-std::vector<Meeting>& SelfContacts::near_ones(const StepMotion& step, Encounters& encounters, double thickest,
-                                              double reach_of_all, bool edges) {
+// Fills limits_ with what farthest_of_edges() is at most for pairs of each particle.
+void SelfContacts::find_limits(bool on_bodies) {
+  for (int v = 0; v < static_cast<int>(limits_.size()); ++v) {
+    const bool any = ropes_->any() || (on_bodies && v < cloth_particles());
+    limits_[v] = any ? infinity : clearly_nearer * nearest_[v];
+  }
+}
+
+// How a pair comes within its thickness, and a little more, on the way to ahead_. start, end: the corners of both ends;
+// thickest: of pairs without a rope; likely: the normal.
+Approach SelfContacts::approach_of(const StepMotion& step, const Encounter& e, const FourPoints& start,
+                                   const FourPoints& end, double thickest, const Vec3& likely) const {
+  if (may_pass(e) || is_sewn(e) ||
+      std::all_of(e.v.begin(), e.v.end(), [&](int v) { return step.is_held(v); }))
+    return {};
+  const double most = ropes_->is_rope(e) ? thickness_of(e) : thickest;
+  const double reach = reach_about(most), more = reach - most;
+  Approach near = approach(e.edges, start, end, reach, likely);
+  if (near.apart) return near;
+  const double own = thickness_of(e);
+  if (own < most) near = approach(e.edges, start, end, own + more);
   const auto inside = [](double w) { return std::abs(w) > 1e-3 && std::abs(w) < 1 - 1e-3; };
+  const auto& w = near.last.weights;
+  near.apart = near.apart || (e.edges && !(inside(w[0]) && inside(w[2])));
+  if (!near.apart)  // below 1: they meet
+    near.until = approach_from_within(e.edges, start, end, 0.1 * own, near.last.normal).until;
+  return near;
+}
+
+// Other methods look at a contact within the step, when the body is not yet where its end takes it.
+bool SelfContacts::meets_bodies(const StepMotion& step) const {
+  return surfaces_->any() && step.foresight == Foresight::ahead;
+}
+
+// The pairs of vertices with triangles that come near.
+std::vector<Meeting>& SelfContacts::near_vertices(const StepMotion& step, Encounters& encounters,
+                                                  double thickest, double reach) {
   return encounters.select(
-      edges ? Encounters::Kind::edges : Encounters::Kind::vertices, step.x, ahead_, reach_of_all,
-      [&](const Encounter& e) { return edges ? farthest_of_edges(e, reach_of_all) : reach_of_all; },
+      Encounters::Kind::vertices, step.x, ahead_, reach, [reach](const Encounter&) { return reach; },
       [&](const Encounter& e, const FourPoints& start, const FourPoints& end, const Vec3& likely) {
-        if (may_pass(e) || is_sewn(e) ||
-            std::all_of(e.v.begin(), e.v.end(), [&](int v) { return step.is_held(v); }))
-          return Approach{};
-        const double most = ropes_->is_rope(e) ? thickness_of(e) : thickest;
-        const double reach = reach_about(most), more = reach - most;
-        Approach near = approach(e.edges, start, end, reach, likely);
-        if (near.apart) return near;
-        const double own = thickness_of(e);
-        if (own < most) near = approach(e.edges, start, end, own + more);
-        const auto& w = near.last.weights;
-        near.apart = near.apart || (e.edges && !(inside(w[0]) && inside(w[2])));
-        if (!near.apart)  // below 1: they meet
-          near.until = approach_from_within(e.edges, start, end, 0.1 * own, near.last.normal).until;
-        return near;
+        return approach_of(step, e, start, end, thickest, likely);
       });
+}
+
+// The pairs of edges that come near enough to become contacts, without those that are.
+std::vector<Meeting>& SelfContacts::near_edges(const StepMotion& step, Encounters& encounters,
+                                               double thickest, double reach) {
+  find_limits(&encounters == on_bodies_.get());
+  return encounters.select(
+      Encounters::Kind::edges, step.x, ahead_, reach,
+      [&](const Encounter& e) { return std::min(reach, farthest_of_edges(e)); },
+      [&](const Encounter& e, const FourPoints& start, const FourPoints& end, const Vec3& likely) {
+        return last_of(e) ? Approach{} : approach_of(step, e, start, end, thickest, likely);
+      },
+      &limits_);
+}
+
+// The pairs of edges that were contacts in the last step, and are near.
+std::vector<Meeting>& SelfContacts::edges_that_go_on(const StepMotion& step, double thickest) {
+  const auto first =
+      std::find_if(last_.begin(), last_.end(), [](const SelfContact& c) { return c.who.edges; });
+  going_on_.resize(static_cast<std::size_t>(last_.end() - first));
+  for_chunks<Work::heavy>(static_cast<int>(going_on_.size()), [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) {
+      const Encounter& e = first[k].who;
+      const double most = is_on_body(e) ? surfaces_->thickest() : thickest;
+      going_on_[k] = {e, approach_of(step, e, corners(step.x, e), corners(ahead_, e), most, first[k].normal)};
+    }
+  });
+  std::erase_if(going_on_, [&](const Meeting& m) {
+    return m.approach.apart || (is_on_body(m.who) && !meets_bodies(step));
+  });
+  return going_on_;
 }
 
 // A vertex that meets nothing on its way is pushed from the place where it ends: pushed from where it came near, it would
@@ -225,16 +273,6 @@ bool SelfContacts::is_borne_otherwise(const Meeting& edges) const {
   return false;
 }
 
-// Fills found_.
-void SelfContacts::find_near_ones(const StepMotion& step, double thickest, bool edges) {
-  std::swap(found_, near_ones(step, *encounters_, thickest, reach_, edges));
-  // Other methods look at a contact within the step, when the body is not yet where its end takes it.
-  if (!surfaces_->any() || step.foresight != Foresight::ahead) return;
-  const std::vector<Meeting>& others =
-      near_ones(step, *on_bodies_, surfaces_->thickest(), body_reach_, edges);
-  found_.insert(found_.end(), others.begin(), others.end());
-}
-
 void SelfContacts::find_contacts(const StepMotion& step) {
   touching_.clear();
   list_last_ones();
@@ -252,7 +290,8 @@ void SelfContacts::find_contacts(const StepMotion& step) {
 // same way. What pushed the vertex over the inside of a triangle goes on: in a valley two triangles bear it, and would do so by
 // turns.
 void SelfContacts::find_contacts_of_vertices(const StepMotion& step, double thickest) {
-  find_near_ones(step, thickest, false);
+  std::swap(found_, near_vertices(step, *encounters_, thickest, reach_));
+  if (meets_bodies(step)) add_found(near_vertices(step, *on_bodies_, surfaces_->thickest(), body_reach_));
   const auto add = [&](const Meeting& m) {
     if (const auto contact = contact_of(step, m.who, m.approach.last)) touching_.push_back(*contact);
   };
@@ -288,20 +327,22 @@ void SelfContacts::find_contacts_of_vertices(const StepMotion& step, double thic
   }
 }
 
+void SelfContacts::add_found(const std::vector<Meeting>& more) {
+  found_.insert(found_.end(), more.begin(), more.end());
+}
+
 // Two edges that cross are a contact where they are clearly nearer than their ends are to the other sheet, and stay one as
 // long as they are near: or a rim would drop and be lifted by turns. The others are not looked at.
 void SelfContacts::find_contacts_of_edges(const StepMotion& step, double thickest) {
-  std::fill(has_edge_.begin(), has_edge_.end(), 0);
-  for (const SelfContact& c : last_)
-    if (c.who.edges)
-      for (int v : c.who.v) has_edge_[v] = 1;
-  find_near_ones(step, thickest, true);
-  for (const Meeting& m : found_) {
-    const bool near = ropes_->is_rope(m.who) ? last_of(m.who) || !is_borne_otherwise(m)
-                                             : m.approach.last.distance < farthest_of_edges(m.who, infinity);
-    if (!near) continue;
+  std::swap(found_, near_edges(step, *encounters_, thickest, reach_));
+  if (meets_bodies(step)) add_found(near_edges(step, *on_bodies_, surfaces_->thickest(), body_reach_));
+  std::erase_if(found_, [&](const Meeting& m) {
+    return ropes_->is_rope(m.who) ? is_borne_otherwise(m)
+                                  : !(m.approach.last.distance < farthest_of_edges(m.who));
+  });
+  add_found(edges_that_go_on(step, thickest));
+  for (const Meeting& m : found_)
     if (const auto contact = contact_of(step, m.who, m.approach.last)) touching_.push_back(*contact);
-  }
 }
 
 }  // namespace drape

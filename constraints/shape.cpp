@@ -116,7 +116,7 @@ AlignedBox3d bounds_of(const Plane& plane) {
   return {lower, upper};
 }
 
-TriangleMesh mesh_of(const Plane&) { return {}; }
+TriangleMesh mesh_of(const Plane&, int) { return {}; }
 std::optional<UniformSolid> uniform_solid(const Plane&, double) { return std::nullopt; }
 double longest_edge(const Plane&) { return endless; }
 
@@ -143,8 +143,8 @@ AlignedBox3d bounds_of(const Sphere& sphere) {
   return box_about(sphere.centre, [&](const Vec3&) { return sphere.radius; });
 }
 
-TriangleMesh mesh_of(const Sphere& sphere) {
-  return placed(drape::sphere(fineness, sphere.radius), Mat3::Identity(), sphere.centre);
+TriangleMesh mesh_of(const Sphere& sphere, int coarser) {
+  return placed(drape::sphere(fineness - coarser, sphere.radius), Mat3::Identity(), sphere.centre);
 }
 
 std::optional<UniformSolid> uniform_solid(const Sphere& sphere, double mass) {
@@ -194,8 +194,8 @@ AlignedBox3d bounds_of(const Bowl& bowl) {
   });
 }
 
-TriangleMesh mesh_of(const Bowl& bowl) {
-  return placed(drape::bowl(around, bowl.radius, bowl.thickness), turn(Vec3::UnitY(), bowl.axis),
+TriangleMesh mesh_of(const Bowl& bowl, int coarser) {
+  return placed(drape::bowl(around >> coarser, bowl.radius, bowl.thickness), turn(Vec3::UnitY(), bowl.axis),
                 bowl.centre);
 }
 
@@ -234,7 +234,7 @@ AlignedBox3d bounds_of(const Box& box) {
       box.centre, [&](const Vec3& u) { return (box.rotation.transpose() * u).cwiseAbs().dot(box.size / 2); });
 }
 
-TriangleMesh mesh_of(const Box& box) { return placed(drape::box(box.size), box.rotation, box.centre); }
+TriangleMesh mesh_of(const Box& box, int) { return placed(drape::box(box.size), box.rotation, box.centre); }
 
 std::optional<UniformSolid> uniform_solid(const Box& box, double mass) {
   const Vec3 squares = box.size.cwiseAbs2();
@@ -277,10 +277,10 @@ AlignedBox3d bounds_of(const Capsule& capsule) {
   return {capsule.a.cwiseMin(capsule.b) - reach, capsule.a.cwiseMax(capsule.b) + reach};
 }
 
-TriangleMesh mesh_of(const Capsule& capsule) {
+TriangleMesh mesh_of(const Capsule& capsule, int coarser) {
   const Vec3 along = capsule.b - capsule.a;
   const double length = along.norm();
-  return placed(drape::capsule(around, capsule.radius, length),
+  return placed(drape::capsule(around >> coarser, capsule.radius, length),
                 length > 0 ? turn(Vec3::UnitY(), along) : Mat3(Mat3::Identity()), middle_of(capsule));
 }
 
@@ -333,8 +333,8 @@ AlignedBox3d bounds_of(const Plate& plate) {
   });
 }
 
-TriangleMesh mesh_of(const Plate& plate) {
-  constexpr int round_the_rim = 8;  // pieces in a quarter of a circle
+TriangleMesh mesh_of(const Plate& plate, int coarser) {
+  const int round_the_rim = 8 >> coarser;  // pieces in a quarter of a circle
   const double half = plate.height / 2, wall = half - plate.rim, core = plate.radius - plate.rim;
   Outline outline;
   outline.emplace_back(0, -half);
@@ -346,7 +346,7 @@ TriangleMesh mesh_of(const Plate& plate) {
     outline.emplace_back(plate.radius, half);
   }
   if (outline.back()[0] > 0) outline.emplace_back(0, half);
-  return placed(turned(outline, around), turn(Vec3::UnitY(), plate.axis), plate.centre);
+  return placed(turned(outline, around >> coarser), turn(Vec3::UnitY(), plate.axis), plate.centre);
 }
 
 // Along the axis, the core's part is a cylinder. Beyond it, at t in [0, r] past its end, the disc's radius is
@@ -412,8 +412,8 @@ void make_unit(Shape& shape) {
   std::visit([](auto& kind) { kinds::make_unit(kind); }, shape);
 }
 
-TriangleMesh mesh_of(const Shape& shape) {
-  return std::visit([](const auto& kind) { return kinds::mesh_of(kind); }, shape);
+TriangleMesh mesh_of(const Shape& shape, int coarser) {
+  return std::visit([coarser](const auto& kind) { return kinds::mesh_of(kind, coarser); }, shape);
 }
 
 std::optional<UniformSolid> uniform_solid(const Shape& shape, double mass) {

@@ -49,14 +49,14 @@ void Surfaces::set(const std::vector<MovingBody>& bodies) {
   body_.clear();
   thickest_ = 0;
   for (const MovingBody& body : bodies) {
-    const SurfaceDistance* const surface = body.surface();
-    if (!surface || body.obstacle().margin < least_margin) continue;
+    const TriangleMesh* const skin = body.skin();
+    if (!skin || body.obstacle().margin < least_margin) continue;
     const int first = cloth_ + static_cast<int>(body_.size());
     surfaces_.emplace_back(body.number(), first);
-    body_.resize(body_.size() + surface->mesh().positions.size(), body.number());
+    body_.resize(body_.size() + skin->positions.size(), body.number());
     const double thickness = share_of_margin * body.obstacle().margin;
     thickest_ = std::max(thickest_, thickness);
-    for (const Triangle& t : surface->mesh().triangles)
+    for (const Triangle& t : skin->triangles)
       faces_.push_back({{first + t[0], first + t[1], first + t[2]},
                         thickness,
                         body.obstacle().friction.kinetic,
@@ -69,7 +69,7 @@ void Surfaces::set(const std::vector<MovingBody>& bodies) {
 void Surfaces::place(const std::vector<MovingBody>& bodies, bool start) {
   for (const auto& [number, first] : surfaces_) {
     const MovingBody& body = bodies[number];
-    const int count = static_cast<int>(body.surface()->mesh().positions.size()), at = first;
+    const int count = body.skin()->vertex_count(), at = first;
     for_chunks(count, [&](int begin, int end) {
       for (int v = begin; v < end; ++v) {
         if (start)
@@ -117,7 +117,9 @@ void Surfaces::look_again(const std::vector<MovingBody>& bodies, const std::vect
   for_chunks<Work::heavy>(cloth_, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
       for (const auto& [number, first] : surfaces_)
-        if (pinched_[i] != 0 && bodies[number].near_start(places[i]).distance < -inside) in[i] = 1;
+        if (pinched_[i] != 0 &&
+            bodies[number].near_start(places[i]).distance < -inside - bodies[number].skin_depth())
+          in[i] = 1;
   });
   std::vector<Triangle> triangles;
   for (const SelfFace& face : cloth)

@@ -1,6 +1,8 @@
-// The meshes among the bodies, as cloth meets them: surfaces whose vertices are particles that are held and go where
-// the bodies take them. With them the corners and edges of a body meet the triangles and edges of the cloth, so that a
-// needle does not come through between the vertices.
+// Bodies as cloth meets them with its triangles: surfaces whose vertices are particles that are held and go where the
+// bodies take them. With them the corners and edges of a body meet the triangles and edges of the cloth, so that a needle
+// does not come through between the vertices. They are the meshes among the bodies, and polyhedra in convex shapes that
+// move (MovingBody::skin): a body with a mass would else fall through a sheet whose triangles are as large as itself, since
+// springs alone keep its faces off.
 //   Cloth that starts in a body, or through its surface, has to come out first: its particles near there are pinched,
 //   and may pass. So may cloth that nothing could keep off, as where two bodies press it through each other. They are
 //   pinched until they are outside again.

@@ -299,6 +299,15 @@ TEST_CASE("a dropped fabric has its warp down the cloth, and the run says where 
       CHECK_THAT(shop.drape(words + "q" + others).err, !Contains("no direction of the warp"));
     CHECK((shop.json("q/run.json")["cloths"][0]["fabric"]["model"] == "noh-jung"));
   }
+  // The warp of a pattern is its grain.
+  shop.write(
+      "panel.toml",
+      "unit = \"1 m\"\n\n[[panel]]\nname = \"p\"\noutline = [[0, 0], [0.2, 0], [0.2, 0.1], [0, 0.1]]\n");
+  const Outcome panel =
+      shop.drape("drop panel.toml --floor --duration 0.02 --out q --fabric polyester-twill");
+  INFO(panel.err);
+  CHECK(panel.exit_code == 0);
+  CHECK_THAT(panel.err, !Contains("no direction of the warp"));
 }
 
 TEST_CASE("a disc is draped over the plate of a drape test, and stays", "[cli]") {

@@ -60,14 +60,14 @@ struct Sheets {
   // Of a motion that was followed.
   template <class GapOf>
   std::vector<Encounter> ask(Encounters::Kind part, const VecX& x_new, double within, const GapOf& gap_of,
-                             long* looks = nullptr) {
+                             long* looks = nullptr, const std::vector<double>* limits = nullptr) {
     std::vector<Encounter> found;
     const auto look = [&](const Encounter& e, const FourPoints& start, const FourPoints& end,
                           const Vec3& likely) {
       if (looks) ++*looks;
       return approach(e.edges, start, end, within, likely);
     };
-    for (const Meeting& m : encounters.select(part, x, x_new, within, gap_of, look)) {
+    for (const Meeting& m : encounters.select(part, x, x_new, within, gap_of, look, limits)) {
       found.push_back(m.who);
       std::array<int, 4>& v = found.back().v;
       if (m.who.edges && v[0] > v[2]) v = {v[2], v[3], v[0], v[1]};  // as all_pairs() names it
@@ -222,6 +222,51 @@ TEST_CASE("the search misses nothing of a pile that is pressed together and come
         for (int k = 0; k < 8; ++k) go(0);
       }
     }
+}
+
+TEST_CASE("the search misses nothing within limits of particles, which rise and fall", "[approach]") {
+  for (const Kind kind : kinds)
+    for (int moves = 0; moves < 6; ++moves)
+      for (const double most : {0.3, 1.0, 2.0}) {  // of the limits, in gaps
+        INFO("mesh " << static_cast<int>(kind) << ", motion " << moves << ", limits up to " << most);
+        Sheets two(kind, 6, 0.002);
+        const std::vector<Encounter> pairs = two.all_pairs();
+        std::mt19937 random(5);
+        std::uniform_real_distribution<double> number(-1, 1), share(0, 1);
+        std::vector<double> limits(static_cast<std::size_t>(two.vertices()), 0.0);
+        const auto gap_of = [&](const Encounter& e) {
+          double least = gap;
+          for (int v : e.v) least = std::min(least, limits[v]);
+          return least;
+        };
+        long found_in_all = 0;
+        for (int step = 0; step < 16; ++step) {
+          VecX x_new = two.x;
+          for (int i = 0; i < 2 * two.half; ++i)
+            x_new.segment<3>(3 * i) += motion(moves, two, i, step, number(random));
+          REQUIRE(two.encounters.follow(two.x, x_new, gap));
+          for (int i = 0; i < two.vertices(); ++i)  // most stay for some steps
+            if (step == 0 || (i + step) % 5 == 0) limits[i] = most * gap * share(random);
+          const std::vector<Encounter> selected =
+              two.ask(Encounters::Kind::edges, x_new, gap, gap_of, nullptr, &limits);
+          const std::set<Encounter> found(selected.begin(), selected.end());
+          found_in_all += static_cast<long>(found.size());
+          long missed = 0;
+          for (const Encounter& e : pairs)
+            missed += e.edges && found.count(e) == 0 &&
+                      come_near(e, corners(two.x, e), corners(x_new, e), 0.99 * gap_of(e));
+          CHECK(missed == 0);
+          // Who asks for all in between, as the guard does, hears of all.
+          const std::vector<Encounter> guarded =
+              two.ask(Encounters::Kind::both, x_new, gap, [](const Encounter&) { return 0.5 * gap; });
+          const std::set<Encounter> all(guarded.begin(), guarded.end());
+          for (const Encounter& e : pairs)
+            missed += all.count(e) == 0 && come_near(e, corners(two.x, e), corners(x_new, e), 0.49 * gap);
+          CHECK(missed == 0);
+          two.go(x_new);
+        }
+        CHECK((moves == 2 || found_in_all > 0));
+      }
 }
 
 TEST_CASE("the search misses nothing of the parts and within the gaps that it is asked for", "[approach]") {

@@ -236,7 +236,25 @@ TEST_CASE("drape untangle: a mesh that crosses itself no more, all else as in th
 
   const Outcome early = folder.drape("untangle bad.obj --scale 0.01 -o part.obj --duration '10 ms'");
   CHECK(early.exit_code == 1);
-  CHECK_THAT(early.err, Contains("still cross"));
+  CHECK_THAT(early.err, Contains("still cross; --duration ended before they came apart;"));
+
+  // The same triangles without common vertices: nothing joins them but --weld.
+  std::string loose;
+  for (const Triangle& t : before.triangles)
+    for (int v : t) {
+      const Vec3& x = before.positions[static_cast<std::size_t>(v)];
+      loose += "v " + std::to_string(x[0]) + " " + std::to_string(x[1]) + " " + std::to_string(x[2]) + "\n";
+    }
+  for (int k = 1; k < 3 * before.triangle_count(); k += 3)
+    loose += "f " + std::to_string(k) + " " + std::to_string(k + 1) + " " + std::to_string(k + 2) + "\n";
+  folder.write("loose.obj", loose);
+  const Outcome apart = folder.drape("untangle loose.obj --scale 0.01 -o part.obj --duration '10 ms'");
+  CHECK(apart.exit_code == 1);
+  CHECK_THAT(apart.err, Contains("--weld joins them"));
+  const Outcome welded = folder.drape("untangle loose.obj --scale 0.01 -o welded.obj --weld");
+  INFO(welded.out << welded.err);
+  CHECK(welded.exit_code == 0);
+  CHECK(read_obj(folder.path / "welded.obj").vertex_count() == 3 * before.triangle_count());
   for (const char* words :
        {"untangle none.obj -o x.obj", "untangle bad.obj -o ./bad.obj", "untangle bad.obj -o x.txt",
         "untangle bad.obj -o nowhere/x.obj", "untangle bad.obj -o x.obj --thickness -1",
@@ -247,5 +265,37 @@ TEST_CASE("drape untangle: a mesh that crosses itself no more, all else as in th
     CHECK(bad.exit_code == 2);
     CHECK(std::count(bad.err.begin(), bad.err.end(), '\n') == 1);
   }
-  CHECK(folder.files() == std::set<std::string>{"bad.obj", "good.obj", "same.obj", "part.obj"});
+  CHECK(folder.files() ==
+        std::set<std::string>{"bad.obj", "good.obj", "same.obj", "part.obj", "loose.obj", "welded.obj"});
+}
+
+TEST_CASE("drape untangle: layers at exactly one place come apart in their order", "[self-contact]") {
+  const Folder folder;
+  for (const Kind kind : kinds) {
+    const TriangleMesh sheet = bent(8, kind, 0.2, [](double, double) { return 0.0; });
+    std::string text;
+    for (int copy = 0; copy < 2; ++copy) {
+      text += copy == 0 ? "g inner\n" : "g outer\n";
+      for (const Vec3& x : sheet.positions)
+        text += "v " + std::to_string(x[0]) + " " + std::to_string(x[1]) + " " + std::to_string(x[2]) + "\n";
+      for (const Triangle& t : sheet.triangles) {
+        text += "f";
+        for (int v : t) text += " " + std::to_string(copy * sheet.vertex_count() + v + 1);
+        text += "\n";
+      }
+    }
+    folder.write("twice.obj", text);
+    REQUIRE(folder.drape("untangle twice.obj --layers inner,outer --thickness '1 mm' -o two.obj").exit_code ==
+            0);
+    const TriangleMesh two = read_obj(folder.path / "two.obj");
+    const Vec3 normal =
+        (sheet.positions[sheet.triangles[0][1]] - sheet.positions[sheet.triangles[0][0]])
+            .cross(sheet.positions[sheet.triangles[0][2]] - sheet.positions[sheet.triangles[0][0]])
+            .normalized();
+    for (int i = 0; i < sheet.vertex_count(); ++i) {
+      const double gap = normal.dot(two.positions[sheet.vertex_count() + i] - two.positions[i]);
+      CHECK(gap > 0.5e-3);
+      CHECK(gap < 1.5e-3);
+    }
+  }
 }

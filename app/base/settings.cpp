@@ -62,7 +62,12 @@ Setting parse_setting(const std::string& text, const std::string& option) {
     throw InputError((option.empty() ? "'" + text + "' is one word too many, or a setting without a value"
                                      : option + " " + text) +
                      ": expected PATH=VALUE such as cloth.0.bend=\"5 uN.m\"");
-  return {text.substr(0, equals), text.substr(equals + 1), "--set " + text.substr(0, equals)};
+  const auto trimmed = [](const std::string& words) {
+    const std::size_t begin = words.find_first_not_of(' ');
+    return begin == words.npos ? std::string() : words.substr(begin, words.find_last_not_of(' ') + 1 - begin);
+  };
+  const std::string path = trimmed(text.substr(0, equals));
+  return {path, trimmed(text.substr(equals + 1)), "--set " + path};
 }
 
 void apply(const std::string& path, Node value, Node& root) {

@@ -102,7 +102,10 @@ void add_drop(CLI::App& app, const std::string& label, int& exit_code) {
     RunWords run;
   };
   auto words = std::make_shared<Words>();
-  command->add_option("CLOTH", words->cloth, "OBJ file, starting where it stands")->required();
+  command
+      ->add_option("CLOTH", words->cloth,
+                   "OBJ file, starting where it stands, or a flat pattern (.svg, .toml)")
+      ->required();
   command
       ->add_option("--onto", words->options.onto,
                    "an OBJ file, where it stands, or a shape just under the cloth: " + onto_examples())
@@ -289,6 +292,8 @@ void add_untangle(CLI::App& app, int& exit_code) {
       ->type_name("GROUP,...")
       ->delimiter(',');
   option("--duration", words->duration, "TIME", "given up after so much simulated time (10 s)");
+  command->add_flag("--weld", words->weld,
+                    "join vertices at one place, as of seams that were sewn; all are written");
   command->add_flag("--quiet", words->quiet, "nothing but errors");
   command->footer(
       "Exit code: 0 nothing crosses any more; 1 something still does; 2 bad input; 130 interrupted.");

@@ -47,15 +47,17 @@ void print(const Sheets& sheets, const std::vector<CrossingContour>& contours) {
     std::printf("  and %s\n", counted(static_cast<long>(contours.size() - most_told), "contour").c_str());
 }
 
-void print(const Sheets& sheets, const char* title = "crossings") {
+// Returns whether any triangles cross.
+bool print(const Sheets& sheets, const char* title = "crossings") {
   const std::vector<CrossingContour> contours = sheets.contours();
   if (contours.empty()) {
     std::printf("%s: none\n", title);
-    return;
+    return false;
   }
   std::printf("%s: %s, in %s\n", title, pairs(crossing_count(contours)).c_str(),
               counted(static_cast<long>(contours.size()), "contour").c_str());
   print(sheets, contours);
+  return true;
 }
 
 // `parts` are those of `sheets`, in their order. A rope has no faces that could be marked.
@@ -119,7 +121,12 @@ void require_new_folder(const std::filesystem::path& folder) {
 void print_crossings(const std::string& name, const TriangleMesh& mesh, const std::filesystem::path& mark) {
   Sheets sheets;
   sheets.add(name, mesh.triangles, mesh.positions);
-  print(sheets);
+  const bool has_polygons =
+      mesh.document && mesh.document->face_count() < static_cast<std::size_t>(mesh.triangle_count());
+  if (print(sheets) && has_polygons)
+    std::printf(
+        "note: some faces have more than three corners; a bent one is another surface along each diagonal: "
+        "'drape check' of the folder of a run cuts them as the run did\n");
   if (!mark.empty()) write_marked(mark, sheets, {{name, &mesh, mesh.positions}});
 }
 

@@ -10,6 +10,7 @@
 #include "app/simulation/sheets.h"
 #include "app/simulation/time_loop.h"
 #include "mesh/obj/obj.h"
+#include "mesh/triangles/topology.h"
 
 namespace drape::app {
 namespace {
@@ -40,6 +41,7 @@ Scene weightless(const UntangleWords& words) {
     }
     cloth.members["layer"] = std::move(layers);
   }
+  if (words.weld) cloth.members["weld"] = parse_toml_value("true", label);
   if (!words.scale.empty()) cloth.members["scale"] = parse_toml_value(words.scale, "--scale");
   if (!words.thickness.empty()) cloth.members["thickness"] = parse_toml_value(words.thickness, "--thickness");
   root.members["simulation"] = std::move(simulation);
@@ -53,7 +55,9 @@ Scene weightless(const UntangleWords& words) {
 // The state with the fewest crossings so far, and how it came about.
 class Search {
  public:
-  explicit Search(Simulation& simulation) : simulation_(simulation), best_(simulation.state) {
+  // layered: layers come apart even where none crosses another, as where they are at exactly one place.
+  Search(Simulation& simulation, bool layered)
+      : simulation_(simulation), layered_(layered), best_(simulation.state) {
     at_start_ = fewest_ = Sheets(simulation.cloths, best_.x).crossings();
   }
   void look() {
@@ -65,8 +69,9 @@ class Search {
     best_ = state;
   }
   bool over() const {
-    return at_start_ == 0 || simulation_.state.time >= since_ + (fewest_ == 0 ? rests_for : gives_up_after);
+    return !searches() || simulation_.state.time >= since_ + (fewest_ == 0 ? rests_for : gives_up_after);
   }
+  bool searches() const { return at_start_ > 0 || layered_; }
   const State& best() const { return best_; }
   int at_start() const { return at_start_; }
   int fewest() const { return fewest_; }
@@ -74,10 +79,18 @@ class Search {
 
  private:
   Simulation& simulation_;
+  bool layered_;
   State best_;
   int at_start_, fewest_;
   double since_ = 0;
 };
+
+bool has_vertices_at_one_place(const Cloth& cloth) {
+  const std::vector<int> first = welded(cloth.mesh.positions);
+  for (int v = 0; v < static_cast<int>(first.size()); ++v)
+    if (first[v] != v) return true;
+  return false;
+}
 
 // [m]
 std::string moved(const VecX& from, const VecX& to) {
@@ -87,13 +100,24 @@ std::string moved(const VecX& from, const VecX& to) {
   return rounded(1000 * most, 3) + " mm";
 }
 
+// Why no more was done where something still crosses.
+std::string reason(bool failed, bool in_time, const Cloth& cloth, bool weld) {
+  std::string why = failed          ? "; a step failed, as told above"
+                    : interrupted() ? "; it was interrupted"
+                    : in_time ? "; in the last " + rounded(gives_up_after, 2) + " s none came apart for good"
+                              : "; --duration ended before they came apart";
+  if (!weld && has_vertices_at_one_place(cloth))
+    why += "; vertices at one place are not joined, and what meets there may pass: --weld joins them";
+  return why;
+}
+
 // Returns how many pairs cross in what was written; a polygon may be cut otherwise there. What crosses nowhere is written as
 // it was read.
 int write(const UntangleWords& words, const Scene& scene, const Cloth& cloth, const Search& search) {
   const TriangleMesh mesh = read_obj(words.mesh);
   std::vector<Vec3> places = mesh.positions;
   const double scale = scene.cloths.front().placement.scale;
-  if (search.at_start() > 0) {
+  if (search.searches()) {
     places = cloth.embedding.positions(search.best().x);
     for (Vec3& place : places) place /= scale;
   }
@@ -122,7 +146,7 @@ int untangle_file(const UntangleWords& words) {
     for (const std::string& message : simulation.messages)
       if (!message.starts_with("note")) std::fprintf(stderr, "%s\n", one_line(message).c_str());
   const VecX start = simulation.state.x;
-  Search search(simulation);
+  Search search(simulation, !words.layers.empty());
   TimeLoop loop(simulation, Schedule(StepGrid(scene.simulation.time_step), 0, scene.simulation.duration));
   catch_interrupts();
   bool failed = false;
@@ -142,8 +166,9 @@ int untangle_file(const UntangleWords& words) {
                 crossings == 0 ? "none" : std::to_string(crossings).c_str(),
                 rounded(search.since(), 3).c_str(), moved(start, search.best().x).c_str(), words.out.c_str());
   if (crossings > 0)
-    std::fprintf(stderr, "error: %s still cross; 'drape check %s' says where\n",
-                 counted(crossings, "pair").c_str(), words.out.c_str());
+    std::fprintf(
+        stderr, "error: %s still cross%s; 'drape check %s' says where\n", counted(crossings, "pair").c_str(),
+        reason(failed, search.over(), simulation.cloths.front(), words.weld).c_str(), words.out.c_str());
   return interrupted() ? 130 : failed || crossings > 0 ? 1 : 0;
 }
 

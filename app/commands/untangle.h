@@ -11,6 +11,7 @@ struct UntangleWords {
   std::string mesh, out, fabric = "cotton-poplin";
   std::string scale, thickness, duration;  // as on the command line; empty when not given
   Names layers;                            // groups of the mesh, from the inside out
+  bool weld = false;                       // vertices at one place are joined
   bool quiet = false;
 };
 

@@ -8,6 +8,11 @@ namespace drape::app {
 Pattern read_pattern(const std::filesystem::path& path, Names& notes) {
   const std::string text = read_text(path, "SVG or TOML");
   const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  const bool known = path.extension() == ".svg" || path.extension() == ".toml";
+  if (!known && (first == text.npos || text[first] != '<'))
+    throw InputError(path.string() +
+                     ": a pattern is an SVG drawing (.svg) or a table of panels (.toml); "
+                     "other programs for patterns export SVG");
   const bool svg = (first != text.npos && text[first] == '<') || path.extension() == ".svg";
   return svg ? parse_svg_pattern(text, path.string(), notes) : parse_toml_pattern(text, path.string());
 }

@@ -7,7 +7,7 @@
 #include "app/base/table.h"
 #include "app/scene/load_mesh.h"
 #include "app/scene/shape_table.h"
-#include "app/simulation/simulation.h"
+#include "app/simulation/parts.h"
 #include "mesh/obj/examine.h"
 #include "mesh/obj/obj.h"
 #include "mesh/triangles/extent.h"
@@ -125,7 +125,6 @@ class DropScene {
     const bool by_default = options_.fabric == DropOptions().fabric;  // which a setting may change
     cloth.members["fabric"] = Node::of_text(options_.fabric, by_default ? "drape drop" : "--fabric");
     cloth.members["self_contact"] = parse_toml_value("true", "drape drop");
-    cloth.members["warp"] = Node::of_text("down", "drape drop");
     if (options_.scale) cloth.members["scale"] = parse_toml_value(*options_.scale, "--scale");
     Node pins = Node::of_list({}, "--pin");
     for (const std::string& group : options_.pinned_groups) {
@@ -142,8 +141,8 @@ class DropScene {
     for (const Setting& setting : settings_)
       if (!setting.path.starts_with("obstacle")) of_cloth.push_back(setting);
     const Scene scene = read_scene(root_, of_cloth, {}, label_);
-    const ClothEntry& cloth = scene.cloths.front();
-    return placed(read_obj(cloth.mesh), cloth.placement, cloth.mesh.string());
+    Names told_later;
+    return load_cloth(scene.cloths.front(), told_later).mesh;
   }
 
   void add_bodies() {

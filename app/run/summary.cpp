@@ -21,9 +21,9 @@ std::string hints(const RunRecord& record, const Output& output) {
     text += "hint: " + counted(record.crossings, "pair") + " of triangles cross (" +
             std::to_string(record.crossings_at_start) + " at the start): drape check " +
             output.folder().string() +
-            " says where; with self_contact = true, cloth that starts clean, does not tear and has no two "
-            "vertices at one "
-            "place, does not pass through itself and others; drape untangle brings a mesh apart\n";
+            " says where; with self_contact = true, cloth that starts clean, does not tear, closes no seam "
+            "through cloth that lies between, and has no two vertices at one place, does not pass through "
+            "itself and others; drape untangle brings a mesh apart\n";
   if (record.self_guarded > 0)
     text += "hint: vertices were pushed aside or stopped on their way " +
             counted(record.self_guarded, "time") +

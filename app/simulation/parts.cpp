@@ -64,6 +64,8 @@ void choose_warp(const ClothEntry& entry, ClothPart& part, Names& messages) {
                      (entry.rest_is_flat ? "" : ", or rest = \"uv\" if it is v of the uv"));
 }
 
+}  // namespace
+
 // As the file has it, its panels placed; the rest shape is the flat pattern, or what the file has.
 ClothPart load_cloth(const ClothEntry& entry, Names& messages) {
   require_file(entry.mesh, entry.where);
@@ -101,6 +103,8 @@ ClothPart load_cloth(const ClothEntry& entry, Names& messages) {
   add_messages(*part.report, entry.mesh.string(), messages);
   return part;
 }
+
+namespace {
 
 void add_cloth(const ClothEntry& entry, Simulation& simulation) {
   ClothPart part = load_cloth(entry, simulation.messages);

@@ -9,6 +9,8 @@ namespace drape::app {
 // when a lattice needs more memory than is free.
 void load_parts(const Scene& scene, Simulation& simulation);
 
+// Of an OBJ file or a pattern, placed. Throws InputError.
+ClothPart load_cloth(const ClothEntry& entry, Names& messages);
 SoftPart load_soft(const SoftEntry& entry, Names& messages);
 // Finds the particles that its ends are joined to among the parts that are there.
 RopePart load_rope(const RopeEntry& entry, Simulation& simulation);

@@ -347,7 +347,7 @@ void warn_if_coarse(const Scene& scene, Simulation& simulation) {
     const bool meets = part < scene.cloths.size() && scene.cloths[part].self_contact;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       const double radius = longest_edge(bodies[k].obstacle().shape);
-      if (cloth.report.median_edge <= radius || (meets && bodies[k].surface())) continue;
+      if (cloth.report.median_edge <= radius || (meets && bodies[k].skin())) continue;
       simulation.messages.push_back(
           std::string("warning: ") + (cloth.rope ? "rope " : "cloth ") + cloth.name + " is too coarse for " +
           body_name(bodies[k].obstacle(), scene.obstacles[k].name) + ": its edges (median " +

@@ -190,8 +190,7 @@ void CoveredFaces::find_meetings(const std::vector<Face>& faces, const std::vect
         if (ends < 2) line.ends[ends++] = {a, b, share_of_way(x, a, b, through)};
       };
     };
-    passing_edges(x, first, second, add(second));
-    passing_edges(x, second, first, add(first));
+    if (!passing_edges(x, first, second, add(second))) passing_edges(x, second, first, add(first));
     if (ends == 0) return;
     if (ends == 1) line.ends[1] = line.ends[0];
     lines_.push_back(line);

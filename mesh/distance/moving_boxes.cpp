@@ -135,6 +135,7 @@ void MovingBoxes::refit(const std::vector<Face>& faces, const std::vector<Vec3>&
         return extent;
       }).box;
   origin_ = box.center();
+  still_ = &start == &end;
   slack_ = static_cast<float>(1e-6 * box.diagonal().norm()) + std::numeric_limits<float>::min();
   for_chunks<Work::heavy>(static_cast<int>(nodes_.size()), [&](int begin, int after) {
     for (int n = begin; n < after; ++n)
@@ -152,6 +153,20 @@ unsigned MovingBoxes::near_children(int node, int child, int other, float margin
   const Node &a = nodes_[node], &b = nodes_[other];
   const auto load = [](const Four& four) { return *reinterpret_cast<const Floats*>(four.data()); };
   constexpr Floats zero = {0, 0, 0, 0};
+  if (a.count[child] == 0) return 0;
+  const auto those = [&b](auto near) {
+    unsigned children = 0;
+    for (int k = 0; k < 4; ++k)
+      if (b.count[k] != 0 && near[k] != 0) children |= 1u << k;
+    return children;
+  };
+  if (still_) {
+    auto near = zero == zero;
+    for (std::size_t k = 0; k < 3; ++k)
+      near = near & (a.upper[0][k][child] - load(b.lower[0][k]) + margin >= zero) &
+             (load(b.upper[0][k]) - a.lower[0][k][child] + margin >= zero);
+    return those(near);
+  }
   Floats enter = zero, leave = zero + 1;  // the s at which they are near along all axes looked at so far
   const auto keep = [&](Floats at_0, Floats at_1) {
     const Floats at = at_0 / (at_0 - at_1);
@@ -166,11 +181,7 @@ unsigned MovingBoxes::near_children(int node, int child, int other, float margin
          load(b.upper[1][k]) - a.lower[1][k][child] + margin);
   }
   // Rounding moves both ends of the span by a few parts in ten millions.
-  const auto near = enter <= leave + 1e-5f;
-  unsigned children = 0;
-  for (int k = 0; k < 4; ++k)
-    if (b.count[k] != 0 && near[k] != 0) children |= 1u << k;
-  return a.count[child] == 0 ? 0 : children;
+  return those(enter <= leave + 1e-5f);
 }
 
 }  // namespace drape::internal

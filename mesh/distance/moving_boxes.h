@@ -106,7 +106,8 @@ class MovingBoxes {
   std::vector<Patch> patches_;
   int most_faces_;  // of a leaf
   Vec3 origin_ = Vec3::Zero();
-  float slack_ = 0;  // m
+  float slack_ = 0;     // m
+  bool still_ = false;  // whether start and end are the same
 };
 
 template <class Ask>

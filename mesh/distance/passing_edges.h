@@ -24,11 +24,13 @@ inline bool boxes_touch(const std::vector<Vec3>& x, const Triangle& s, const Tri
   return true;
 }
 
-// Calls found(a, b), a < b, for every edge of s that passes through t.
+// Calls found(a, b), a < b, for every edge of s that passes through t. Returns whether s is on one side of the plane of t:
+// then no edge of t passes through s, either.
 template <class Found>
-void passing_edges(const std::vector<Vec3>& x, const Triangle& s, const Triangle& t, const Found& found) {
+bool passing_edges(const std::vector<Vec3>& x, const Triangle& s, const Triangle& t, const Found& found) {
   std::array<int, 3> side;
   for (std::size_t k = 0; k < 3; ++k) side[k] = orient3d(x[t[0]], x[t[1]], x[t[2]], x[s[k]]);
+  if (side[0] != 0 && side[0] == side[1] && side[0] == side[2]) return true;
   for (std::size_t k = 0; k < 3; ++k) {
     if (side[k] * side[(k + 1) % 3] >= 0) continue;
     const int a = std::min(s[k], s[(k + 1) % 3]), b = std::max(s[k], s[(k + 1) % 3]);
@@ -40,6 +42,7 @@ void passing_edges(const std::vector<Vec3>& x, const Triangle& s, const Triangle
     }
     if (left != right) found(a, b);
   }
+  return false;
 }
 
 // Where the edge from a to b meets the plane of the triangle, as a share of the way from a.

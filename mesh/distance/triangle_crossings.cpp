@@ -32,10 +32,9 @@ class Search {
   // Adds the pair when the triangles cross.
   void look_at(int first, int second) {
     const Triangle &s = triangles_[first], &t = triangles_[second];
-    if (internal::share_a_vertex(s, t) || !internal::boxes_touch(x_, s, t)) return;
+    if (internal::share_a_vertex(s, t)) return;
     const auto before = passages_.size();
-    look_through(first, second);
-    look_through(second, first);
+    if (look_through(first, second) || look_through(second, first)) passages_.resize(before);
     if (passages_.size() == before) return;
     pairs_.push_back({std::min(first, second), std::max(first, second)});
   }
@@ -55,10 +54,10 @@ class Search {
   std::vector<CrossingContour> contours();
 
  private:
-  // Finds the edges of one triangle that pass through the other; a segment has its edge twice.
-  void look_through(int of, int through) {
+  // Finds the edges of one triangle that pass through the other; a segment has its edge twice. True: they cannot cross.
+  bool look_through(int of, int through) {
     const auto before = passages_.size();
-    internal::passing_edges(x_, triangles_[of], triangles_[through], [&](int a, int b) {
+    return internal::passing_edges(x_, triangles_[of], triangles_[through], [&](int a, int b) {
       if (is_segment(triangles_[of]) && passages_.size() > before) return;
       passages_.push_back({{a, b, of, through}, static_cast<int>(pairs_.size())});
     });

@@ -82,7 +82,10 @@ TriangleMesh ObjReader::read() {
   while (scanner_.next(line)) {
     if (!line.empty()) read_line(line);
   }
-  if (mesh_.positions.empty()) throw InputError(name_ + ": no vertices ('v' lines): is this an OBJ file?");
+  if (mesh_.positions.empty())
+    throw InputError(name_ +
+                     ": no vertices ('v' lines): is this an OBJ file? (Sewing patterns are "
+                     "drawings, .svg, or tables, .toml.)");
   check_references();
   if (document_.face_count() == 0 && (need_ == ObjNeed::faces || elements_.empty())) {
     const std::string skipped = warnings_.first("corners", name_);
