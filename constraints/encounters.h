@@ -160,6 +160,7 @@ std::vector<Meeting>& Encounters::select(Kind kind, const VecX& x, const VecX& x
   constexpr int groups_in_a_chunk = 8;
   constexpr double never = std::numeric_limits<double>::infinity();
   selected_.clear();
+  if (faces_.empty()) return selected_;
   if (limits) take(*limits, gap);
   // The pairs of a part of a list, from `begin` to `end`. wanted: of the list, or null.
   const auto select_part = [&](Pairs& pairs, int begin, int end, const Clock& clock, double& due,

@@ -13,12 +13,6 @@ MovingBody::MovingBody(Obstacle obstacle, int number) : obstacle_(std::move(obst
   constexpr int coarser = 2;
   if (!surface() && convex(obstacle_.shape) && (reacting_ || obstacle_.motion.moves()))
     polyhedron_ = std::make_shared<const TriangleMesh>(mesh_of(obstacle_.shape, coarser));
-  if (!polyhedron_) return;
-  const std::vector<Vec3>& x = polyhedron_->positions;
-  for (const Triangle& t : polyhedron_->triangles) {
-    const Vec3 middle = (x[t[0]] + x[t[1]] + x[t[2]]) / 3;
-    skin_depth_ = std::max(skin_depth_, -closest(obstacle_.shape, middle).distance);
-  }
 }
 
 const SurfaceDistance* MovingBody::surface() const {
@@ -78,6 +72,22 @@ SurfacePoint MovingBody::near_end(const Vec3& x) const {
 const TriangleMesh* MovingBody::skin() const {
   if (const SurfaceDistance* const mesh = surface()) return &mesh->mesh();
   return polyhedron_ && !polyhedron_->triangles.empty() ? polyhedron_.get() : nullptr;
+}
+
+bool MovingBody::meets_triangles() const {
+  constexpr double least_margin = 1e-4;  // m
+  return skin() && obstacle_.margin >= least_margin;
+}
+
+bool MovingBody::inside_skin(const Vec3& x, double deeper) const {
+  if (surface()) return near_start(x).distance < -deeper;
+  const Vec3 place = start_.to_body(x);
+  const std::vector<Vec3>& corners = polyhedron_->positions;
+  return std::all_of(polyhedron_->triangles.begin(), polyhedron_->triangles.end(), [&](const Triangle& t) {
+    const Vec3& corner = corners[t[0]];
+    const Vec3 normal = (corners[t[1]] - corner).cross(corners[t[2]] - corner);
+    return normal.dot(place - corner) < -deeper * normal.norm();
+  });
 }
 
 Vec3 MovingBody::vertex_at_start(int v) const {

@@ -47,7 +47,11 @@ class MovingBody {
   // The triangles that meet the triangles of cloth, and where their vertices are when the step begins and ends [m]: those of
   // a mesh, and a polyhedron in a convex shape that moves. Null for all others.
   const TriangleMesh* skin() const;
-  double skin_depth() const { return skin_depth_; }  // of the polyhedron below the surface at most [m]
+  // Whether cloth meets these triangles: not where the margin is so small that edges would rest on edges, and be stopped for
+  // ever.
+  bool meets_triangles() const;
+  // Whether x is deeper inside of them than this when the step begins [m].
+  bool inside_skin(const Vec3& x, double deeper) const;
   Vec3 vertex_at_start(int v) const;
   Vec3 vertex_at_end(int v) const;
 
@@ -109,7 +113,6 @@ class MovingBody {
 
   Obstacle obstacle_;
   std::shared_ptr<const TriangleMesh> polyhedron_;
-  double skin_depth_ = 0;  // m
   int number_;
   double h_ = 0;
   bool turns_ = false;  // whether the body turns in this step

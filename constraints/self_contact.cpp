@@ -246,8 +246,10 @@ void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<Movi
 void SelfContacts::pinch(const Contact& contact, const MovingBody& body) {
   constexpr double deep = 1e-6;  // m
   const double depth = -body.obstacle().margin - contact.plane[0].gap;
-  const bool inside = body.skin() && depth > deep + body.skin_depth();
-  if (any() && surfaces_->any() && (contact.clamped || inside)) surfaces_->pinch(contact.particle);
+  if (!any() || !surfaces_->any()) return;
+  const bool inside =
+      body.skin() && depth > deep && body.inside_skin(surfaces_->step().place(contact.particle), deep);
+  if (contact.clamped || inside) surfaces_->pinch(contact.particle);
 }
 
 void SelfContacts::follow(const std::vector<MovingBody>& bodies) {

@@ -30,7 +30,7 @@
 // and by its edge, and its ends meet triangles. What hangs together with a rope is kept apart from it by no more than half of
 // the way between both at rest [rope_rest.h]. Bodies meet ropes otherwise, by their particles.
 //   Where the cloth starts through itself, nothing near there pushes or is guarded until it is apart [tangles.h].
-//   Bodies that are meshes take part: their corners meet the triangles of the cloth, and their edges its edges
+//   Bodies that are meshes, and convex shapes that move, take part: their corners meet the triangles of the cloth, and their edges its edges
 //   [surfaces.h]. A zone that touches one goes with it. Where cloth cannot be kept both off a body and off cloth, the body
 //   yields.
 // x [m], v [m/s], f [N], k [N/m], h [s].

@@ -171,10 +171,12 @@ double SelfContacts::farthest_of_edges(const Encounter& e) const {
 
 // Fills limits_ with what farthest_of_edges() is at most for pairs of each particle.
 void SelfContacts::find_limits(bool on_bodies) {
-  for (int v = 0; v < static_cast<int>(limits_.size()); ++v) {
-    const bool any = ropes_->any() || (on_bodies && v < cloth_particles());
-    limits_[v] = any ? infinity : clearly_nearer * nearest_[v];
-  }
+  for_chunks<Work::light>(static_cast<int>(limits_.size()), [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      const bool any = ropes_->any() || (on_bodies && v < cloth_particles());
+      limits_[v] = any ? infinity : clearly_nearer * nearest_[v];
+    }
+  });
 }
 
 // How a pair comes within its thickness, and a little more, on the way to ahead_. start, end: the corners of both ends;
@@ -332,7 +334,7 @@ void SelfContacts::add_found(const std::vector<Meeting>& more) {
 }
 
 // Two edges that cross are a contact where they are clearly nearer than their ends are to the other sheet, and stay one as
-// long as they are near: or a rim would drop and be lifted by turns. The others are not looked at.
+// long as they are near (edges_that_go_on()): or a rim would drop and be lifted by turns. The others are not looked at.
 void SelfContacts::find_contacts_of_edges(const StepMotion& step, double thickest) {
   std::swap(found_, near_edges(step, *encounters_, thickest, reach_));
   if (meets_bodies(step)) add_found(near_edges(step, *on_bodies_, surfaces_->thickest(), body_reach_));

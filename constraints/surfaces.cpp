@@ -12,9 +12,7 @@ namespace {
 // Springs keep edges and corners off by this share of the margin, at which vertices rest: so what lies flat touches no
 // spring, and what lies over an edge that is not sharp is borne by the faces [face_contact.h].
 constexpr double share_of_margin = 0.25;
-constexpr double inside = 1e-9;  // m: less is rounding
-constexpr double least_margin =
-    1e-4;                          // m: nearer than that edges rest on edges, and would be stopped for ever
+constexpr double inside = 1e-9;    // m: less is rounding
 constexpr int steps_between = 10;  // after which is looked again who is pinched
 
 }  // namespace
@@ -49,8 +47,8 @@ void Surfaces::set(const std::vector<MovingBody>& bodies) {
   body_.clear();
   thickest_ = 0;
   for (const MovingBody& body : bodies) {
+    if (!body.meets_triangles()) continue;
     const TriangleMesh* const skin = body.skin();
-    if (!skin || body.obstacle().margin < least_margin) continue;
     const int first = cloth_ + static_cast<int>(body_.size());
     surfaces_.emplace_back(body.number(), first);
     body_.resize(body_.size() + skin->positions.size(), body.number());
@@ -117,9 +115,7 @@ void Surfaces::look_again(const std::vector<MovingBody>& bodies, const std::vect
   for_chunks<Work::heavy>(cloth_, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
       for (const auto& [number, first] : surfaces_)
-        if (pinched_[i] != 0 &&
-            bodies[number].near_start(places[i]).distance < -inside - bodies[number].skin_depth())
-          in[i] = 1;
+        if (pinched_[i] != 0 && bodies[number].inside_skin(places[i], inside)) in[i] = 1;
   });
   std::vector<Triangle> triangles;
   for (const SelfFace& face : cloth)

@@ -435,6 +435,36 @@ TEST_CASE("a rope that starts through a sheet comes out of it", "[rope-contact]"
   for (const Vec3& x : all.points(1)) CHECK(x[1] > 0);  // on the side of the heavier part
 }
 
+// Bodies meet ropes by their particles; that they have triangles as well is no business of a rope's.
+TEST_CASE("a rope with self_contact alone falls on bodies with triangles as one without", "[rope-contact]") {
+  const Box box{.centre = {0, -0.03, 0}, .size = {0.1, 0.04, 0.1}};
+  const Motion later =
+      Motion::keyframes({{.time = 10}, {.time = 11, .translate = {0, 0.1, 0}}}, Vec3::Zero());
+  const Obstacle bodies[] = {
+      {.shape = box, .motion = later},
+      {.shape = std::make_shared<const SurfaceDistance>(mesh_of(Shape(box)))},
+  };
+  for (const Obstacle& body : bodies)
+    for (int segments : {10, 20, 40}) {
+      INFO(name(body.shape) << ", " << segments << " segments");
+      VecX ends[2];
+      for (const bool meets : {false, true}) {
+        Meeting all;
+        all.constraints->add(body);
+        std::vector<Vec3> points;
+        for (int k = 0; k <= segments; ++k) points.emplace_back(-0.2 + 0.4 * k / segments, 0.02, 0.003);
+        RopePart rope{.points = points,
+                      .material = {.mass_per_length = 0.05, .stretch = 1e4, .bend = 1e-4, .radius = radius}};
+        if (meets) rope.self_contact = RopeContact{.friction = 0.3};
+        all.add(std::move(rope));
+        all.use("implicit-euler", "auto");
+        all.go(0.01, 20);
+        ends[meets] = all.state.x;
+      }
+      CHECK((ends[0] - ends[1]).lpNorm<Eigen::Infinity>() < 1e-9);
+    }
+}
+
 TEST_CASE("a friction of a rope that makes no sense is refused", "[rope-contact]") {
   Assembly all;
   CHECK_THROWS_WITH(all.add(RopePart{.points = straight(Vec3::Zero(), {1, 0, 0}, 3),

@@ -1,4 +1,4 @@
-// Bodies that are meshes and cloth that takes part in self_contact: nothing sharp comes through, whichever of them moves.
+// Bodies that cloth with self_contact meets with their triangles: nothing comes through, whichever of them moves.
 #include "mesh/base/threads.h"
 #include "mesh/distance/triangle_crossings.h"
 #include "solver/assembly/assembly.h"
@@ -190,11 +190,58 @@ TEST_CASE("a body of any shape that falls on a hung sheet is held by it", "[surf
           REQUIRE((told || all.crossings() == 0));
         }
         passed += told;
+        CHECK((!told || std::holds_alternative<Capsule>(shape)));
         double lowest = 0;
         for (int i = 0; i < all.state.particles(); ++i) lowest = std::min(lowest, all.state.x[3 * i + 1]);
         CHECK((told || all.constraints->bodies()[0].reacting()->centre()[1] > lowest));
       }
   CHECK(passed <= 1);  // of 45
+}
+
+// The polyhedron of a round shape lies below its surface: what starts between both, or in both, comes out as from a body that
+// stands, which has no polyhedron.
+TEST_CASE("cloth that starts inside a round shape comes out, whether the shape moves or not", "[surfaces]") {
+  constexpr double radius = 0.25;
+  const Motion later =
+      Motion::keyframes({{.time = 10}, {.time = 11, .translate = {0, 0.1, 0}}}, Vec3::Zero());
+  const Shape shapes[] = {Sphere{.radius = radius},
+                          Capsule{.a = {-0.2, 0, 0}, .b = {0.2, 0, 0}, .radius = radius}};
+  for (const Shape& shape : shapes)
+    for (const double depth : {1e-3, 2e-3, 3.5e-3, 6e-3})
+      for (int n : {9, 13, 19})
+        for (Kind kind : kinds) {
+          INFO(name(shape) << ", " << depth << " m inside, " << n << " vertices along an edge, kind "
+                           << static_cast<int>(kind));
+          std::array<double, 2> strain{}, least{};
+          for (const bool moves : {false, true}) {
+            Beside all{Vec3::Zero()};
+            all.constraints->add(Obstacle{.shape = shape, .motion = moves ? later : Motion()});
+            TriangleMesh sheet = flat(n, kind, 0.06);
+            for (Vec3& x : sheet.positions) {
+              if (std::holds_alternative<Capsule>(shape))
+                x[1] = std::sqrt(std::pow(radius - depth, 2) - x[2] * x[2]);
+              else
+                x = (radius - depth) * Vec3(x + Vec3(0, radius, 0)).normalized();
+            }
+            all.add_sheet(sheet);
+            all.use("implicit-euler", "auto");
+            for (int k = 0; k < 20; ++k) {
+              REQUIRE(all.advance(0.01).done);
+              for (const Triangle& t : sheet.triangles)
+                for (std::size_t c = 0; c < 3; ++c) {
+                  const int i = 3 * t[c], j = 3 * t[(c + 1) % 3];
+                  const double rest = (sheet.positions[t[c]] - sheet.positions[t[(c + 1) % 3]]).norm();
+                  const double now = (all.state.x.segment<3>(i) - all.state.x.segment<3>(j)).norm();
+                  strain[moves] = std::max(strain[moves], std::abs(now / rest - 1));
+                }
+            }
+            least[moves] = 1;
+            for (int i = 0; i < all.state.particles(); ++i)
+              least[moves] = std::min(least[moves], closest(shape, all.state.x.segment<3>(3 * i)).distance);
+          }
+          CHECK(strain[1] < strain[0] + 0.02);
+          CHECK(least[1] > 1.9e-3);
+        }
 }
 
 TEST_CASE("a thin box that is driven edge-on into a hung sheet pushes it ahead", "[surfaces]") {

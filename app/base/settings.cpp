@@ -63,8 +63,9 @@ Setting parse_setting(const std::string& text, const std::string& option) {
                                      : option + " " + text) +
                      ": expected PATH=VALUE such as cloth.0.bend=\"5 uN.m\"");
   const auto trimmed = [](const std::string& words) {
-    const std::size_t begin = words.find_first_not_of(' ');
-    return begin == words.npos ? std::string() : words.substr(begin, words.find_last_not_of(' ') + 1 - begin);
+    const std::size_t begin = words.find_first_not_of(" \t");
+    return begin == words.npos ? std::string()
+                               : words.substr(begin, words.find_last_not_of(" \t") + 1 - begin);
   };
   const std::string path = trimmed(text.substr(0, equals));
   return {path, trimmed(text.substr(equals + 1)), "--set " + path};

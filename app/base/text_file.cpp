@@ -25,4 +25,11 @@ std::string read_text(const std::filesystem::path& path, const std::string& kind
   return content;
 }
 
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return extension;
+}
+
 }  // namespace drape::app

@@ -10,4 +10,7 @@ namespace drape::app {
 // or cannot be read. `kind` stands in messages: "TOML".
 std::string read_text(const std::filesystem::path& path, const std::string& kind);
 
+// The extension of a name in lower case, such as ".obj".
+std::string lower_extension(const std::filesystem::path& path);
+
 }  // namespace drape::app

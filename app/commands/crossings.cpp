@@ -109,6 +109,12 @@ Sheets sheets_of(const Recording& recording, int frame) {
   return sheets;
 }
 
+bool has_polygon(const std::vector<std::size_t>& face_start) {
+  for (std::size_t k = 1; k < face_start.size(); ++k)
+    if (face_start[k] - face_start[k - 1] > 3) return true;
+  return false;
+}
+
 }  // namespace
 
 void require_new_folder(const std::filesystem::path& folder) {
@@ -121,8 +127,7 @@ void require_new_folder(const std::filesystem::path& folder) {
 void print_crossings(const std::string& name, const TriangleMesh& mesh, const std::filesystem::path& mark) {
   Sheets sheets;
   sheets.add(name, mesh.triangles, mesh.positions);
-  const bool has_polygons =
-      mesh.document && mesh.document->face_count() < static_cast<std::size_t>(mesh.triangle_count());
+  const bool has_polygons = mesh.document && has_polygon(mesh.document->face_start);
   if (print(sheets) && has_polygons)
     std::printf(
         "note: some faces have more than three corners; a bent one is another surface along each diagonal: "

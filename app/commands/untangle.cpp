@@ -101,18 +101,20 @@ std::string moved(const VecX& from, const VecX& to) {
 }
 
 // Why no more was done where something still crosses.
-std::string reason(bool failed, bool in_time, const Cloth& cloth, bool weld) {
-  std::string why = failed          ? "; a step failed, as told above"
-                    : interrupted() ? "; it was interrupted"
-                    : in_time ? "; in the last " + rounded(gives_up_after, 2) + " s none came apart for good"
-                              : "; --duration ended before they came apart";
-  if (!weld && has_vertices_at_one_place(cloth))
+std::string reason(bool failed, const Search& search, const Cloth& cloth, const UntangleWords& words) {
+  std::string why =
+      failed                 ? "; a step failed, as told above"
+      : interrupted()        ? "; it was interrupted"
+      : search.fewest() == 0 ? ", as the polygons are cut in the file; none does as they were cut here"
+      : search.over()        ? "; in the last " + rounded(gives_up_after, 2) + " s none came apart for good"
+                             : "; --duration ended before they came apart";
+  if (!words.weld && words.layers.empty() && has_vertices_at_one_place(cloth))
     why += "; vertices at one place are not joined, and what meets there may pass: --weld joins them";
   return why;
 }
 
-// Returns how many pairs cross in what was written; a polygon may be cut otherwise there. What crosses nowhere is written as
-// it was read.
+// Returns how many pairs cross in what was written; a polygon may be cut otherwise there. What crosses nowhere, and has
+// no layers, is written as it was read.
 int write(const UntangleWords& words, const Scene& scene, const Cloth& cloth, const Search& search) {
   const TriangleMesh mesh = read_obj(words.mesh);
   std::vector<Vec3> places = mesh.positions;
@@ -146,7 +148,7 @@ int untangle_file(const UntangleWords& words) {
     for (const std::string& message : simulation.messages)
       if (!message.starts_with("note")) std::fprintf(stderr, "%s\n", one_line(message).c_str());
   const VecX start = simulation.state.x;
-  Search search(simulation, !words.layers.empty());
+  Search search(simulation, words.layers.size() > 1);
   TimeLoop loop(simulation, Schedule(StepGrid(scene.simulation.time_step), 0, scene.simulation.duration));
   catch_interrupts();
   bool failed = false;
@@ -166,9 +168,9 @@ int untangle_file(const UntangleWords& words) {
                 crossings == 0 ? "none" : std::to_string(crossings).c_str(),
                 rounded(search.since(), 3).c_str(), moved(start, search.best().x).c_str(), words.out.c_str());
   if (crossings > 0)
-    std::fprintf(
-        stderr, "error: %s still cross%s; 'drape check %s' says where\n", counted(crossings, "pair").c_str(),
-        reason(failed, search.over(), simulation.cloths.front(), words.weld).c_str(), words.out.c_str());
+    std::fprintf(stderr, "error: %s still cross%s; 'drape check %s' says where\n",
+                 counted(crossings, "pair").c_str(),
+                 reason(failed, search, simulation.cloths.front(), words).c_str(), words.out.c_str());
   return interrupted() ? 130 : failed || crossings > 0 ? 1 : 0;
 }
 

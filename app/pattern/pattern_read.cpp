@@ -8,7 +8,8 @@ namespace drape::app {
 Pattern read_pattern(const std::filesystem::path& path, Names& notes) {
   const std::string text = read_text(path, "SVG or TOML");
   const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
-  const bool known = path.extension() == ".svg" || path.extension() == ".toml";
+  const std::string extension = lower_extension(path);
+  const bool known = extension == ".svg" || extension == ".toml";
   if (!known && (first == text.npos || text[first] != '<'))
     throw InputError(path.string() +
                      ": a pattern is an SVG drawing (.svg) or a table of panels (.toml); "

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "app/base/table.h"
+#include "app/base/text_file.h"
 #include "app/scene/fabrics.h"
 #include "app/scene/obstacle_read.h"
 #include "app/scene/pin_read.h"
@@ -272,7 +273,10 @@ void check_names(const Scene& scene) {
 }  // namespace
 
 bool is_tetrahedra(const fs::path& path) { return path.extension() == ".msh"; }
-bool is_pattern(const fs::path& path) { return path.extension() == ".svg" || path.extension() == ".toml"; }
+bool is_pattern(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".svg" || extension == ".toml";
+}
 
 Names model_names() { return {"noh-jung", "choi-ko", "woven"}; }
 

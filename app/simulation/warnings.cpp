@@ -91,11 +91,11 @@ void tell_of_vertices_within_margin(const Scene& scene, Simulation& simulation) 
     }
 }
 
-// Where a body that is a mesh comes through a cloth between its vertices. Of a cloth with vertices inside that is told already.
+// Where a body with triangles comes through a cloth between its vertices. Of a cloth with vertices inside that is told already.
 void warn_of_crossed_bodies(const Scene& scene, Simulation& simulation) {
   for (const Cloth& cloth : simulation.cloths)
     for (const MovingBody& body : simulation.constraints->bodies()) {
-      if (!body.surface()) continue;
+      if (!body.skin()) continue;
       constexpr double negligible = 1e-9;  // m
       const std::vector<Vec3> own = cloth.embedding.positions(simulation.state.x);
       if (std::any_of(own.begin(), own.end(),
@@ -103,7 +103,7 @@ void warn_of_crossed_bodies(const Scene& scene, Simulation& simulation) {
         continue;
       std::vector<Vec3> places = own;
       std::vector<Triangle> triangles = cloth.mesh.triangles;
-      const TriangleMesh& mesh = body.surface()->mesh();
+      const TriangleMesh& mesh = *body.skin();
       const int first = static_cast<int>(places.size()), count = static_cast<int>(triangles.size());
       for (int v = 0; v < mesh.vertex_count(); ++v) places.push_back(body.vertex_at_end(v));
       for (const Triangle& t : mesh.triangles)
@@ -339,7 +339,7 @@ void warn_if_long(const Cloth& cloth, Names& messages) {
 }
 
 // Contact holds vertices: an edge as long as a body is wide lets it through. Cloth with self_contact meets all
-// of a body that is a mesh.
+// of a body that is a mesh, or a convex shape that moves.
 void warn_if_coarse(const Scene& scene, Simulation& simulation) {
   const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
   for (std::size_t part = 0; part < simulation.cloths.size(); ++part) {
@@ -347,7 +347,7 @@ void warn_if_coarse(const Scene& scene, Simulation& simulation) {
     const bool meets = part < scene.cloths.size() && scene.cloths[part].self_contact;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       const double radius = longest_edge(bodies[k].obstacle().shape);
-      if (cloth.report.median_edge <= radius || (meets && bodies[k].skin())) continue;
+      if (cloth.report.median_edge <= radius || (meets && bodies[k].meets_triangles())) continue;
       simulation.messages.push_back(
           std::string("warning: ") + (cloth.rope ? "rope " : "cloth ") + cloth.name + " is too coarse for " +
           body_name(bodies[k].obstacle(), scene.obstacles[k].name) + ": its edges (median " +

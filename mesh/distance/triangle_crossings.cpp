@@ -34,7 +34,7 @@ class Search {
     const Triangle &s = triangles_[first], &t = triangles_[second];
     if (internal::share_a_vertex(s, t)) return;
     const auto before = passages_.size();
-    if (look_through(first, second) || look_through(second, first)) passages_.resize(before);
+    if (!look_through(first, second)) look_through(second, first);
     if (passages_.size() == before) return;
     pairs_.push_back({std::min(first, second), std::max(first, second)});
   }

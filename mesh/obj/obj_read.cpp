@@ -82,10 +82,7 @@ TriangleMesh ObjReader::read() {
   while (scanner_.next(line)) {
     if (!line.empty()) read_line(line);
   }
-  if (mesh_.positions.empty())
-    throw InputError(name_ +
-                     ": no vertices ('v' lines): is this an OBJ file? (Sewing patterns are "
-                     "drawings, .svg, or tables, .toml.)");
+  if (mesh_.positions.empty()) throw InputError(name_ + ": no vertices ('v' lines): is this an OBJ file?");
   check_references();
   if (document_.face_count() == 0 && (need_ == ObjNeed::faces || elements_.empty())) {
     const std::string skipped = warnings_.first("corners", name_);
