@@ -161,11 +161,11 @@ unsigned MovingBoxes::near_children(int node, int child, int other, float margin
     return children;
   };
   if (still_) {
-    auto near = zero == zero;
-    for (std::size_t k = 0; k < 3; ++k)
-      near = near & (a.upper[0][k][child] - load(b.lower[0][k]) + margin >= zero) &
+    const auto near = [&](std::size_t k) {
+      return (a.upper[0][k][child] - load(b.lower[0][k]) + margin >= zero) &
              (load(b.upper[0][k]) - a.lower[0][k][child] + margin >= zero);
-    return those(near);
+    };
+    return those(near(0) & near(1) & near(2));
   }
   Floats enter = zero, leave = zero + 1;  // the s at which they are near along all axes looked at so far
   const auto keep = [&](Floats at_0, Floats at_1) {
