@@ -47,14 +47,18 @@ void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
         if (d > deepest_depth) deepest = i, deepest_depth = d;
       }
       if (inside == 0) continue;
-      const std::string all = inside == 1 ? "it" : "they";
+      const std::string all = inside == 1 ? "it" : "they", &method = scene.simulation.integrator;
+      const bool may_hold = method.starts_with("cvode-") || method.starts_with("arkode-");
       simulation.messages.push_back(
           "warning: " + counted(inside, "vertex") + " of " + cloth.name +
           (inside == 1 ? " starts" : " start") + " inside " +
           body_name(bodies[k].obstacle(), scene.obstacles[k].name) + ", the deepest (vertex " +
           std::to_string(cloth.embedding.vertex(deepest)) + ") by " + rounded(1000 * deepest_depth, 3) +
           " mm; " + all + " will be brought out at " + rounded(scene.simulation.contact.recovery_speed, 3) +
-          " m/s");
+          " m/s" +
+          (may_hold
+               ? ", but where the cloth pulls outwards this integrator holds it inside: take implicit-euler"
+               : ""));
     }
   }
 }
