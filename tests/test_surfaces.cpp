@@ -34,6 +34,11 @@ struct Beside : Assembly {
                   .model = ClothModel::woven,
                   .self_contact = SelfContactOptions{.thickness = 1e-3, .friction = 0.3}});
   }
+  void add_sheet_held_beyond(double x, const TriangleMesh& mesh) {
+    add_sheet(mesh);
+    for (int i = 0; i < mesh.vertex_count(); ++i)
+      if (std::abs(mesh.positions[i][0]) > x) constraints->pin(i);
+  }
   // Pairs of a triangle of the cloth and one of a body.
   int crossings() const {
     std::vector<Vec3> places = unstacked(state.x);
@@ -100,9 +105,7 @@ TEST_CASE("a needle that is driven into a hung sheet pushes it ahead", "[surface
                                                   {.time = way / speed, .translate = {0, way - 0.02, 0}}},
                                                  Vec3::Zero())});
         const TriangleMesh sheet = flat(n, kind, 0.3);
-        all.add_sheet(sheet);
-        for (int i = 0; i < sheet.vertex_count(); ++i)
-          if (std::abs(sheet.positions[i][0]) > 0.14) all.constraints->pin(i);
+        all.add_sheet_held_beyond(0.14, sheet);
         all.use("implicit-euler", "auto");
         for (int k = 0; k * 0.01 < way / speed + 0.1; ++k) {
           INFO("step " << k);
@@ -177,9 +180,7 @@ TEST_CASE("a body of any shape that falls on a hung sheet is held by it", "[surf
             .rigid = RigidBody{
                 .mass = mass, .inertia = solid->inertia, .centre = solid->centre, .velocity = {0, -1.5, 0}}});
         const TriangleMesh sheet = flat(n, kind, 0.4);
-        all.add_sheet(sheet);
-        for (int i = 0; i < sheet.vertex_count(); ++i)
-          if (std::abs(sheet.positions[i][0]) > 0.19) all.constraints->pin(i);
+        all.add_sheet_held_beyond(0.19, sheet);
         all.use("implicit-euler", "auto");
         bool told = false;
         for (int k = 0; k < 40; ++k) {
@@ -257,9 +258,7 @@ TEST_CASE("a thin box that is driven edge-on into a hung sheet pushes it ahead",
                                                   {.time = way / speed, .translate = {0, way - 0.01, 0}}},
                                                  Vec3::Zero())});
         const TriangleMesh sheet = flat(n, kind, 0.3);
-        all.add_sheet(sheet);
-        for (int i = 0; i < sheet.vertex_count(); ++i)
-          if (std::abs(sheet.positions[i][0]) > 0.14) all.constraints->pin(i);
+        all.add_sheet_held_beyond(0.14, sheet);
         all.use("implicit-euler", "auto");
         for (int k = 0; k * 0.01 < way / speed + 0.05; ++k) {
           INFO("step " << k);
