@@ -1,6 +1,7 @@
 // run.json: what was run and how it went.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -61,6 +62,22 @@ struct Failure {
   int vertex = -1;  // of the cloth's file, from 0
 };
 
+// The energy of cloth, soft bodies and ropes along a run: kinetic, elastic, of contact and of gravity [J].
+struct EnergyCourse {
+  double start = 0, end = 0;
+  double largest_rise = 0;  // the most that it was at any time above what it had been before that time
+
+  void begin(double energy) { start = end = least_ = energy; }
+  void add(double energy) {
+    end = energy;
+    least_ = std::min(least_, energy);
+    largest_rise = std::max(largest_rise, energy - least_);
+  }
+
+ private:
+  double least_ = 0;
+};
+
 struct RunRecord {
   std::string scene, integrator, contact, linear_solver;
   std::vector<ClothCounts> cloths;
@@ -81,9 +98,10 @@ struct RunRecord {
   double assemble_ms = 0, solve_ms = 0, collide_ms = 0, write_ms = 0;  // of the whole run
   double max_speed = 0, max_edge_strain = 0;                           // at the end [m/s], [-]
   double largest_speed = 0, largest_edge_strain = 0;                   // of the whole run
-  TriangleStrains strains;                                             // at the end
-  double max_penetration = 0;                                          // m, of the whole run
-  double contact_residual = 0;                                         // the largest of the whole run
+  EnergyCourse energy;
+  TriangleStrains strains;                       // at the end
+  double max_penetration = 0;                    // m, of the whole run
+  double contact_residual = 0;                   // the largest of the whole run
   int self_contacts = 0, self_contacts_max = 0;  // pairs of cloth and cloth that push, at the end and at most
   long self_guarded = 0;                         // how often a particle was pushed or stopped
   int pinched = 0, pinched_max = 0;              // see StepReport::pinched; at the end and at most

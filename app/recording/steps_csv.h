@@ -15,8 +15,9 @@ struct StepRow {
   long step = 0;    // counts from 1
   double time = 0;  // s, at the end of the step
   StepReport report;
-  double kinetic_energy = 0, elastic_energy = 0, gravity_energy = 0, contact_energy = 0;  // J
-  double max_speed = 0;                                                                   // m/s
+  double kinetic_energy = 0, elastic_energy = 0, gravity_energy = 0, contact_energy = 0;               // J
+  double energy() const { return kinetic_energy + elastic_energy + gravity_energy + contact_energy; }  // J
+  double max_speed = 0;                                                                                // m/s
   double max_edge_strain = 0;
   TriangleStrains strains;
   int crossings =

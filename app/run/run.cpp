@@ -134,6 +134,7 @@ void Run::describe() {
   record_.numerics = numerics_json(wanted_);
   record_.settings = settings_json(simulation_.scene->settings);
   record_.warnings = simulation_.messages;
+  record_.energy.begin(simulation_.system->total_energy(simulation_.state));
   row_.crossings = crossings_as_written(simulation_);
   record_.crossings_at_start = record_.crossings_max = row_.crossings;
   const Scene& scene = *simulation_.scene;
@@ -247,6 +248,7 @@ void Run::record_step(const StepRow& row) {
   record_.assemble_ms += report.assemble_ms;
   record_.solve_ms += report.solve_ms;
   record_.collide_ms += report.collide_ms;
+  record_.energy.add(row.energy());
   record_.max_speed = row.max_speed;
   record_.max_edge_strain = row.max_edge_strain;
   record_.strains = row.strains;

@@ -146,14 +146,13 @@ void CoveredFaces::look(const std::vector<Face>& faces, const std::vector<Vec3>&
   find_parts(faces);
   group(faces, x, boxes);
   for (std::size_t p = 0; p + 1 < part_start_.size(); ++p) {
-    // A surface that is folded through itself at a vertex may join what is covered with what is not. Such a part
-    // counts as not covered.
     const int first = part_start_[p], last = part_start_[p + 1] - 1;
     const auto covered = [&](int place) { return covers(part_[place], in_the_middle, faces, x, boxes); };
     if (!covered(first) || !covered((first + last) / 2) || !covered(last)) continue;
     any_ = true;
     for (int k = first; k <= last; ++k) cover_[part_[k]] = Cover::all;
   }
+  spread_from_lines(faces, x, boxes);
   // What meets others may be covered, too, by a third part of the body. About a line w is on an average half of what is
   // behind both faces more than in front of them.
   std::erase_if(lines_, [&](const MeetingLine& line) {
@@ -165,6 +164,31 @@ void CoveredFaces::look(const std::vector<Face>& faces, const std::vector<Vec3>&
     any_ = true;
     const auto covered = [&](const Vec3& weights) { return covers(f, weights, faces, x, boxes); };
     if (std::all_of(samples.begin(), samples.end(), covered)) cover_[f] = Cover::all;
+  }
+}
+
+// Where a surface is folded through itself, as in an armpit, the line along which it meets itself ends at a vertex of the
+// fold, and what is covered hangs together with what is not. So faces beside the line are looked at one by one, and from
+// those that are covered on those beside them.
+void CoveredFaces::spread_from_lines(const std::vector<Face>& faces, const std::vector<Vec3>& x,
+                                     const MovingBoxes& boxes) {
+  seen_.assign(faces.size(), 0);
+  part_.clear();
+  const auto reach = [&](int face) {
+    if (face < 0 || seen_[face] != 0 || cover_[face] != Cover::none) return;
+    seen_[face] = 1;
+    if (!covers(face, in_the_middle, faces, x, boxes)) return;
+    part_.push_back(face);
+  };
+  const auto reach_from = [&](int face) {
+    for (const int other : Triangle(faces[face].across)) reach(other);
+  };
+  for (int f = 0; f < static_cast<int>(faces.size()); ++f)
+    if (cover_[f] == Cover::part) reach_from(f);
+  for (std::size_t next = 0; next < part_.size(); ++next) {
+    any_ = true;
+    cover_[part_[next]] = Cover::all;
+    reach_from(part_[next]);
   }
 }
 

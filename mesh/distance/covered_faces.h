@@ -73,6 +73,8 @@ class CoveredFaces {
   void look_between(int group, int other, const Meet& meet) const;
   void find_meetings(const std::vector<Face>& faces, const std::vector<Vec3>& x, const MovingBoxes& boxes);
   void find_parts(const std::vector<Face>& faces);
+  void spread_from_lines(const std::vector<Face>& faces, const std::vector<Vec3>& x,
+                         const MovingBoxes& boxes);
   void group(const std::vector<Face>& faces, const std::vector<Vec3>& x, const MovingBoxes& boxes);
   double winding(const Vec3& from, const std::array<int, 2>& without, const std::vector<Face>& faces,
                  const std::vector<Vec3>& x, const MovingBoxes& boxes) const;
@@ -91,7 +93,8 @@ class CoveredFaces {
   std::vector<MeetingLine> lines_;
   std::vector<std::array<int, 2>> meetings_;  // each pair of faces both ways round, ascending
   std::vector<int> met_start_, met_by_;
-  std::vector<int> part_start_, part_;  // faces that meet none, part by part of the surface
+  std::vector<int> part_start_,
+      part_;  // faces that meet none, part by part of the surface; then those that are covered beside lines
   std::vector<char> seen_;
   std::vector<Group> groups_;
 };

@@ -29,6 +29,11 @@ namespace {
 // How often a step is halved because its contacts do not settle. What remains is told by the report.
 constexpr int max_unsettled_halvings = 2;
 
+// What a step may make of energy: of "bdf2", whose motion nothing damps, so that it adds up; of "implicit-euler", whose next
+// steps take it out; and of that where edges go slack, for there the step after one that was refined overshoots.
+constexpr EnergyAllowance of_order_2{.of_fall = 5e-4, .of_motion = 3e-4},
+    of_order_1{.of_fall = 0.05, .of_motion = 0.05}, of_order_1_slack{.of_fall = 0.5, .of_motion = 0.5};
+
 }  // namespace
 
 StepReport Bdf::advance(State& state, double h) {
@@ -160,8 +165,8 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
     if (!p_.x.allFinite()) return fail(report, "the new positions are not finite numbers");
     if (taken == StepTaken::overshot && linear_.residual > 0)
       most_reference_ = linear_.residual_impulse / linear_.residual;
-    energy = history_.order() == 2 && makes_energy(state, contacts, piece.h);
-    newton.took(taken, energy && falls_back(), energy && k().order_2(), report);
+    energy = makes_energy(state, contacts, piece.h);
+    newton.took(taken, energy && falls_back(), energy && !falls_back(), report);
   }
   if (k().order_2() && energy) {
     ++report.rescues;
@@ -193,6 +198,7 @@ ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& repor
   most_reference_ = std::numeric_limits<double>::infinity();
   merit_.begin(piece.h);
   const Stopwatch watch(report.collide_ms);
+  if (!piece.order_1) contact_energy_ = system_.contact_energy(state.x);
   ContactStep contacts = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, piece.h,
                                                  Foresight::ahead, {.h = piece.of_step()});
   system_.begin_step({state.time, piece.h, state.x, state.v, piece.h});
@@ -239,12 +245,19 @@ double Bdf::residual(ContactStep& contacts) {
 // The wind may give twice what its power at one end of the step comes to, because the power is not steady.
 bool Bdf::makes_energy(const State& start, const ContactStep& contacts, double h) {
   const double power = std::max(system_.given_power(start.x, start.v), system_.given_power(p_.x, p_.v));
+  const double given = contact_energy_ + contacts.work() + 2 * h * power;
+  const EnergyAllowance& allowed = history_.order() == 2  ? of_order_2
+                                   : system_.goes_slack() ? of_order_1_slack
+                                                          : of_order_1;
+  // In a step of order 1 the frame that is at rest only says how much the motion may make. Most steps make none even where
+  // it may make nothing.
+  if (!k().order_2() && !merit_.makes_energy(k(), start, p_, start.v, given, allowed)) return false;
   contacts.filter(p_.v, filter_);
   rest_frame_.find(A_.matrix(), constraints_, contacts, filter_, p_, k(), system_.gravity_acceleration(),
                    adrift_, rest_);
   // What the solve left over is not told from an impulse.
   const double left = h / k().c * linear_.residual_impulse * std::sqrt(dot(rest_, rest_));
-  return merit_.makes_energy(k(), start, p_, rest_, contacts.work() + 2 * h * power + left);
+  return merit_.makes_energy(k(), start, p_, rest_, given + left, allowed);
 }
 
 double Bdf::residual_wanted() const {

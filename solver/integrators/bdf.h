@@ -8,9 +8,10 @@
 // of first order only.
 // The iteration is Newton's for the minimum of the incremental potential; solver/integrators/merit.h keeps it
 // from ending above where it began. Contacts are settled within each of its solves (solver/integrators/contact_loop.h).
-// A step of order 2 that made energy goes on with two more iterations at most. If it still makes energy, it is taken again by
-// order 1 (and counted in rescues). Such a step goes on with Newton's iteration until it makes none: one solve bounds the energy of a motion that the scheme itself
-// damps, but not that of one which order 2 has kept alive.
+// A step that made energy goes on with two more iterations at most: what one solve leaves of a motion that bends or turns far
+// in a step is energy that nothing brought. If one of order 2 still makes energy, it is taken again by order 1 (and counted
+// in rescues). Such a step goes on with Newton's iteration until it makes none: what order 1 still makes of its own motion
+// the scheme itself damps, but not what order 2 has kept alive.
 // x [m], v [m/s], M [kg], f [N], h [s].
 #pragma once
 
@@ -79,6 +80,8 @@ class Bdf final : public Integrator {
   // What residuals are relative to at most [N s]. Where a step overshot that is what they were relative to before, not the
   // large forces there.
   double most_reference_ = 0;
+  double contact_energy_ =
+      0;                  // J, at the start of the step, while contacts and bodies were those of the last one
   double imbalance_ = 0;  // of the contacts after the last solve, relative
   LinearReport linear_;   // of the last solve
   State before_;          // the state to which a step that fails half-way returns

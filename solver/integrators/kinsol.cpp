@@ -265,7 +265,7 @@ double NewtonKinsol::potential(const VecX& v) {
     const Vec3 slip = v.segment<3>(3 * f.particle) - f.body_velocity;
     rubbed += 0.5 * h_ * slip.dot(f.damping * slip) - f.impulse.dot(slip);
   }
-  return inertia + potential_of_forces(system_, x_, damped_at_, v, h_) + rubbed;
+  return inertia + system_.stored_energy(x_) + h_ * dissipation_of_forces(system_, damped_at_, v) + rubbed;
 }
 
 // Sets F = M (v - v_n) - h f(x_bar + h v, v) + friction, without the filter.

@@ -27,14 +27,14 @@ RoundOff round_off(const System& system, const BlockMatrix& A, const VecX& x, co
   return {.least = all.energy, .impulse = std::sqrt(all.squares), .terms = terms};
 }
 
-double potential_of_forces(const System& system, const VecX& x, const VecX& damped_at, const VecX& v,
-                           double c) {
-  double phi = 0;
-  for (const auto& force : system.forces()) phi += force->energy(x) + c * force->dissipation(damped_at, v);
-  return phi;
+double dissipation_of_forces(const System& system, const VecX& damped_at, const VecX& v) {
+  double sum = 0;
+  for (const auto& force : system.forces()) sum += force->dissipation(damped_at, v);
+  return sum;
 }
 
 void Merit::begin(double h) {
+  for (Measured& last : measured_) last.known = false;
   const double fall = h * system_.gravity_acceleration().norm();
   mass_ = fall_energy_ = 0;
   for (double m : system_.masses()) {
@@ -43,6 +43,17 @@ void Merit::begin(double h) {
   }
   mass_ = std::sqrt(mass_);
   weight_impulse_ = fall * mass_;
+}
+
+double Merit::elastic_energy(const VecX& x) {
+  for (const Measured& last : measured_)
+    if (last.known && last.x == x) return last.energy;
+  std::swap(measured_[0], measured_[1]);
+  Measured& here = measured_[0];
+  here.x = x;
+  here.energy = system_.elastic_energy(x);
+  here.known = true;
+  return here.energy;
 }
 
 double Merit::speed_noise(double residual) const {
@@ -73,7 +84,8 @@ double Merit::potential(const StepCoefficients& k, const std::vector<ContactFric
   double rubbed = 0;
   for (const ContactFriction& f : friction)
     rubbed += f.most * (f.along * (v.segment<3>(3 * f.particle) - f.body_velocity)).norm();
-  return inertia + potential_of_forces(system_, x_, linearised_at_, v, k.c) + rubbed;
+  return inertia + elastic_energy(x_) + system_.contact_energy(x_) +
+         k.c * dissipation_of_forces(system_, linearised_at_, v) + rubbed;
 }
 
 // The largest Phi that counts as not above `start`. A tenth of the energy that the fall of one step brings may
@@ -106,7 +118,7 @@ StepTaken Merit::descend(const StepCoefficients& k, const std::vector<ContactFri
 // u . J, where J are the impulses of the step but gravity's. (A step of order 2 looks back, so J is not what the momentum
 // gains.)
 bool Merit::makes_energy(const StepCoefficients& k, const State& before, const Point& after, const VecX& rest,
-                         double work) {
+                         double given, const EnergyAllowance& allowed) {
   const Vec3& g = system_.gravity_acceleration();
   struct Sums {
     double gained = 0, inner = 0,
@@ -132,9 +144,10 @@ bool Merit::makes_energy(const StepCoefficients& k, const State& before, const P
     }
     return sum;
   });
-  const double stored = system_.stored_energy(after.x), more = stored - system_.stored_energy(before.x);
-  return sums.gained + more >
-         work + 5e-4 * fall_energy_ + 3e-4 * sums.inner + noise_.energy(stored + sums.kinetic);
+  const double stored = elastic_energy(after.x) + system_.contact_energy(after.x);
+  const double more = stored - elastic_energy(before.x);
+  return sums.gained + more > given + allowed.of_fall * fall_energy_ + allowed.of_motion * sums.inner +
+                                  noise_.energy(stored + sums.kinetic);
 }
 
 }  // namespace drape

@@ -15,6 +15,7 @@
 // x [m], v [m/s], A [kg], c, h [s].
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -33,9 +34,14 @@ struct RoundOff {
 };
 RoundOff round_off(const System& system, const BlockMatrix& A, const VecX& x, const VecX& v, double c);
 
-// E(x) + c/2 v . D v [J], with D at the point damped_at.
-double potential_of_forces(const System& system, const VecX& x, const VecX& damped_at, const VecX& v,
-                           double c);
+// 1/2 v . D v [W], with D at the point damped_at.
+double dissipation_of_forces(const System& system, const VecX& damped_at, const VecX& v);
+
+// How much energy a motion may make and count as making none, as shares of the energy m (h g)^2 of the fall of a step and
+// of the kinetic energy of the motion.
+struct EnergyAllowance {
+  double of_fall, of_motion;
+};
 
 // How far a Newton step was taken: whole, whole although Phi rose, or cut short.
 enum class StepTaken { whole, overshot, cut };
@@ -61,14 +67,16 @@ class Merit {
   // back towards v_base by halves until Phi is not above that value.
   StepTaken descend(const StepCoefficients& k, const std::vector<ContactFriction>& friction,
                     const VecX& v_base, const VecX& dv, bool may_overshoot, VecX& v);
-  // True when the motion has more energy than moving bodies bring and than the error of a smooth motion
-  // explains: a step of order 2 has then looked back across a contact or a slackening of stiff cloth. How fast it is
-  // counts against a cloth at rest, which moves by `rest` [m/s].
+  // True when the motion has more energy than it was given (the energy of its contacts at the start, and what moving bodies,
+  // pins and the wind bring) and than is allowed: one of order 2 has then
+  // looked back across a contact or a slackening of stiff cloth, and one of order 1 has bent or turned further in a step
+  // than its linearisation knows. How fast it is counts against a cloth at rest, which moves by `rest` [m/s].
   bool makes_energy(const StepCoefficients& k, const State& before, const Point& after, const VecX& rest,
-                    double work);
+                    double given, const EnergyAllowance& allowed);
 
  private:
   double most(double start) const;
+  double elastic_energy(const VecX& x);  // J
 
   const System& system_;
   double mass_ = 0;            // the norm of all masses [kg]
@@ -77,6 +85,13 @@ class Merit {
   RoundOff noise_;             // at the point where it was measured last
   VecX linearised_at_;         // x there [m]
   VecX x_;                     // scratch
+  // The elastic energy is asked for at a point more than once: where a step begins, and where it ends.
+  struct Measured {
+    VecX x;             // m
+    double energy = 0;  // J
+    bool known = false;
+  };
+  std::array<Measured, 2> measured_;
 };
 
 }  // namespace drape

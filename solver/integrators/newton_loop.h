@@ -1,8 +1,8 @@
 // How long Newton's iteration goes on, and with which stiffness: it takes as many steps as were asked for,
 // and more until one is taken whole. Where edges go slack the first may overshoot: what was slack where it was
 // linearised has become taut, and the next one knows that. After a step that had to be cut short, the next one uses the majorant.
-// The same is done, max_rescues times at most, while the motion that the iteration of a step of order 1 came to makes energy.
-// One of order 2 that makes energy goes on with the stiffness that it has, twice at most.
+// A motion that makes energy goes on with the stiffness that it has, twice at most. In a step of order 1 in the place of one of
+// order 2 it goes on with the majorant, max_rescues times at most, until it makes none.
 #pragma once
 
 #include <algorithm>
