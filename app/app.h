@@ -1,5 +1,7 @@
-// Scenes in one header: #include <drape/app.h>, after find_package(drape COMPONENTS app) and with drape::app linked.
-//   drape::app::Simulation simulation = drape::app::make_simulation(drape::app::read_scene("scene.toml", {}));
+// Scenes in one header: #include <drape/app.h>, after find_package(drape COMPONENTS app) and with drape::app
+// linked.
+//   drape::app::Simulation simulation = drape::app::make_simulation(drape::app::read_scene("scene.toml",
+//   {}));
 //   drape::app::run(drape::app::read_scene("scene.toml", {}), {.out = "out"});         what `drape simulate` does
 // Fabrics are looked for by their name in the data folder: app/scene/fabrics.h says which one that is.
 #pragma once

@@ -84,7 +84,8 @@ void BodyMeeting::find(const Bodies& bodies, double h) {
     }
 }
 
-// Cloth between two surfaces gives way, so it does not throw them back, and it goes along with the one that holds it.
+// Cloth between two surfaces gives way, so it does not throw them back, and it goes along with the one that
+// holds it.
 void BodyMeeting::add_nip(const Bodies& bodies, const std::vector<Nip>& nips, int number) {
   const Nip& nip = nips[static_cast<std::size_t>(number)];
   Meeting& m = add_touch(bodies, nip.a, nip.b, nip.touch);

@@ -1,22 +1,23 @@
 // Bodies that meet: those that react, with each other and with bodies that do not (which stand or are led).
 //   v' = v + M^-1 sum J_k' lambda_k      v: velocities and spins that gravity and the cloth alone would make
-// At every touch k, with n from body b to body a, the relative velocity u = v_a + w_a x r_a - v_b - w_b x r_b and the
-// impulse lambda on a (minus it on b),
+// At every touch k, with n from body b to body a, the relative velocity u = v_a + w_a x r_a - v_b - w_b x r_b
+// and the impulse lambda on a (minus it on b),
 //   0 <= lambda.n  perpendicular to  u.n - a_k >= 0                         [Signorini]
 //   |lambda_T| <= mu lambda.n, and opposite to u_T where that is reached    [Coulomb]
-// The target a_k is -(gap - rest)/h, so that the surfaces arrive exactly at `rest_gap`; for an impact at the speed s > 0
-// within the step it is e s, so that they part at once. mu and e of a pair are the geometric means of the two bodies';
-// mu is the static coefficient where the surfaces do not slide when the step begins, otherwise the kinetic one.
-// All impulses are found together by sweeps over the touches (projected Gauss-Seidel), from those of the last step, until
-// no sweep changes a velocity by more than `exactness` of the largest, or `most_sweeps` are done.
+// The target a_k is -(gap - rest)/h, so that the surfaces arrive exactly at `rest_gap`; for an impact at the
+// speed s > 0 within the step it is e s, so that they part at once. mu and e of a pair are the geometric
+// means of the two bodies'; mu is the static coefficient where the surfaces do not slide when the step
+// begins, otherwise the kinetic one. All impulses are found together by sweeps over the touches (projected
+// Gauss-Seidel), from those of the last step, until no sweep changes a velocity by more than `exactness` of
+// the largest, or `most_sweeps` are done.
 //                                                         [Moreau 1988; Jourdan, Alart & Jean 1998; Catto 2005]
-// Where bodies pinch a particle (constraints/nip.h), they meet at it as if it were a part of their surfaces: there mu is that of
-// the body that does not hold it, or 0 where it runs through, e is 0, and the gap is what is left beside the margins.
-// Bodies that are nearer than rest_gap are moved apart besides, by at most recovery_speed h in a step, which gives them
-// no velocity; cloth that lies on them goes along.
-// The order is that of the bodies, and no thread takes part, so the bits are always the same. Impulses are kept from step
-// to step; memory grows only while more touches are found than ever before. (Bullet's search allocates where hulls
-// overlap.)
+// Where bodies pinch a particle (constraints/nip.h), they meet at it as if it were a part of their surfaces:
+// there mu is that of the body that does not hold it, or 0 where it runs through, e is 0, and the gap is what
+// is left beside the margins. Bodies that are nearer than rest_gap are moved apart besides, by at most
+// recovery_speed h in a step, which gives them no velocity; cloth that lies on them goes along.
+// The order is that of the bodies, and no thread takes part, so the bits are always the same. Impulses are
+// kept from step to step; memory grows only while more touches are found than ever before. (Bullet's search
+// allocates where hulls overlap.)
 // gap [m], h [s], u, v [m/s], w [rad/s], lambda [N s], mu, e [-].
 #pragma once
 
@@ -30,7 +31,8 @@ namespace drape {
 struct BodyMeetingReport {
   int touches = 0;     // points at which bodies press on each other, also through cloth
   double deepest = 0;  // how far bodies were inside each other when the step began [m]
-  // The last sweep changed a velocity by at most a thousandth of the speed at which surfaces met, or 0.1 um/s.
+  // The last sweep changed a velocity by at most a thousandth of the speed at which surfaces met, or 0.1
+  // um/s.
   bool settled = true;
 };
 
@@ -43,11 +45,12 @@ class BodyMeeting {
   static constexpr double exactness = 1e-11;
   static constexpr int most_sweeps = 3000;  // after these the impulses are taken as they are
 
-  // Throws InputError when the body would meet one of the others in a way that needs Bullet, which this build is
-  // without. To be called for every body.
+  // Throws InputError when the body would meet one of the others in a way that needs Bullet, which this build
+  // is without. To be called for every body.
   void add(const Bodies& bodies);
 
-  // Finds the touches, and takes what they do into the expected motion of the bodies. Tells the nips their impulses.
+  // Finds the touches, and takes what they do into the expected motion of the bodies. Tells the nips their
+  // impulses.
   void begin_step(Bodies& bodies, std::vector<Nip>& nips, double h, double recovery_speed);
   // Finds the impulses anew when the cloth acts on the bodies otherwise than it did before.
   void solve(Bodies& bodies, std::vector<Nip>& nips);

@@ -1,7 +1,7 @@
-// What carries particles where they meet a body or each other: sets of them that are pushed as one, such as clusters that keep
-// their shape (solver/forces/cluster_contacts.h). They are asked after ContactStep::respond has found what each particle meets
-// by itself, and change the free motion of all that they carry; then the particles are looked at again, for what is left to
-// each.
+// What carries particles where they meet a body or each other: sets of them that are pushed as one, such as
+// clusters that keep their shape (solver/forces/cluster_contacts.h). They are asked after
+// ContactStep::respond has found what each particle meets by itself, and change the free motion of all that
+// they carry; then the particles are looked at again, for what is left to each.
 #pragma once
 
 #include <vector>

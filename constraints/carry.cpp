@@ -7,15 +7,16 @@
 namespace drape {
 namespace {
 
-// What the motion that carriers make meets of bodies that react is added to the rest at most so often.
+// At most this many times the carriers are asked again because their motion met bodies that react at new
+// places.
 constexpr int most_rounds = 8;
 
 bool before(const CarriedContact& a, const CarriedContact& b) {
   return std::pair(a.particle, a.body) < std::pair(b.particle, b.body);
 }
 
-// Whether a carrier has what the particle meets of a body that reacts. It then moves as its carriers say, and no body gets an
-// impulse of what it would have met by itself.
+// Whether a carrier has what the particle meets of a body that reacts. It then moves as its carriers say, and
+// no body gets an impulse of what it would have met by itself.
 bool is_carried(const std::vector<CarriedContact>& met, const std::vector<CarriedBody>& bodies,
                 int particle) {
   const auto first = std::lower_bound(met.begin(), met.end(), particle,
@@ -25,7 +26,8 @@ bool is_carried(const std::vector<CarriedContact>& met, const std::vector<Carrie
   return false;
 }
 
-// Adds the contact to those that are sorted by particle and body, or takes the place of the one of the same two.
+// Adds the contact to those that are sorted by particle and body, or takes the place of the one of the same
+// two.
 void note(const CarriedContact& contact, std::vector<CarriedContact>& met) {
   const auto place = std::lower_bound(met.begin(), met.end(), contact, before);
   if (place == met.end() || before(contact, *place))
@@ -39,7 +41,8 @@ CarriedContact contact_of(const ContactResponse& r, const std::vector<MovingBody
   return {r.particle, r.body, r.normal, r.gap, r.body_velocity, obstacle.friction, obstacle.restitution};
 }
 
-// Adds what the motion that carriers have made meets of bodies that react, where it is not known yet; true when there is any.
+// Adds what the motion that carriers have made meets of bodies that react, where it is not known yet; true
+// when there is any.
 bool note_more(const ParticleContacts& contacts, const std::vector<MovingBody>& bodies,
                const Carriers& carriers, std::vector<CarriedContact>& met) {
   bool any = false;
@@ -56,8 +59,9 @@ bool note_more(const ParticleContacts& contacts, const std::vector<MovingBody>& 
 
 }  // namespace
 
-// The bodies as carriers see them: without what these gave them in the last response, or are expected to give them before
-// the first one, and without what they do to each other, which the carriers find together with their own impulses.
+// The bodies as carriers see them: without what these gave them in the last response, or are expected to give
+// them before the first one, and without what they do to each other, which the carriers find together with
+// their own impulses.
 void ContactStep::see_bodies() {
   const std::vector<MovingBody>& bodies = constraints_->bodies_;
   std::vector<CarriedBody>& seen = constraints_->carried_bodies_;
@@ -88,8 +92,8 @@ void ContactStep::carry(ContactMode mode, const VecX& x, const VecX& v, Carriers
   ParticleContacts& contacts = constraints_->contacts_;
   std::vector<CarriedContact>& met = constraints_->carried_;
   see_bodies();
-  // What was met in an earlier round stays known, also where a body that reacts now gives way faster than the particle comes:
-  // the impact has made it do so.
+  // What was met in an earlier round stays known, also where a body that reacts now gives way faster than the
+  // particle comes: the impact has made it do so.
   for (CarriedContact& c : met)
     c.body_velocity = constraints_->bodies_[c.body].velocity(step.place(c.particle));
   contacts.each_response([&](const ContactResponse& r) { note(contact_of(r, constraints_->bodies_), met); });

@@ -45,6 +45,8 @@ void Constraints::stand_at(double t) {
 void Constraints::set_radius(int particle, double radius) {
   if (!(radius >= 0) || !std::isfinite(radius))
     throw InputError("radius = " + std::to_string(radius) + " m: a radius is finite and not negative");
+  if (particle < 0)
+    throw InputError("radius of particle " + std::to_string(particle) + ": they count from 0");
   const auto i = static_cast<std::size_t>(particle);
   if (step_.radius.size() <= i) step_.radius.resize(i + 1, 0.0);
   step_.radius[i] = radius;
@@ -86,6 +88,10 @@ void Constraints::prepare(int particles, const std::vector<double>& masses) {
   const auto n = static_cast<std::size_t>(particles);
   if (step_.held.size() == n && step_.masses == masses && contacts_.prepared(particles, bodies_.size()))
     return;
+  if (!pinned().empty() && (pinned().front() < 0 || pinned().back() >= particles))
+    throw InputError("pins: particle " +
+                     std::to_string(pinned().front() < 0 ? pinned().front() : pinned().back()) +
+                     " is pinned, but there are " + std::to_string(particles) + " particles, counted from 0");
   step_.masses = masses;
   step_.held.assign(n, 0);
   for (int i : pinned()) step_.held.at(static_cast<std::size_t>(i)) = 1;

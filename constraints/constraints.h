@@ -30,20 +30,23 @@ class Constraints {
   void add(Obstacle obstacle);  // throws InputError
   void pin(int particle);       // holds the particle where it is; pinning it twice is pinning it once
   void pin(const std::vector<int>& particles);
-  // These particles are carried along from where they are now (x [m] has the places of all particles): by a body, or by
-  // a motion of their own. t [s]: the time now. A particle is pinned once, in the way that is named first.
+  // These particles are carried along from where they are now (x [m] has the places of all particles): by a
+  // body, or by a motion of their own. t [s]: the time now. A particle is pinned once, in the way that is
+  // named first.
   void pin_to_body(const std::vector<int>& particles, int body, const VecX& x);
   void pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x, double t = 0);
 
-  // These are free from the next step on, with the velocity that they have; those that are not pinned are passed over.
+  // These are free from the next step on, with the velocity that they have; those that are not pinned are
+  // passed over.
   void unpin(const std::vector<int>& particles);
 
-  // Between steps: puts the bodies whose motion is prescribed where they are at the time t [s], as a step that ends then does.
+  // Between steps: puts the bodies whose motion is prescribed where they are at the time t [s], as a step
+  // that ends then does.
   void stand_at(double t);
 
-  // The particle is the middle of something that is as thick as a ball of this radius [m], such as a rope: it rests at
-  // the radius and the margin outside of a body. A particle of a cloth has the radius 0. Throws InputError when the
-  // radius is negative or not finite.
+  // The particle is the middle of something that is as thick as a ball of this radius [m], such as a rope: it
+  // rests at the radius and the margin outside of a body. A particle of a cloth has the radius 0. Throws
+  // InputError when the radius is negative or not finite.
   void set_radius(int particle, double radius);
   double radius_of(int particle) const { return step_.radius_of(particle); }
 
@@ -59,8 +62,8 @@ class Constraints {
   // solver/forces/face_contact_force.h.
   void add_faces(const std::vector<ClothFace>& faces) { faces_.add(faces); }
   const FaceContacts& faces() const { return faces_; }
-  // Adds triangles of the cloth that meet each other. They are pushed by a force, which the System needs, too:
-  // solver/forces/self_contact_force.h.
+  // Adds triangles of the cloth that meet each other. They are pushed by a force, which the System needs,
+  // too: solver/forces/self_contact_force.h.
   void add_self_faces(const std::vector<SelfFace>& faces) { self_.add(faces); }
   void add_self_segments(const std::vector<SelfSegment>& segments) { self_.add(segments); }  // of ropes
   void set_self_friction(const SelfFriction& pair) { self_.set_friction(pair); }
@@ -84,8 +87,8 @@ class Constraints {
   void keep();
   void go_back();
 
-  // How deep each particle, or the ball of its radius, is inside a body [m]; 0 where it is outside. Meant for the
-  // start and the end of a run.
+  // How deep each particle, or the ball of its radius, is inside a body [m]; 0 where it is outside. Meant for
+  // the start and the end of a run.
   std::vector<double> penetration(const VecX& x) const;
   // Pairs of bodies, one of which reacts at least, that start inside each other by more than `margin` [m].
   std::vector<BodyMeeting::Overlap> overlapping_bodies(double margin) {
@@ -105,7 +108,8 @@ class Constraints {
   BodyMeeting meeting_;
   StepMotion step_;  // the step under way, and what is known from the last one
   VecX x_new_;       // scratch
-  // Of carriers: what they took in the last response, the bodies as they see them, and what these got from them, as an impulse
+  // Of carriers: what they took in the last response, the bodies as they see them, and what these got from
+  // them, as an impulse
   // [N s] and its moment [N m s]: in the last response, before the first one what they are expected to get, and in the last
   // completed step, also as of the last keep().
   std::vector<CarriedContact> carried_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mesh/base/errors.h"
+#include "mesh/base/words.h"
 
 namespace drape {
 
@@ -15,9 +16,12 @@ void check(const Obstacle& obstacle) {
   const std::string where(name(obstacle.shape));
   const Friction& mu = obstacle.friction;
   if (!(mu.statics >= 0) || !(mu.kinetic >= 0) || !std::isfinite(mu.statics) || !std::isfinite(mu.kinetic))
-    throw InputError(where + ": a coefficient of friction is a number from 0 up");
+    throw InputError(where + ": friction = " + shortest(mu.statics) + " (static), " + shortest(mu.kinetic) +
+                     " (kinetic): a coefficient of friction is a number from 0 up");
   if (mu.kinetic > mu.statics)
-    throw InputError(where + ": kinetic friction is not greater than static friction");
+    throw InputError(where + ": friction = " + shortest(mu.kinetic) + " (kinetic) is greater than " +
+                     shortest(mu.statics) + " (static); give a kinetic one of " + shortest(mu.statics) +
+                     " at most");
   if (!(obstacle.margin >= 0) || !std::isfinite(obstacle.margin))
     throw InputError(where + ": margin = " + std::to_string(obstacle.margin) +
                      " m: a margin is not negative");

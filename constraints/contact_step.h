@@ -24,7 +24,7 @@ namespace drape {
 struct ContactChange {
   bool grip = false;    // a contact was let go, or it changed between sticking and sliding
   bool caught = false;  // particles that were free touch a body
-  bool faces = false;   // other faces push, so a force has changed
+  bool faces = false;   // springs of faces, or of cloth on cloth, push otherwise: a force has changed
   bool rubs = false;    // faces rub less, so a damper has changed
   bool met = false;     // cloth meets cloth where no spring was, so a force has other stencils
   bool any() const { return grip || caught || faces || rubs || met; }
@@ -32,8 +32,8 @@ struct ContactChange {
 
 // How far the contacts are from agreeing with a solve.
 struct ContactImbalance {
-  // The norm of all impulses that are wrong [N s]: what pulls a particle towards a body, what would keep one from
-  // passing through, and friction beyond what the coefficient allows.
+  // The norm of all impulses that are wrong [N s]: what pulls a particle towards a body, what would keep one
+  // from passing through, and friction beyond what the coefficient allows.
   double wrong = 0;
   double borne = 0;  // the norm of the impulses of all contacts [N s]
   // What is wrong, as a share of the reference [N s] or of what the contacts bear, whichever is more.
@@ -62,19 +62,20 @@ class ContactStep {
   const std::vector<SelfContact>& touching_cloth() const { return constraints_->self_.touching(); }
   const std::vector<MovingPin>& moving_pins() const { return constraints_->pins_.moving(); }
 
-  // The momentum that a particle takes up for 1 m/s when it is pushed alone, its neighbours staying behind [kg]:
-  // at least its mass, which is taken where this is not called.
+  // The momentum that a particle takes up for 1 m/s when it is pushed alone, its neighbours staying behind
+  // [kg]: at least its mass, which is taken where this is not called.
   void set_inertia(int particle, double inertia) { constraints_->step_.inertia[particle] = inertia; }
-  // Gives the impulses of a solve, which takes the particles to x_new, to the bodies that react, and counts the work of
-  // bodies and pins.
+  // Gives the impulses of a solve, which takes the particles to x_new, to the bodies that react, and counts
+  // the work of bodies and pins.
   void receive(const VecX& v, const VecX& r, const VecX& x_new);
   // How far the contacts are from agreeing with the same v and r, and with the motion x_new that they make.
   ContactImbalance imbalance(const VecX& v, const VecX& r, const VecX& x_new);
-  // Changes the contacts to what the v, r and x_new of the last call of imbalance() ask for. An impulse counts
-  // as round-off when it changes the velocity of its particle by less than `noise` [m/s].
-  // curvature: d . A d [J] of the way d from accepted_velocity() to v; 0: v is taken whole.
+  // Changes the contacts to what the v, r and x_new of the last call of imbalance() ask for. An impulse
+  // counts as round-off when it changes the velocity of its particle by less than `noise` [m/s]. curvature: d
+  // . A d [J] of the way d from accepted_velocity() to v; 0: v is taken whole.
   ContactChange react(const VecX& v, const VecX& r, const VecX& x_new, double noise, double curvature = 0);
-  // The velocity that the contacts of cloth with cloth were made for last in this step [m/s]; null when there is none yet.
+  // The velocity that the contacts of cloth with cloth were made for last in this step [m/s]; null when there
+  // is none yet.
   const VecX* accepted_velocity() const { return constraints_->self_.accepted_velocity(); }
   // Finds where cloth would pass through cloth on the way to x_new, and no spring keeps it off yet.
   ContactChange meet(const VecX& x_new) {
@@ -103,8 +104,8 @@ class ContactStep {
   void let_take(Carriers& carriers) {
     carriers.take(constraints_->self_.touching(), constraints_->step_.held);
   }
-  // How easily an impulse moves a pin [m/s per N s]: not at all, or, where a body that reacts carries it, at most as the
-  // body gives way there.
+  // How easily an impulse moves a pin [m/s per N s]: not at all, or, where a body that reacts carries it, at
+  // most as the body gives way there.
   double mobility_of(const MovingPin& pin) const;
   // Counts what the faces did in a stage of an explicit step, which applies the force at x, v for this
   // duration [s].

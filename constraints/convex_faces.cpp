@@ -57,8 +57,8 @@ struct FlatSide {
   double offset;  // m
 };
 
-// The mean plane of the triangles that lie about as the first of these does. One of them alone would not say where the far
-// end of the side is.
+// The mean plane of the triangles that lie about as the first of these does. One of them alone would not say
+// where the far end of the side is.
 FlatSide mean_plane(const TriangleMesh& mesh, const std::vector<Vec3>& across,
                     const std::vector<std::size_t>& of, double near) {
   const auto corner = [&](std::size_t k) -> const Vec3& { return mesh.positions[mesh.triangles[k][0]]; };

@@ -14,8 +14,8 @@ struct ConvexFace {
   std::vector<int> corners;  // vertices of the mesh, counterclockwise as seen from outside
 };
 
-// The faces of a closed mesh that bulges everywhere. Triangles whose corners are within a millionth of the mesh's size of
-// one plane are one face: a file of six digits leaves a flat side no flatter.
+// The faces of a closed mesh that bulges everywhere. Triangles whose corners are within a millionth of the
+// mesh's size of one plane are one face: a file of six digits leaves a flat side no flatter.
 std::vector<ConvexFace> convex_faces(const TriangleMesh& mesh);
 
 }  // namespace drape::internal

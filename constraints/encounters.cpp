@@ -10,8 +10,8 @@ namespace {
 
 // How far the motions of two patches may come to differ from those that were searched, as a share of an edge.
 constexpr double most_room = 0.4, least_room = 0.04;
-// So many pairs of two patches there may be for each of their triangles, and so many of all for each triangle, before this is
-// made less: all lists are gone through in every step.
+// So many pairs of two patches there may be for each of their triangles, and so many of all for each
+// triangle, before this is made less: all lists are gone through in every step.
 constexpr std::size_t most_pairs = 32, most_of_all = 64;
 // Cloth has exploded where there are more pairs for a vertex than this, or more patches near each patch.
 constexpr std::size_t exploded = 2000, most_groups = 1000;
@@ -177,10 +177,10 @@ bool Encounters::touch(const Box& a, const Box& b, double reach) const {
   return enter <= leave + 1e-9;
 }
 
-// Whether the two stay apart along the normal of the first triangle at the start, so far that no motion brings them within
-// `reach` that differs from this one by no more along each axis. Along a fixed direction the distance of two triangles whose
-// corners go straight is a concave function of time, so it is least at one of the ends. Boxes do not tell layers apart that
-// lie on a slope.
+// Whether the two stay apart along the normal of the first triangle at the start, so far that no motion
+// brings them within `reach` that differs from this one by no more along each axis. Along a fixed direction
+// the distance of two triangles whose corners go straight is a concave function of time, so it is least at
+// one of the ends. Boxes do not tell layers apart that lie on a slope.
 bool Encounters::apart_along_normal(int first, int second, double reach) const {
   const Triangle &a = faces_[first].v, &b = faces_[second].v;
   const Vec3 n = (start_[a[1]] - start_[a[0]]).cross(start_[a[2]] - start_[a[0]]);
@@ -256,8 +256,8 @@ bool Encounters::follow(const VecX& x, const VecX& x_new, double gap) {
   return listed;
 }
 
-// Groups the patches that come near each other; what is known of those that were already is kept. False: so many do that
-// the cloth must have exploded.
+// Groups the patches that come near each other; what is known of those that were already is kept. False: so
+// many do that the cloth must have exploded.
 bool Encounters::group_patches(double gap) {
   near_.clear();
   const std::size_t most = most_groups * boxes_->patches().size();
@@ -292,8 +292,8 @@ bool Encounters::group_patches(double gap) {
   return true;
 }
 
-// Lists the pairs of groups whose list does not cover the motion. False: there are so many pairs that the cloth must
-// have exploded.
+// Lists the pairs of groups whose list does not cover the motion. False: there are so many pairs that the
+// cloth must have exploded.
 bool Encounters::make_lists(double gap, bool fitted) {
   const std::size_t most = exploded * start_.size();
   std::size_t kept = 0;
@@ -318,8 +318,8 @@ bool Encounters::make_lists(double gap, bool fitted) {
   return true;
 }
 
-// Where there are too many pairs, the lists that look too far ahead are made anew for the next motion. Where there are few,
-// those that are made later look farther ahead.
+// Where there are too many pairs, the lists that look too far ahead are made anew for the next motion. Where
+// there are few, those that are made later look farther ahead.
 void Encounters::adapt_room(std::size_t pairs) {
   const double least = least_room * mean_edge_;
   if (pairs > most_of_all * faces_.size() && room_ > least) {

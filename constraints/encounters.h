@@ -1,17 +1,19 @@
 // Which vertices and triangles, and which edges, of the cloth could meet in a step.
-//   A segment of a rope goes along with the triangles as {i, j, j}: it owns vertices and its one edge as they do, and is
+//   A segment of a rope goes along with the triangles as {i, j, j}: it owns vertices and its one edge as they
+//   do, and is
 // met as they are, by the vertices that come near it and by its edge.
-//   Two triangles are looked at when their boxes come near each other at a common time, and the normal of one does not
-//   keep them apart. Each vertex and each edge is owned by one of its triangles, so that a pair of them comes up once.
-//   Triangles with a common vertex are always near: their pairs are listed once and for all. The others are listed for
-//   every two patches of up to 32
-//   triangles that come near each other. Such a list stands as long as the motions of its two patches have not come to
-//   differ by more from what they were when it was made, in either patch or from patch to patch, than it allows for:
-//   what moves wildly elsewhere, and what both do alike, leaves it as it is. In a dense pile all lists allow for less, because
-//   every pair of them costs something in every step.
-//   What was found to be apart is not looked at again before it can have come near. No two points of two patches come
-//   nearer to each other in a step than the motions of their vertices differ at most, and no two of triangles that share
-//   the vertex c than by 2 e_c, where e_c is by how much the vertices next to c move otherwise than c.
+//   Two triangles are looked at when their boxes come near each other at a common time, and the normal of one
+//   does not keep them apart. Each vertex and each edge is owned by one of its triangles, so that a pair of
+//   them comes up once. Triangles with a common vertex are always near: their pairs are listed once and for
+//   all. The others are listed for every two patches of up to 32
+//   triangles that come near each other. Such a list stands as long as the motions of its two patches have
+//   not come to differ by more from what they were when it was made, in either patch or from patch to patch,
+//   than it allows for: what moves wildly elsewhere, and what both do alike, leaves it as it is. In a dense
+//   pile all lists allow for less, because every pair of them costs something in every step.
+//   What was found to be apart is not looked at again before it can have come near. No two points of two
+//   patches come nearer to each other in a step than the motions of their vertices differ at most, and no two
+//   of triangles that share the vertex c than by 2 e_c, where e_c is by how much the vertices next to c move
+//   otherwise than c.
 // The lists are the same on any number of threads.
 #pragma once
 
@@ -41,22 +43,23 @@ inline FourPoints corners(const VecX& x, const Encounter& e) {
 
 class Encounters {
  public:
-  // Triangles between the first so many particles, each once; a triangle that names a particle twice does not count.
-  // of_cloth: so many of the triangles are of cloth, and only their pairs with the others are looked for, without those
-  // of a vertex of cloth; all are of cloth: the pairs between all are, and those of the segments with all.
+  // Triangles between the first so many particles, each once; a triangle that names a particle twice does not
+  // count. of_cloth: so many of the triangles are of cloth, and only their pairs with the others are looked
+  // for, without those of a vertex of cloth; all are of cloth: the pairs between all are, and those of the
+  // segments with all.
   void set(const std::vector<Triangle>& triangles, const std::vector<std::array<int, 2>>& segments,
            int particles, std::size_t of_cloth, const VecX& x);
-  double mean_edge() const { return mean_edge_; }  // when the triangles were set [m]
 
-  // Prepares for select() with this motion x -> x_new and gaps up to this one [m]. Searches only where what is known
-  // does not cover the motion. False: a place is no number, or so much comes near so much else that the cloth must have
-  // exploded; then there is no list.
+  // Prepares for select() with this motion x -> x_new and gaps up to this one [m]. Searches only where what
+  // is known does not cover the motion. False: a place is no number, or so much comes near so much else that
+  // the cloth must have exploded; then there is no list.
   bool follow(const VecX& x, const VecX& x_new, double gap);
   enum class Kind { vertices = 1, edges = 2, both = 3 };
-  // Asks look(pair, corners at x, corners at x_new, the normal found last), which returns an Approach, of the pairs of
-  // these kinds that could come within gap_of(pair), at most `gap`, by all threads. Returns those that are not apart, in a
-  // fixed order. They stay until the next call. limits: gap_of(pair) is at most the least of these of its particles [m];
-  // one caller may give some for edges, so that lists are not gone through of which no pair can be near enough.
+  // Asks look(pair, corners at x, corners at x_new, the normal found last), which returns an Approach, of the
+  // pairs of these kinds that could come within gap_of(pair), at most `gap`, by all threads. Returns those
+  // that are not apart, in a fixed order. They stay until the next call. limits: gap_of(pair) is at most the
+  // least of these of its particles [m]; one caller may give some for edges, so that lists are not gone
+  // through of which no pair can be near enough.
   template <class GapOf, class Look>
   std::vector<Meeting>& select(Kind kind, const VecX& x, const VecX& x_new, double gap, const GapOf& gap_of,
                                const Look& look, const std::vector<double>* limits = nullptr);
@@ -74,8 +77,8 @@ class Encounters {
     std::vector<double> due;   // m
     std::vector<Vec3> normal;  // that of the last look
   };
-  // By how much two things can have come nearer to each other, summed up over the steps, at the start and at the end of
-  // the motion [m].
+  // By how much two things can have come nearer to each other, summed up over the steps, at the start and at
+  // the end of the motion [m].
   struct Clock {
     double start = 0, end = 0;
   };
@@ -86,8 +89,8 @@ class Encounters {
     Eigen::Array3d lower = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
   };
   using Ranges = std::vector<Range>;  // by patch
-  // The pairs of two patches, or within one, that come within the gap, for motions that differ from the one they were
-  // searched for by at most `room`.
+  // The pairs of two patches, or within one, that come within the gap, for motions that differ from the one
+  // they were searched for by at most `room`.
   struct Group {
     int first = 0, second = 0;  // patches
     Clock clock;
@@ -131,8 +134,8 @@ class Encounters {
   std::optional<MovingBoxes> boxes_;
   std::vector<int> next_start_, next_;    // the vertices next to each one
   std::vector<int> patch_start_, patch_;  // the vertices of each patch
-  // The pairs that have the common vertex c are the numbers beside_start_[c] to beside_start_[c + 1] of beside_; those of
-  // edges begin at beside_edges_[c], and none is due before beside_due_[c].
+  // The pairs that have the common vertex c are the numbers beside_start_[c] to beside_start_[c + 1] of
+  // beside_; those of edges begin at beside_edges_[c], and none is due before beside_due_[c].
   Pairs beside_;
   std::vector<int> beside_start_, beside_edges_;
   std::vector<Due> beside_due_;

@@ -23,11 +23,14 @@ constexpr int most_begun = 3;
 // A contact that has changed this often within a step changes again only when no other does, and alone.
 constexpr int most_changes = 3;
 constexpr double apart = 0.1;  // of two points at which a body touches a triangle, as such a share
-// A normal that is nearer to the body's own than this cosine says is that of a smooth place, not of a corner or a rim.
+// A normal that is nearer to the body's own than this cosine says is that of a smooth place, not of a corner
+// or a rim.
 constexpr double smooth = 0.99;
-// A triangle that moves on against the body by more than this share of its size has another lowest point at the end.
+// A triangle that moves on against the body by more than this share of its size has another lowest point at
+// the end.
 constexpr double moved = 0.1;
-// What a triangle comes to within a step counts as the same side of a body where the normals are nearer than this.
+// What a triangle comes to within a step counts as the same side of a body where the normals are nearer than
+// this.
 constexpr double alike = 0.5;
 
 double half_margin(const MovingBody& body) { return 0.5 * body.obstacle().margin; }
@@ -46,9 +49,10 @@ FacePoint carried(const MovingBody& body, const FacePoint& begins) {
   return {begins.weights, place, body.turned(begins.normal), plane.gap + half_margin(body)};
 }
 
-// From where a body that reacts touches the triangle when the step begins, to where it will when the step ends. anew: at the
-// lowest point then, where that may be another one; else at the same point. (A body that does not react feels no moment, and
-// on corners that cloth hangs over at rest the lowest point at the end would be now this, now that.)
+// From where a body that reacts touches the triangle when the step begins, to where it will when the step
+// ends. anew: at the lowest point then, where that may be another one; else at the same point. (A body that
+// does not react feels no moment, and on corners that cloth hangs over at rest the lowest point at the end
+// would be now this, now that.)
 FacePoint foresee(const MovingBody& body, const FacePoint& begins, const FaceCorners& now,
                   const FaceCorners& then, bool anew) {
   const double offset = half_margin(body);
@@ -82,8 +86,9 @@ double measure(FaceContact& c, const VecX& x_new, const VecX& v_new) {
   return gap;
 }
 
-// Makes the damper for what a solve came to: where the triangle did not rub before, and where it rubs harder than its law
-// allows. Then it is taken down, by one step of Newton's method for a point that is alone. True when it changed.
+// Makes the damper for what a solve came to: where the triangle did not rub before, and where it rubs harder
+// than its law allows. Then it is taken down, by one step of Newton's method for a point that is alone. True
+// when it changed.
 bool rub(FaceContact& c, const StepMotion& step) {
   const double before = c.damper, most = c.friction * c.push, given = before * c.slip;  // N s/m, N, N
   if (before == 0 && c.rubbing() > 0 && c.begun < most_begun) {
@@ -133,7 +138,8 @@ void FaceContacts::renumber(const std::vector<int>& particle_of) {
   faces_.resize(kept);
   room_.clear();
   touching_.clear();
-  std::erase_if(last_, [&](FaceContact& c) { return (c.face = number[c.face]) < 0; });
+  for (FaceContact& c : last_) c.face = number[c.face];
+  std::erase_if(last_, [](const FaceContact& c) { return c.face < 0; });
   for (FaceContact& c : last_) c.particles = faces_[c.face].particles;
 }
 
@@ -248,7 +254,8 @@ void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX
                                                                  : nullptr;
   const bool ahead = foresight_ == Foresight::ahead && body.reacting();
   const auto touch = [&](const Vec3& weights, const Vec3& place, bool anew, const FaceContact* old) {
-    // The second point has the normal of the first where that is one of a corner, between several faces of the body.
+    // The second point has the normal of the first where that is one of a corner, between several faces of
+    // the body.
     Vec3 normal = start.surface.normal;
     if (ahead && !anew && normal.dot(at_start(start.point).normal) >= smooth) normal = at_start(place).normal;
     const FacePoint begins{weights, place, normal, 0};
@@ -326,8 +333,8 @@ FaceContacts::Change FaceContacts::react(const StepMotion& step, const VecX& x_n
     change.acts = true;
   }
   if (!change.acts && !change.rubs && worst) {
-    // Friction of other contacts may lift the triangle off the spring that acts, and press it on without one. Between
-    // them is a softer spring that just carries it.
+    // Friction of other contacts may lift the triangle off the spring that acts, and press it on without one.
+    // Between them is a softer spring that just carries it.
     if (worst->active)
       worst->stiffness *= 0.5;
     else

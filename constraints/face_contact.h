@@ -2,23 +2,25 @@
 // through the middle of a triangle, or its rim through an edge. A stiff spring on the three corners of a
 // triangle keeps the body off.
 //   p = sum w_k x_k    the point of the triangle that is nearest to the body, or deepest in it. A second contact
-//                      stays at the point of the step before as long as that touches and is not near the first.
+//                      stays at the point of the step before as long as that touches and is not near the
+//                      first.
 //   n                  the body's normal there. By methods that look ahead p and n of a body that reacts are those where
-//                      the step is foreseen to end, at x + h v: so what pushes a ball goes through its centre, however it
-//                      moves and turns within the step. At a corner or a rim of such a body p is that of the start, and n
-//                      turns with the triangle.
+//                      the step is foreseen to end, at x + h v: so what pushes a ball goes through its
+//                      centre, however it moves and turns within the step. At a corner or a rim of such a
+//                      body p is that of the start, and n turns with the triangle.
 //   g = g_0 + n . (sum w_k (x_k - x_k0) - h v_b)     the gap of p to the surface, offset by half the margin:
 //                                                    a triangle touches nothing where its vertices rest
 //   E = k/2 g^2 for g < 0,   f_k = -k g w_k n,   K_kl = k w_k w_l n n^T
-//   friction: the damper mu N / |u| acts on u, the part of sum w_k v_k - v_b along the surface; below `slow` [m/s] the
-//             triangle creeps instead of sticking. N = -k g and |u| are those of the step before (where the triangle
-//             touches anew, of the solve before). Where that comes to more than 1.05 mu N of the solve, as where the
-//             triangle has just been let go, the damper is made less. It is not made more within a step.
+//   friction: the damper mu N / |u| acts on u, the part of sum w_k v_k - v_b along the surface; below
+//             `slow` [m/s] the triangle creeps instead of sticking. N = -k g and |u| are those of the step before (where the
+//             triangle touches anew, of the solve before). Where that comes to more than 1.05 mu N of the
+//             solve, as where the triangle has just been let go, the damper is made less. It is not made more
+//             within a step.
 // A constraint would lock two or three particles to each other, which a filter of 3x3 blocks cannot express.
 // The blocks of the spring stand where those of the triangle's edges stand. k is the cloth's own membrane
-// stiffness, and a triangle has two springs at most: so they change neither the condition of the matrix nor the
-// longest step that explicit methods bear by much, and a load that stretches the cloth by a hundredth makes it
-// sink in by as little.
+// stiffness, and a triangle has two springs at most: so they change neither the condition of the matrix nor
+// the longest step that explicit methods bear by much, and a load that stretches the cloth by a hundredth
+// makes it sink in by as little.
 // Which springs act is an active set: it is predicted at x + h v, and react() corrects it until it agrees
 // with the solve. x [m], v [m/s], k [N/m], h [s].
 #pragma once
@@ -81,7 +83,8 @@ struct FaceContact {
   double rubbing() const;  // the damper that `push` and `slip` make [N s/m]
   // By how much the friction of a solve that came to x, v is off from its law [N].
   double wrong_friction(const VecX& x, const VecX& v) const;
-  // The velocity that an impulse of 1 N s gives the point, with these inertias of its particles: 0 where none moves [1/kg].
+  // The velocity that an impulse of 1 N s gives the point, with these inertias of its particles: 0 where none
+  // moves [1/kg].
   double mobility(const StepMotion& step) const;
 };
 
@@ -100,9 +103,10 @@ class FaceContacts {
   void part(const Parting& parting);
   const std::vector<ClothFace>& all() const { return faces_; }
 
-  // x -> x_new is the predicted motion, which there is with Foresight::ahead only; else x_new is x. recovery: how far a
-  // triangle that starts inside a body is brought out in this step at most [m]. What is too near to a body when a run begins is not pushed away from it: it comes out by so
-  // much in a step, with its vertices.
+  // x -> x_new is the predicted motion, which there is with Foresight::ahead only; else x_new is x. recovery:
+  // how far a triangle that starts inside a body is brought out in this step at most [m]. What is too near to
+  // a body when a run begins is not pushed away from it: it comes out by so much in a step, with its
+  // vertices.
   // A triangle with a corner that is clamped in `contacts` goes with that corner, and touches nothing.
   void begin_step(const std::vector<MovingBody>& bodies, const std::vector<Contact>& contacts, const VecX& x,
                   const VecX& x_new, Foresight foresight, double recovery);
@@ -110,8 +114,8 @@ class FaceContacts {
   // sliding within a few steps of h [s] and never throw it back, however many faces share a particle.
   void limit_dampers(const std::vector<double>& masses, double h);
   void follow(const std::vector<MovingBody>& bodies);  // takes over a changed motion of the bodies
-  // The norm of the impulses of springs that pull, of those that are missing, and of what friction takes otherwise than
-  // its law, after a solve [N s].
+  // The norm of the impulses of springs that pull, of those that are missing, and of what friction takes
+  // otherwise than its law, after a solve [N s].
   double imbalance(const StepMotion& step, const VecX& x_new, const VecX& v_new) const;
   // Finds after a solve which contacts act, and how they rub; tells which of that has changed.
   struct Change {

@@ -4,7 +4,8 @@
 //   S = I: the particle is free; I - p p^T: it is locked along p; I - p p^T - q q^T: along p and q;
 //   0: entirely
 //   z is the prescribed change in the locked directions
-// Only constrained particles are stored, sorted by number. S [3x3], z [m/s].
+// Only constrained particles are stored: first those that are held, then those that touch; renumber() sorts
+// them. S [3x3], z [m/s].
 #pragma once
 
 #include <vector>

@@ -13,14 +13,17 @@ namespace {
 constexpr double least_relaxed = 0.5;
 // A contact that stops and comes loose this often within a step is braked from then on.
 constexpr int most_changes = 3;
-// A contact that is braked because it came loose too often is linearised anew once friction is within this share of mu N:
-// Newton's method then ends what the damper comes near to by a part of the error in each round.
+// A contact that is braked because it came loose too often is linearised anew once friction is within this
+// share of mu N: Newton's method then ends what the damper comes near to by a part of the error in each
+// round.
 constexpr double nearly = 0.25;
 // A damper may rub with this many times mu N where contact is not part of the solve.
 constexpr double overrubbed = 1.05;
-// What slides with mu N and no slip, as at the moment when it comes loose, goes on sliding.
+// A contact that slides sticks only where the friction asked for is below mu N by more than this share: when
+// a contact comes loose, both are equal but for rounding.
 constexpr double round_off = 1e-9;
-// A particle counts as stopped where its momentum is at most this share of what friction can take within the step.
+// A particle counts as stopped where its momentum is at most this share of what friction can take within the
+// step.
 constexpr double stop_fraction = 1e-5;
 
 Vec3 tangential(const Contact& contact, const Vec3& v) {
@@ -42,7 +45,8 @@ std::array<double, 3> normal_speeds(const Contact& contact, double h) {
   return speeds;
 }
 
-// The impulse that stops the approach to the planes of a particle that moves with v, whatever else pushes [N s].
+// The impulse that stops the approach to the planes of a particle that moves with v, whatever else pushes [N
+// s].
 double arrival_impulse(const Contact& contact, const StepMotion& step, const Vec3& v) {
   std::array<double, 3> change = normal_speeds(contact, step.h);
   for (int k = 0; k < contact.planes; ++k) change[k] -= v.dot(contact.plane[k].normal);
@@ -64,8 +68,8 @@ double passing_impulse(const StepMotion& step, const Contact& contact, int plane
   return step.mass(contact.particle) * std::max(-apart, 0.0);
 }
 
-// The impulse of friction for a slip of 1 m/s [N s / (m/s)]. A slip at which the particle counts as stopped is not
-// told from a smaller one.
+// The impulse of friction for a slip of 1 m/s [N s / (m/s)]. A slip at which the particle counts as stopped
+// is not told from a smaller one.
 double rubbing(const Contact& contact, double mu, double mass) {
   const double most = mu * contact.normal_impulse;
   return most > 0 ? most / std::max(contact.slip.norm(), stop_fraction * most / mass) : 0;
@@ -86,7 +90,8 @@ Vec3 given_friction(const Contact& contact, double mu, double mass, const Vec3& 
   return contact.friction_impulse - rubbing(contact, mu, mass) * (slip - t.dot(slip) * t);
 }
 
-// By which share the normal impulse of a contact in doubt follows what a solve asks it to change by. Two solves tell how what
+// By which share the normal impulse of a contact in doubt follows what a solve asks it to change by. Two
+// solves tell how what
 // is asked for depends on what was taken; the share is what this line asks for.  [Aitken's method; Irons & Tuck 1969]
 double relaxation(const Contact& contact, double change) {
   const double fell = contact.last_change - change;
@@ -94,16 +99,16 @@ double relaxation(const Contact& contact, double change) {
   return std::clamp(contact.relaxed * contact.last_change / fell, least_relaxed, 1.0);
 }
 
-// Whether a contact that is braked for good is so near to its law that it slides instead. It may stop and come loose a few
-// times more, and then stays braked.
+// Whether a contact that is braked for good is so near to its law that it slides instead. It may stop and
+// come loose a few times more, and then stays braked.
 bool may_slide_again(const Contact& contact, const Vec3& slip, const Vec3& given, double most) {
   return contact.changes <= 2 * most_changes && slip.dot(contact.slip) > 0 &&
          std::abs(given.norm() - most) < nearly * most;
 }
 
-// What is wrong with friction where contact is not part of the solve [N s]. What slid all along is braked, and the
-// damper may rub with less than mu N; what has come loose goes on sliding. The answer then changes smoothly with the
-// motion of a body that reacts.
+// What is wrong with friction where contact is not part of the solve [N s]. What slid all along is braked,
+// and the damper may rub with less than mu N; what has come loose goes on sliding. The answer then changes
+// smoothly with the motion of a body that reacts.
 double wrong_apart(const Contact& contact, const Vec3& given, double most) {
   if (contact.grip == Grip::slide) return std::abs(contact.friction_impulse.norm() - most);
   return given.norm() > overrubbed * most ? given.norm() - most : 0;
@@ -315,7 +320,8 @@ bool ParticleContacts::update_grip(const Bodies& bodies, const StepMotion& step,
   return update_friction(bodies, step, c, v, r, noise);
 }
 
-// Newton's method for Coulomb's law as a projection: friction is what would stop the particle, but at most mu N.
+// Newton's method for Coulomb's law as a projection: friction is what would stop the particle, but at most mu
+// N.
 //                                                                [Hueber, Stadler & Wohlmuth 2008, section 3]
 bool ParticleContacts::update_friction(const Bodies& bodies, const StepMotion& step, Contact& c,
                                        const Vec3& v, const Vec3& r, double noise) const {
@@ -324,8 +330,8 @@ bool ParticleContacts::update_friction(const Bodies& bodies, const StepMotion& s
   const double inertia = internal::inertia_met(step, c.particle);
   const Vec3 slip = tangential(c, v - c.body_velocity());
   const Vec3 given = given_friction(c, mu.kinetic, mass, slip, r), asked = given - inertia * slip;
-  // Friction may press the particle on, or lift it off, by more than it takes itself: then the impulse goes up and down from
-  // solve to solve. A part of the change settles.
+  // Friction may press the particle on, or lift it off, by more than it takes itself: then the impulse goes
+  // up and down from solve to solve. A part of the change settles.
   const double pressing = pressed(c, r);
   const double change = pressing - c.normal_impulse;
   c.turns += change * c.last_change < 0;

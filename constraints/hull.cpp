@@ -35,8 +35,9 @@ btMatrix3x3 to_bullet(const Mat3& m) {
 
 }  // namespace
 
-// The hull stands about its own middle, so that no digits are lost where the body was drawn far from the origin. Its faces
-// are ours: Bullet's own are of corners that it rounds to a ten-thousandth of the size, and does not find to lie in planes.
+// The hull stands about its own middle, so that no digits are lost where the body was drawn far from the
+// origin. Its faces are ours: Bullet's own are of corners that it rounds to a ten-thousandth of the size, and
+// does not find to lie in planes.
 struct Hull::Shape {
   btConvexHullShape hull;
   btConvexPolyhedron polyhedron;  // without faces where the hull was made of points alone
@@ -81,7 +82,8 @@ Facing facing_along(const PlacedHull& placed, const Vec3& d) {
   return best;
 }
 
-// Takes the corners that clipping leaves. They lie on the clipped face; the other surface is at `gap` along -normal.
+// Takes the corners that clipping leaves. They lie on the clipped face; the other surface is at `gap` along
+// -normal.
 struct Corners : btDiscreteCollisionDetectorInterface::Result {
   Corners(const Vec3& normal_, double sign_, std::vector<Touch>& found_)
       : normal(normal_), sign(sign_), found(found_) {}
@@ -95,8 +97,8 @@ struct Corners : btDiscreteCollisionDetectorInterface::Result {
   std::vector<Touch>& found;
 };
 
-// Clips the face of `other` that looks at `base` by the sides of the face of `base` that has this normal. Bullet wants
-// the direction from `other` to `base`.
+// Clips the face of `other` that looks at `base` by the sides of the face of `base` that has this normal.
+// Bullet wants the direction from `other` to `base`.
 void add_polygon(const PlacedHull& base, const PlacedHull& other, const Vec3& normal, double sign,
                  double reach, std::vector<Touch>& found) {
   const Hull::Shape &b = base.hull.shape(), &o = other.hull.shape();

@@ -1,7 +1,8 @@
-// The convex hull of points, and where two of them are nearest to each other, by the collision library Bullet in
+// The convex hull of points, and where two of them are nearest to each other, by the collision library Bullet
+// in
 // double precision.            [Gilbert, Johnson & Keerthi 1988; van den Bergh 2001 where the hulls overlap]
-// A build without Bullet has no such hulls: available() is then false, and the other functions are not to be called.
-// Internal to the library's constraints.
+// A build without Bullet has no such hulls: available() is then false, and the other functions are not to be
+// called. Internal to the library's constraints.
 #pragma once
 
 #include <memory>
@@ -36,8 +37,8 @@ struct PlacedHull {
   double radius;
 };
 
-// Adds the points at which a and b are nearer than `reach` [m] to each other: the corners of the polygon in which flat
-// faces lie on each other, and the nearest points where no such corner is as near.
+// Adds the points at which a and b are nearer than `reach` [m] to each other: the corners of the polygon in
+// which flat faces lie on each other, and the nearest points where no such corner is as near.
 void add_touches(const PlacedHull& a, const PlacedHull& b, double reach, std::vector<Touch>& found);
 
 }  // namespace drape

@@ -1,5 +1,5 @@
-// The point of a triangle of cloth that is nearest to a body, or deepest in it, and the normal that leads the triangle straight
-// out of the body there.
+// The point of a triangle of cloth that is nearest to a body, or deepest in it, and the normal that leads the
+// triangle straight out of the body there.
 // Internal to the library's constraints.
 #pragma once
 
@@ -50,23 +50,23 @@ struct Lowest {
   SurfacePoint surface;  // its normal is the one that leads straight out of the triangle
 };
 
-// The normals that a search meets. Behind a rim or a corner of the body the lowest point is where two or three of
-// the body's faces are equally near. The normal of none of them leads straight out of the triangle, but that of
-// their means does which is the shortest along the triangle. Where it has a part along the triangle, that part
-// leads along the rim to what is lower [Burke, Lewis & Overton 2005].
+// The normals that a search meets. Behind a rim or a corner of the body the lowest point is where two or
+// three of the body's faces are equally near. The normal of none of them leads straight out of the triangle,
+// but that of their means does which is the shortest along the triangle. Where it has a part along the
+// triangle, that part leads along the rim to what is lower [Burke, Lewis & Overton 2005].
 class MetNormals {
  public:
   explicit MetNormals(const Vec3& upright) : upright_(upright) {}
-  // from: the normal where the search came from. What lies outside the body and faces the other way is another
-  // part of its surface.
+  // from: the normal where the search came from. What lies outside the body and faces the other way is
+  // another part of its surface.
   void add(const Vec3& place, const SurfacePoint& met, const Vec3& from) {
     if (met.distance <= 0 || met.normal.dot(from) > -0.5)
       met_[static_cast<std::size_t>(count_++)] = {place, met.normal};
   }
 
   Vec3 along(const Vec3& n) const { return n - upright_.dot(n) * upright_; }
-  // The mean that is shortest along the triangle, of `normal` and those of the `last` that were met within this
-  // distance [m] of p. It is found by pairs, and nearly the shortest after two rounds.
+  // The mean that is shortest along the triangle, of `normal` and those of the `last` that were met within
+  // this distance [m] of p. It is found by pairs, and nearly the shortest after two rounds.
   Vec3 straightest(const Vec3& p, Vec3 normal, double within, int last) const {
     const int begin = std::max(0, count_ - last);
     for (int round = 0; round < 2; ++round)
@@ -79,8 +79,8 @@ class MetNormals {
   struct Met {
     Vec3 place, normal;
   };
-  // The mean of a and b that is shortest along the triangle, or a where they nearly cancel each other, as in the
-  // middle of a plate.
+  // The mean of a and b that is shortest along the triangle, or a where they nearly cancel each other, as in
+  // the middle of a plate.
   Vec3 between(const Vec3& a, const Vec3& b) const {
     const Vec3 change = along(b - a);
     const double squares = change.squaredNorm();

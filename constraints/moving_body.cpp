@@ -147,7 +147,8 @@ ContactPlane MovingBody::plane(const Vec3& x, const SurfacePoint& at_start, cons
   const double offset = obstacle_.margin + radius;
   if (!turns_ && !deforms() && !reacting_) return plane_at(x, at_start.normal, at_start.distance - offset);
   // Where the particle will be in the body's frame: a particle that slides on a turning body does not turn
-  // with it, and the tilt of the normal would drive it round, as it would turn a body that the particle pushes.
+  // with it, and the tilt of the normal would drive it round, as it would turn a body that the particle
+  // pushes.
   const Vec3 X = drape::carried(obstacle_.shape, start_.to_body(x)), way = end_.to_body(x_new) - X;
   const Vec3 n = deforms() ? closest(obstacle_.shape, X, 1).normal : at_start.normal;
   const Vec3 slid = way - n.dot(way) * n;
@@ -171,7 +172,8 @@ std::optional<ContactPlane> MovingBody::meeting(const Vec3& x0, const Vec3& x1, 
 std::optional<Vec3> MovingBody::stop(const Vec3& x0, Vec3& x1, double start_distance, double radius) const {
   const Vec3 X0 = start_.to_body(x0), X1 = end_.to_body(x1);
   Vec3 end = X1;
-  // What is known of the distance is a lower bound: for a particle without a radius it says which side that is on.
+  // What is known of the distance is a lower bound: for a particle without a radius it says which side that
+  // is on.
   if (radius > 0) start_distance = closest(obstacle_.shape, X0, 0).distance;
   const double floor = std::min(start_distance, radius);
   if (start_distance >= 0) {

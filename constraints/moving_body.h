@@ -44,11 +44,11 @@ class MovingBody {
 
   // The surface of a body that is a mesh; null for all others.
   const SurfaceDistance* surface() const;
-  // The triangles that meet the triangles of cloth, and where their vertices are when the step begins and ends [m]: those of
-  // a mesh, and a polyhedron in a convex shape that moves. Null for all others.
+  // The triangles that meet the triangles of cloth, and where their vertices are when the step begins and
+  // ends [m]: those of a mesh, and a polyhedron in a convex shape that moves. Null for all others.
   const TriangleMesh* skin() const;
-  // Whether cloth meets these triangles: not where the margin is so small that edges would rest on edges, and be stopped for
-  // ever.
+  // Whether cloth meets these triangles: not where the margin is so small that edges would rest on edges, and
+  // be stopped for ever.
   bool meets_triangles() const;
   // Whether x is deeper inside of them than this when the step begins [m].
   bool inside_skin(const Vec3& x, double deeper) const;
@@ -63,13 +63,13 @@ class MovingBody {
   void keep() { kept_ = {now_, reacting_}; }
   void go_back() { now_ = kept_.first, reacting_ = kept_.second; }
 
-  // The impulses of the particles on the body in this step, summed from zero. Where they make the body move
-  // otherwise than was assumed, `correct` is true, and the planes that it made must be updated (their
-  // velocity has changed).
   // Before a response of its own: it is corrected anew, from where it has come to.
   void begin_corrections() {
     if (reacting_) reacting_->begin_corrections();
   }
+  // The impulses of the particles on the body in this step, summed from zero. Where they make the body move
+  // otherwise than was assumed, `correct` is true, and the planes that it made must be updated (their
+  // velocity has changed).
   void clear_impulse();
   void push(const Vec3& impulse, const Vec3& place, double approach = 0);
   void pull(const Vec3& impulse, const Vec3& place, double approach);  // see ReactingBody::pull
@@ -89,10 +89,12 @@ class MovingBody {
   SurfacePoint at_start(const Vec3& x) const;  // in the body's frame
   Vec3 carried(const Vec3& x) const;
   Vec3 carried(const Mark& mark) const;
-  // A direction at the start of the step, as the body turns it until the end. What deforms is taken as if it did not.
+  // A direction at the start of the step, as the body turns it until the end. What deforms is taken as if it
+  // did not.
   Vec3 turned(const Vec3& direction) const;
   Vec3 velocity(const Vec3& x) const;
-  // The most that a point within `reach` [m] of X, in the body's frame, moves in this step, over the time [m/s].
+  // The most that a point within `reach` [m] of X, in the body's frame, moves in this step, over the time
+  // [m/s].
   double fastest_carried(const Vec3& X, double reach) const;
   // The most by which the distance of a particle from the body can change on its way [m].
   double travel(const Vec3& x0, const Vec3& x1) const;

@@ -8,25 +8,27 @@
 namespace drape {
 namespace {
 
-// Two surfaces pinch what is between them when one normal is at most as far from the opposite of the other as this cosine says.
+// Two surfaces pinch what is between them where -n_a . n_b, of their outward normals, is at least this.
 constexpr double facing = 0.9;
 constexpr double still = 1e-9;  // m/s: a smaller slip is not told from none
 // Bodies that leave too little room by more than this have closed on what is between them [m].
 constexpr double closed = 1e-9;
-// Two surfaces are nearest to each other where one normal is as far from the opposite of the other as this cosine says.
+// Two surfaces are nearest to each other where -n_a . n_b is at least this.
 constexpr double opposite = 1 - 1e-6;
-// Steps between two surfaces that come nearer to that place by less than this share lead too far to be foretold.
+// Steps between two surfaces that come nearer to that place by less than this share lead too far to be
+// foretold.
 constexpr double slowest = 0.999;
-// The angle between one normal and the opposite of another up to which their bodies hold what is between them even without
-// friction [rad]: as much as the planes of one contact have to differ by.
+// The angle between one normal and the opposite of another up to which their bodies hold what is between them
+// even without friction [rad]: as much as the planes of one contact have to differ by.
 constexpr double nearly_opposite = 0.1;
 // The same with any friction: a body that pushes cloth along a floor does not hold it against that [rad].
 constexpr double widest_held = 1.2;
-// Bodies that stand hold what is inside both of their margins by more than this share of the lesser touching_range().
+// Bodies that stand hold what is inside both of their margins by more than this share of the lesser
+// touching_range().
 constexpr double share_of_touch = 0.1;
 
-// How two bodies that do not react stand to a place that goes with both of them, by the mean of their ways, at the end of the
-// step.
+// How two bodies that do not react stand to a place that goes with both of them, by the mean of their ways,
+// at the end of the step.
 struct Squeeze {
   SurfacePoint at_a, at_b;  // there, with normals out of the bodies
   Vec3 way;                 // m/s, the mean
@@ -44,10 +46,11 @@ Squeeze squeeze(const MovingBody& a, const MovingBody& b, const Vec3& x) {
           -at_a.normal.dot(at_b.normal) >= std::cos(std::clamp(held, nearly_opposite, widest_held))};
 }
 
-// Where the bodies are nearest to each other beside a particle that they pinch: what lies between them is a layer there, and
-// a ball that rolls on it does not climb over each of its particles. Steps from one surface to the other and back come nearer
-// to that place by a constant share, so two of them tell where they lead [Irons & Tuck 1969].
-// beside: the touch at the particle itself, which is the answer where no such place is found.
+// Where the bodies are nearest to each other beside a particle that they pinch: what lies between them is a
+// layer there, and a ball that rolls on it does not climb over each of its particles. Steps from one surface
+// to the other and back come nearer to that place by a constant share, so two of them tell where they lead
+// [Irons & Tuck 1969]. beside: the touch at the particle itself, which is the answer where no such place is
+// found.
 Touch nearest_pair(const MovingBody& a, const MovingBody& b, const Vec3& on_a, const Touch& beside,
                    double offsets) {
   const auto step = [&](const Vec3& from) {
@@ -148,7 +151,8 @@ void ParticleContacts::clamp_between(const Bodies& bodies, const StepMotion& ste
       if (bodies[b].reacting() || spare_a + spare(b) > 0) continue;
       const auto [at_a, at_b, way, closes, holds] = squeeze(bodies[a], bodies[b], x);
       if (!holds && !clamped) continue;
-      // What began inside one of them comes out first; what began between them, within their margins, is clamped there.
+      // What began inside one of them comes out first; what began between them, within their margins, is
+      // clamped there.
       if (contact.comes_out && std::min(at_a.distance, at_b.distance) < step.radius_of(particle)) continue;
       const double gap_a = at_a.distance - offset(a), gap_b = at_b.distance - offset(b);
       const double least = std::min(touch(a), touch(b));
@@ -186,7 +190,8 @@ double ParticleContacts::pressed(const Contact& contact, const Vec3& r) const {
   return sum;
 }
 
-// By Coulomb's law where the slip is too fast to stop within the step, otherwise by a damper that cannot turn it round.
+// By Coulomb's law where the slip is too fast to stop within the step, otherwise by a damper that cannot turn
+// it round.
 void ParticleContacts::rub_in_nips(const Bodies& bodies, const StepMotion& step) {
   for (const Nip& nip : nips_) {
     const double mu = bodies[nip.other()].obstacle().friction.kinetic, most = mu * nip.impulse;

@@ -50,8 +50,9 @@ void for_free(const StepMotion& step, const F& f) {
 }
 
 // Takes what slides on a body to stick where friction can stop all of it within the step, and its slip is
-// falling: the solve then tells whether it sticks. The damper of what slides would not stop it: near the angle
-// of friction it only creeps more slowly. Single contacts are not tried, because their neighbours drag them on.
+// falling: the solve then tells whether it sticks. The damper of what slides would not stop it: near the
+// angle of friction it only creeps more slowly. Single contacts are not tried, because their neighbours drag
+// them on.
 void stop_together(const ParticleContacts::Bodies& bodies, const StepMotion& step,
                    std::vector<Contact>& contacts) {
   for (const MovingBody& body : bodies) {

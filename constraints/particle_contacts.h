@@ -19,8 +19,8 @@
 
 namespace drape {
 
-// What friction does to a sliding particle in this step: the force f = -D (v - v_b), and an impulse. Together they are
-// Coulomb's law, linearised.
+// What friction does to a sliding particle in this step: the force f = -D (v - v_b), and an impulse. Together
+// they are Coulomb's law, linearised.
 struct ContactFriction {
   int particle, body;
   Mat3 damping;        // N s/m
@@ -74,17 +74,19 @@ class ParticleContacts {
 
   // Finds the particles that touch a body in the predicted motion.
   void find(const Bodies& bodies, const StepMotion& step);
-  // Looks for the particles that would pass in the motion x_new through a body of which they know nothing yet.
+  // Looks for the particles that would pass in the motion x_new through a body of which they know nothing
+  // yet.
   void look_on_path(const Bodies& bodies, const StepMotion& step, const VecX& x_new);
-  // How wrong the contacts are as a solve assumed them, which gave v [m/s], the motion x_new and the reaction r [N s]: the norm
-  // of the impulses that should not be, those of particles found on the path among them [N s].
+  // How wrong the contacts are as a solve assumed them, which gave v [m/s], the motion x_new and the reaction
+  // r [N s]: the norm of the impulses that should not be, those of particles found on the path among them [N
+  // s].
   double imbalance(const Bodies& bodies, const StepMotion& step, const VecX& v, const VecX& r,
                    const VecX& x_new);
   // Takes in those that were found on the path of a solve with the reaction r; true when there are any.
   bool catch_on_path(const Bodies& bodies, const StepMotion& step, const VecX& r, const VecX& x_new);
-  // Changes contacts to what such a solve asks for. An impulse counts as round-off when it changes the velocity
-  // of its particle by less than `noise` [m/s]. True when a contact is let go or caught again, or sticks or
-  // slides otherwise than the solve assumed.
+  // Changes contacts to what such a solve asks for. An impulse counts as round-off when it changes the
+  // velocity of its particle by less than `noise` [m/s]. True when a contact is let go or caught again, or
+  // sticks or slides otherwise than the solve assumed.
   bool react(const Bodies& bodies, const StepMotion& step, const VecX& v, const VecX& r, const VecX& x_new,
              double noise);
   // Takes over what bears on each contact from a solve with which the contacts agree.
@@ -110,7 +112,8 @@ class ParticleContacts {
   // inside or behind it, and none that was inside ends deeper.
   void guard(const Bodies& bodies, const StepMotion& step, VecX& x_new, VecX& v_new, ContactReport& report);
   void commit();
-  // Particle i gets the number number[i]; what was committed is shown under the new numbers, and forgotten by the next prepare().
+  // Particle i gets the number number[i]; what was committed is shown under the new numbers, and forgotten by
+  // the next prepare().
   void renumber(const std::vector<int>& number);
 
   // S and z of the particles that touch; the dampers and impulses of those that slide.
@@ -141,7 +144,8 @@ class ParticleContacts {
   void clamp_between(const Bodies& bodies, const StepMotion& step, const Contact* before,
                      Contact& contact) const;
   void rub_in_nips(const Bodies& bodies, const StepMotion& step);
-  // What presses the particle against each plane, with what the bodies press where it is in a nip; and the sum of it [N s].
+  // What presses the particle against each plane, with what the bodies press where it is in a nip; and the
+  // sum of it [N s].
   std::array<double, 3> presses(const Contact& contact, const Vec3& r) const;
   double pressed(const Contact& contact, const Vec3& r) const;
   void catch_grip(const Bodies& bodies, const StepMotion& step, Contact& contact, const Vec3& v) const;

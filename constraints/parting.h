@@ -1,5 +1,5 @@
-// Particles that part: where cloth tears, a particle stays with the triangles on one side, and those on the other get a
-// copy of it.
+// Particles that part: where cloth tears, a particle stays with the triangles on one side, and those on the
+// other get a copy of it.
 #pragma once
 
 #include <algorithm>

@@ -4,6 +4,17 @@
 
 namespace drape {
 
+namespace {
+
+std::vector<int> each_once(std::vector<int> particles) {
+  std::ranges::sort(particles);
+  const auto twice = std::ranges::unique(particles);
+  particles.erase(twice.begin(), twice.end());
+  return particles;
+}
+
+}  // namespace
+
 bool PinSet::has(int particle) const { return std::binary_search(pinned_.begin(), pinned_.end(), particle); }
 
 void PinSet::pin(const std::vector<int>& particles) {
@@ -13,7 +24,7 @@ void PinSet::pin(const std::vector<int>& particles) {
 }
 
 void PinSet::pin_to_body(const std::vector<int>& particles, const MovingBody& body, const VecX& x) {
-  for (int i : particles)
+  for (int i : each_once(particles))
     if (!has(i)) moving_.push_back({i, body.number(), -1, body.mark(x.segment<3>(3 * i))});
   pin(particles);
 }
@@ -22,7 +33,7 @@ void PinSet::pin_along(const std::vector<int>& particles, const Motion& motion, 
   const int path = static_cast<int>(paths_.size());
   paths_.push_back(motion);
   const Pose start = motion.at(t);
-  for (int i : particles)
+  for (int i : each_once(particles))
     if (!has(i)) moving_.push_back({i, -1, path, {start.to_body(x.segment<3>(3 * i)), {}}});
   pin(particles);
 }

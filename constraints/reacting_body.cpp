@@ -64,8 +64,9 @@ Mat3 ReactingBody::world_inertia(const Mat3& rotation) const {
   return rotation * body_.inertia * rotation.transpose();
 }
 
-// Newton's method for the spin W of the middle, in the body's frame there: I W = M with M = exp(-h [W] / 2) R^T L. Where
-// it does not converge, because the body turns by more than half a turn or so in a step, the start stands for the middle.
+// Newton's method for the spin W of the middle, in the body's frame there: I W = M with M = exp(-h [W] / 2)
+// R^T L. Where it does not converge, because the body turns by more than half a turn or so in a step, the
+// start stands for the middle.
 Mat3 ReactingBody::middle_inertia(double h) const {
   constexpr int most_rounds = 30;
   const Mat3 R = pose_.rotation, &I = body_.inertia;
@@ -193,7 +194,8 @@ bool ReactingBody::correct(Pose& end, double noise) {
   if (corrections_ == most_corrections || d.norm() <= near) return false;
   if (relaxation_ == 0) {
     const double Z = J_.norm() / std::max(approach_, h_ * body_.gravity.norm() + 1e-12);
-    // How fast the point where it is pushed gives way to a unit of the impulse: 1/m where that is the centre of mass.
+    // How fast the point where it is pushed gives way to a unit of the impulse: 1/m where that is the centre
+    // of mass.
     const double pushed = std::max({J_.squaredNorm(), T_.squaredNorm() / (radius_ * radius_), 1e-300});
     const double spins = T_.dot(inverse_inertia_ * T_) / pushed;
     relaxation_ = 1 / (1 + Z * (1 / body_.mass + spins));

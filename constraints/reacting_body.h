@@ -12,15 +12,15 @@
 //                                                       [Degroote, Bathe & Vierendeels 2009, IQN-ILS]
 // As long as the same contacts hold, d is linear in the six unknowns q, so that a few solves are enough. That
 // is so even for a ball much lighter than the cloth that it meets, which the impulses alone (q <- q') would
-// throw back and forth ever farther. a = 1/(1 + Z (1/m + T.I^-1 T / |J|^2)), where Z = |J| / the speed that J took away
-// is the cloth's share of the inertia [kg]; later in the same contact, a is what the last step found. q starts from
-// what the impulses of the last step would give, which is right at once for a body at rest. The body gets the
-// impulses of the last solve, so that momentum is kept; only where d has not become small it gets the motion
-// that was prescribed, and the step is not `converged`.
-// w is that of the middle of the step, R_m^T L = I R_m^T w with R_m = exp(h [w] / 2) R, where nothing pushes: so a body
-// that tumbles freely keeps its energy, too, and that inertia holds for the whole step. [Austin, Krishnaprasad & Wang 1993]
-// What other bodies do to it changes q' too: the impulse P and its moment A about c are those of
-// constraints/body_meeting.h, found for the motion that q' would be without them.
+// throw back and forth ever farther. a = 1/(1 + Z (1/m + T.I^-1 T / |J|^2)), where Z = |J| / the speed that J
+// took away is the cloth's share of the inertia [kg]; later in the same contact, a is what the last step
+// found. q starts from what the impulses of the last step would give, which is right at once for a body at
+// rest. The body gets the impulses of the last solve, so that momentum is kept; only where d has not become
+// small it gets the motion that was prescribed, and the step is not `converged`.
+// w is that of the middle of the step, R_m^T L = I R_m^T w with R_m = exp(h [w] / 2) R, where nothing pushes:
+// so a body that tumbles freely keeps its energy, too, and that inertia holds for the whole step. [Austin,
+// Krishnaprasad & Wang 1993] What other bodies do to it changes q' too: the impulse P and its moment A about
+// c are those of constraints/body_meeting.h, found for the motion that q' would be without them.
 // m [kg], I [kg m^2] about c in the body's frame, c [m], v, u [m/s], w [rad/s], J [N s], T [N m s], h [s].
 #pragma once
 
@@ -60,7 +60,8 @@ class ReactingBody {
   const Vec3& impulse_of_bodies() const { return last_P_; }
 
   double mass() const { return body_.mass; }
-  // The velocity that an impulse gives the point `place` of the body: 1/m - [r] I^-1 [r], r from its centre of mass
+  // The velocity that an impulse gives the point `place` of the body: 1/m - [r] I^-1 [r], r from its centre
+  // of mass
   // [m/s per N s].
   Mat3 mobility(const Vec3& place) const;
 
@@ -69,8 +70,8 @@ class ReactingBody {
   // from a particle [m/s].
   void clear_impulse();
   void push(const Vec3& impulse, const Vec3& place, double approach = 0);
-  // The same of what pulls without having run into the body, or reckons with how it gives way: the body may become as fast as all
-  // of that together makes it.
+  // The same of what pulls without having run into the body, or reckons with how it gives way: the body may
+  // become as fast as all of that together makes it.
   void pull(const Vec3& impulse, const Vec3& place, double approach);
   // Forgets the solves of this step so far, because what pushes next is another problem.
   void begin_corrections();
@@ -82,16 +83,16 @@ class ReactingBody {
   // What other bodies change of its motion in this step.
   Vec3 met_velocity() const;  // m/s
   Vec3 met_spin() const;      // rad/s
-  // What other bodies do to it. The motion without that, by gravity and by the impulses of the cloth, of which there are
-  // those of the last step before the first solve:
+  // What other bodies do to it. The motion without that, by gravity and by the impulses of the cloth, of
+  // which there are those of the last step before the first solve:
   Vec3 free_velocity() const;
   Vec3 free_spin() const;
   const Mat3& inverse_inertia() const { return inverse_inertia_; }  // in the middle of the step [1/(kg m^2)]
   const Vec3& gravity() const { return body_.gravity; }
   // Impulse P [N s] and moment A [N m s] of the other bodies in this step.
   void meet(const Vec3& impulse, const Vec3& moment);
-  // Takes P and A into the prescribed motion before the first solve, and moves the body besides by u [m/s] and w [rad/s]
-  // for the step, which its velocity does not keep. Returns the pose at the end of the step.
+  // Takes P and A into the prescribed motion before the first solve, and moves the body besides by u [m/s]
+  // and w [rad/s] for the step, which its velocity does not keep. Returns the pose at the end of the step.
   Pose expect(const Vec3& u, const Vec3& w);
   bool end_step(const Pose& end);  // false: not converged
 

@@ -20,35 +20,38 @@ namespace {
 
 constexpr double load_sinks = 0.1, arrival_sinks = 0.5;  // shares of the thickness
 constexpr double rope_sinks = 5e-5;  // m, under a load: a rope is thick, and is seen to lie
-// How much stiffer a contact becomes so, at most: with steps of 10 ms and r = 1 mm it then bears 3000 times the weight of
-// its lighter side.
+// How much stiffer a contact becomes so, at most: with steps of 10 ms and r = 1 mm it then bears 3000 times
+// the weight of its lighter side.
 constexpr double stiffest = 1000;
-// A contact is eased while it bears less than this share of what it is stiff for. Springs that become stiff while they are
-// pressed, and soft before they are pressed again, make energy. And a contact that becomes softer bears less, so that those
-// beside it bear more and become stiffer. A load whose least is more than this share of its most changes no stiffness.
+// A contact is eased while it bears less than this share of what it is stiff for. Springs that become stiff
+// while they are pressed, and soft before they are pressed again, make energy. And a contact that becomes
+// softer bears less, so that those beside it bear more and become stiffer. A load whose least is more than
+// this share of its most changes no stiffness.
 constexpr double eased_below = 0.4;
-// It becomes softer only when it was eased for this time [s], and then goes on to where it bears this share. While the contact
-// bears its load that time runs back, this many times as fast. It begins full, so that what took an impact becomes softer
-// at once.
+// It becomes softer only when it was eased for this time [s], and then goes on to where it bears this share.
+// While the contact bears its load that time runs back, this many times as fast. It begins full, so that what
+// took an impact becomes softer at once.
 constexpr double eased_for = 0.25, softens_to = 0.8, runs_back = 2.5;
 // What is then left of its stiffness after 10 ms, at least.
 constexpr double slowest_fall = 0.9;
-// A contact may hold what would else snap: as the contact becomes softer the load comes back, the contact becomes stiff
-// again, is eased again, and the cloth swings for ever. The load has come back where it asks for 1.1 times what a contact
-// that became softer is stiff for. From then on easing ends at 1.25 times the stiffness at which the load came back.
+// A contact may hold what would else snap: as the contact becomes softer the load comes back, the contact
+// becomes stiff again, is eased again, and the cloth swings for ever. The load has come back where it asks
+// for 1.1 times what a contact that became softer is stiff for. From then on easing ends at 1.25 times the
+// stiffness at which the load came back.
 constexpr double comes_back = 1.1, ends_above = 1.25;
-// What pushed in the last step begins as pushing unless the free way opens it by this many times what it was compressed.
+// What pushed in the last step begins as pushing unless the free way opens it by this many times what it was
+// compressed.
 constexpr double goes_on = 10;
 
 // In about this time [s] a contact grows back to its thickness.
 constexpr double thickens_in = 0.01;
 
-// How fast a contact that has become thinner than its cloth may thicken [m/s]: so slowly that, on earth, what it lifts flies no
-// farther than the contact is remembered.
+// How fast a contact that has become thinner than its cloth may thicken [m/s]: so slowly that, on earth, what
+// it lifts flies no farther than the contact is remembered.
 double lift_speed(double thickness) { return std::sqrt(2 * 9.81 * 0.5 * thickness); }
 
-// How stiff a contact becomes of which the load asks for `wanted` [N/m], in a step of h [s]. Notes in the contact how its
-// easing goes on.
+// How stiff a contact becomes of which the load asks for `wanted` [N/m], in a step of h [s]. Notes in the
+// contact how its easing goes on.
 double next_stiffness(SelfContact& contact, double wanted, double h) {
   using Ease = SelfContact::Ease;
   const bool eases = wanted < (contact.eased > eased_for ? softens_to : eased_below) * contact.stiff;
@@ -149,8 +152,8 @@ bool SelfContacts::have_on_both_sides(const std::vector<char>& mark, const Encou
   return has(0, cut) && has(cut, 4);
 }
 
-// Whether both sides are let pass each other: they are of one tangle, or sew() lets a vertex of each pass. A body may
-// pass where it pinches the cloth, or where the cloth is held.
+// Whether both sides are let pass each other: they are of one tangle, or sew() lets a vertex of each pass. A
+// body may pass where it pinches the cloth, or where the cloth is held.
 bool SelfContacts::may_pass(const Encounter& e) const {
   if (is_on_body(e))
     return std::any_of(e.v.begin(), e.v.end(), [&](int v) {
@@ -163,8 +166,9 @@ bool SelfContacts::may_pass(const Encounter& e) const {
   return have_on_both_sides(pass_, e);
 }
 
-// So that neither what the contact bears nor what arrives sinks in by more than a share of the thickness. What cannot give
-// way, as between two layers that cross, would become stiffer in every step: so there is a limit.
+// So that neither what the contact bears nor what arrives sinks in by more than a share of the thickness.
+// What cannot give way, as between two layers that cross, would become stiffer in every step: so there is a
+// limit.
 void SelfContacts::stiffen(SelfContact& contact, const StepMotion& step) const {
   if (kappa_ < 1) return;
   const double mass = contact.stiffness * made_for_ * made_for_ / kappa_;
@@ -202,8 +206,9 @@ bool SelfContacts::stiffen_to_hold(SelfContact& contact, const VecX& x_new) cons
   return true;
 }
 
-// Takes over what the contact was in the last step. A contact that is stiffer now, as in a step that is shorter than the last
-// one, would make energy with the thickness that it had. So it begins with about the force that it had, and grows back.
+// Takes over what the contact was in the last step. A contact that is stiffer now, as in a step that is
+// shorter than the last one, would make energy with the thickness that it had. So it begins with about the
+// force that it had, and grows back.
 void SelfContacts::go_on(SelfContact& contact, const StepMotion& step, double recovery) const {
   take_over(contact, recovery);
   stiffen(contact, step);
@@ -294,8 +299,8 @@ double SelfContacts::imbalance(double h, const VecX& x_new) const {
   return h * std::sqrt(sum);
 }
 
-// Where along the way to x_new the energy is least, 0 to 1. Its slope rises along the way, because the energy is
-// convex.
+// Where along the way to x_new the energy is least, 0 to 1. Its slope rises along the way, because the energy
+// is convex.
 double SelfContacts::share_of_way(double slope, double curvature, const VecX& x_new) const {
   const auto slope_at = [&](double t) {
     return slope + curvature * (t - 1) +

@@ -4,35 +4,40 @@
 //     p = sum w_k x_k     from the point of one side to the nearest of the other; at the start p = distance * n
 //     g = n . p - r       the gap
 //     f = max(0, -k g)    the force along n, on the first side
-//     t = what friction leaves of d = t_0 - k s     across n; s is the part of p across n since the step began, t_0 the
-//                                                   t of the last step
+//     t = what friction leaves of d = t_0 - k s     across n; s is the part of p across n since the step began,
+//                                                   t_0 the t of the last step
 //         t = d while |d| <= mu f (it sticks), else mu f d/|d| (it slides)         [Cundall & Strack 1979]
-//     k = kappa m / h^2,  1/m = sum w_k^2 / m_k     as stiff as the time step allows, whatever the mesh: a layer sinks
-//                                                   into the thickness by g h^2 / kappa, 33 um with h = 10 ms. Where an
-//                                                   implicit step is taken in pieces h is that of the whole
-//   kappa is larger, up to a limit, where the load, or what arrives, would sink in by more than a share of r. It goes half
-//   of the way to what the load asks for in a step, in ratios, and falls only after a while in which much less was asked for:
-//   what shares a load would else take it by turns, and a pile would swing up and down for ever. In steps
-//   shorter than 10 ms what is stiffer than before begins with about the force that it had: r is so much less at first, and
-//   grows back in 10 ms or so.
-//   Within a solve a contact is linear: it acts or not, and friction is a spring weakened to share (t_0 - k s). With such
-//   springs no solve goes too far, but where many contacts slide, each solve takes away only an eighth of the error. So what
-//   slid in the solve before, too, is linearised as the force along d that friction is, with the spring across d
-//   [Newton's method: Alart & Curnier 1991]. Along d the spring goes in steps of a tenth, and comes back where a solve went
-//   too far. react() corrects all until they agree with the solve.
-//   The guard: every vertex goes all of its way d_i at first. The pairs that would come nearer than `floor` on the way are
-//   found [mesh/distance/approach.h]. First they are pushed apart along their normals, by impulses, as far as no vertex has to
-//   go farther than the cloth is thick. Where that does not help, their vertices become a zone, which keeps the motion D that
-//   it has on the whole, or that of pins or of a body in it, so that cloth in motion is not held up:
+//     k = kappa m / h^2,  1/m = sum w_k^2 / m_k     as stiff as the time step allows, whatever the mesh: a
+//                         layer sinks into the thickness by g h^2 / kappa, 33 um with h = 10 ms. Where an
+//                         implicit step is taken in pieces h is that of the whole
+//   kappa is larger, up to a limit, where the load, or what arrives, would sink in by more than a share of r.
+//   It goes half of the way to what the load asks for in a step, in ratios, and falls only after a while in
+//   which much less was asked for: what shares a load would else take it by turns, and a pile would swing up
+//   and down for ever. In steps shorter than 10 ms what is stiffer than before begins with about the force
+//   that it had: r is so much less at first, and grows back in 10 ms or so.
+//   Within a solve a contact is linear: it acts or not, and friction is a spring weakened to share
+//   (t_0 - k s). With such springs no solve goes too far, but where many contacts slide, each solve takes away
+//   only an eighth of the error. So what slid in the solve before, too, is linearised as the force along d that
+//   friction is, with the spring across d [Newton's method: Alart & Curnier 1991]. Along d the spring goes in
+//   steps of a tenth, and comes back where a solve went too far. react() corrects all until they agree with
+//   the solve.
+//   The guard: every vertex goes all of its way d_i at first. The pairs that would come nearer than `floor`
+//   on the way are found [mesh/distance/approach.h]. First they are pushed apart along their normals, by
+//   impulses, as far as no vertex has to go farther than the cloth is thick. Where that does not help, their
+//   vertices become a zone, which keeps the motion D that it has on the whole, or that of pins or of a body
+//   in it, so that cloth in motion is not held up:
 //     x_i + D + t_i (d_i - D)
-//   t_i is made less until no pair fails, and after a fixed number of rounds all stands still. It holds for every integrator.
-//   Ropes take part with their segments, as thick as twice their radius: a segment is met by the vertices that come near it
-// and by its edge, and its ends meet triangles. What hangs together with a rope is kept apart from it by no more than half of
-// the way between both at rest [rope_rest.h]. Bodies meet ropes otherwise, by their particles.
-//   Where the cloth starts through itself, nothing near there pushes or is guarded until it is apart [tangles.h].
-//   Bodies that are meshes, and convex shapes that move, take part: their corners meet the triangles of the cloth, and their edges its edges
-//   [surfaces.h]. A zone that touches one goes with it. Where cloth cannot be kept both off a body and off cloth, the body
-//   yields.
+//   t_i is made less until no pair fails, and after a fixed number of rounds all stands still. It holds for
+//   every integrator.
+//   Ropes take part with their segments, as thick as twice their radius: a segment is met by the vertices that
+//   come near it and by its edge, and its ends meet triangles. What hangs together with a rope is kept apart
+//   from it by no more than half of the way between both at rest [rope_rest.h]. Bodies meet ropes otherwise,
+//   by their particles.
+//   Where the cloth starts through itself, nothing near there pushes or is guarded until it is apart
+//   [tangles.h].
+//   Bodies that are meshes, and convex shapes that move, take part: their corners meet the triangles of the
+//   cloth, and their edges its edges [surfaces.h]. A zone that touches one goes with it. Where cloth cannot be
+//   kept both off a body and off cloth, the body yields.
 // x [m], v [m/s], f [N], k [N/m], h [s].
 #pragma once
 
@@ -72,8 +77,8 @@ struct SelfFace {
   double thickness;  // m
   double friction;   // mu
   int sheet = 0;     // the cloth or soft body that it is of
-  // What is worn over what: of two layers that cross the higher one comes out on the side where the normal of the lower
-  // one points. Unset: no order is known.
+  // What is worn over what: of two layers that cross the higher one comes out on the side where the normal of
+  // the lower one points. Unset: no order is known.
   std::optional<int> layer = {};
 };
 
@@ -181,45 +186,47 @@ class SelfContacts {
   void add(const std::vector<SelfFace>& faces);
   void add(const std::vector<SelfSegment>& segments);
   void set_friction(const SelfFriction& pair) { pairs_.push_back(pair); }  // of equal pairs the last counts
-  // Particle i gets the number particle_of[i]; a triangle of which two corners become one particle is removed, and so is
-  // a segment of which both ends do.
+  // Particle i gets the number particle_of[i]; a triangle of which two corners become one particle is
+  // removed, and so is a segment of which both ends do.
   void renumber(const std::vector<int>& particle_of);
-  // The two sides of a cut begin at the same place: they touch, and do not push each other before they are apart.
+  // The two sides of a cut begin at the same place: they touch, and do not push each other before they are
+  // apart.
   void part(const Parting& parting);
-  // These pairs are being sewn together, in place of those named before. What is beside sewn particles is pushed apart only
-  // where it would pass on its way, so that they can meet.
+  // These pairs are being sewn together, in place of those named before. What is beside sewn particles is
+  // pushed apart only where it would pass on its way, so that they can meet.
   void sew(const std::vector<SewnPair>& pairs);
   bool any() const { return !faces_.empty() || !segments_.empty(); }
   bool touches_bodies() const {
     return std::any_of(touching_.begin(), touching_.end(), [](const SelfContact& c) { return c.body >= 0; });
   }
 
-  // Finds what comes near along x -> x + h v. recovery: by how much the thickness of a contact that started nearer
-  // than r grows in the step at most [m]. springs.kappa: their stiffness at least [m/h^2]; below 1, as
+  // Finds what comes near along x -> x + h v. recovery: by how much the thickness of a contact that started
+  // nearer than r grows in the step at most [m]. springs.kappa: their stiffness at least [m/h^2]; below 1, as
   // explicit methods bear it, it is no larger anywhere.
   void begin_step(const StepMotion& step, const std::vector<MovingBody>& bodies, double recovery,
                   const SelfSprings& springs);
   void follow(const std::vector<MovingBody>& bodies);  // bodies that react have changed their motion
-  // Gives the bodies what the contacts push them with when the step takes the cloth to x_new; returns the work on the
-  // cloth [J].
+  // Gives the bodies what the contacts push them with when the step takes the cloth to x_new; returns the
+  // work on the cloth [J].
   double push_bodies(std::vector<MovingBody>& bodies, const VecX& x_new) const;
   // The norm of the impulses that are wrong in a solve that came to x_new [N s].
   double imbalance(double h, const VecX& x_new) const;
   // Lets a particle that is inside a body, or clamped between two, pass the surfaces of bodies.
   void pinch(const Contact& contact, const MovingBody& body);
-  // Changes the contacts to what a solve asks for that came to v and x_new with the reaction r [N s]; true when one
-  // changes. Where that would overshoot, they are made for a point on the way there from the last such point: the one
-  // at which the energy of the contacts as they are, and of the motion, is least. curvature: d . A d of that way [J];
+  // Changes the contacts to what a solve asks for that came to v and x_new with the reaction r [N s]; true
+  // when one changes. Where that would overshoot, they are made for a point on the way there from the last
+  // such point: the one at which the energy of the contacts as they are, and of the motion, is least.
+  // curvature: d . A d of that way [J];
   // 0: v is taken whole.                                              [Nocedal & Wright 2006, section 3.1]
   bool react(const VecX& v, const VecX& r, const VecX& x_new, double curvature);
   // The velocity of that point [m/s]; null before the first react() of a step.
   const VecX* accepted_velocity() const { return accepted_ ? &v_at_ : nullptr; }
-  // Adds the pairs that would meet on the way to x_new and are no contacts yet, and makes those stiffer that are; true when
-  // there are any.
+  // Adds the pairs that would meet on the way to x_new and are no contacts yet, and makes those stiffer that
+  // are; true when there are any.
   bool meet(const VecX& x_new);
-  // Changes the ways to x_new so that nothing meets; returns how many particles it pushed or stopped. on_bodies: the contacts with
-  // bodies. in_common: whether what is stopped goes on by a common way, which may lead into a body; without it, everything
-  // stays on its own way.
+  // Changes the ways to x_new so that nothing meets; returns how many particles it pushed or stopped.
+  // on_bodies: the contacts with bodies. in_common: whether what is stopped goes on by a common way, which
+  // may lead into a body; without it, everything stays on its own way.
   int guard(const std::vector<MovingBody>& bodies, const std::vector<Contact>& on_bodies, bool in_common,
             VecX& x_new, VecX& v_new);
   void end_step(const VecX& x_new);
@@ -233,7 +240,8 @@ class SelfContacts {
   int pushing() const { return pushing_; }  // how many of them pushed at its end
   // Whether the guard of the last step pushed or stopped the particle.
   bool is_stopped(int particle) const { return any() && !stopped_.empty() && stopped_[particle] != 0; }
-  // How many particles the last guard left where they began, with all of their piece, since nothing else kept it apart.
+  // How many particles the last guard left where they began, with all of their piece, since nothing else kept
+  // it apart.
   int stood_still() const { return stood_still_; }
   // Whether the cloth passed through itself when the step began.
   bool crossing() const;
@@ -333,7 +341,8 @@ class SelfContacts {
   std::vector<char> tangled_;      // whether it was in a tangle there, or is beside a cut
   std::vector<SelfContact> touching_, last_;  // of this step and of the last one, sorted
   std::vector<Encounter> last_ones_;          // scratch: the pairs of last_, in its order
-  // Scratch: where in last_ the pairs of vertices, and those of edges, begin whose first particle is this one.
+  // Scratch: where in last_ the pairs of vertices, and those of edges, begin whose first particle is this
+  // one.
   std::array<std::vector<int>, 2> last_from_;
   std::vector<SelfContact> met_;                          // scratch
   std::vector<internal::Meeting> found_;                  // scratch

@@ -15,13 +15,13 @@ using namespace internal;
 
 namespace {
 
-// What fails is pushed apart in so many rounds at most. What still fails is stopped: so often the way of a particle is shortened
-// by shares, and then given up. After so many rounds what is stopped has no way in common any more, and after the last round
-// whole pieces stand still.
+// What fails is pushed apart in so many rounds at most. What still fails is stopped: so often the way of a
+// particle is shortened by shares, and then given up. After so many rounds what is stopped has no way in
+// common any more, and after the last round whole pieces stand still.
 constexpr int rounds_of_pushes = 40, stops_by_shares = 8, rounds_in_common = 40, most_rounds = 64;
 
-// No two things end a step nearer than this, or come nearer than half of it on the way [m]: places that are written as
-// floats then do not cross, either.
+// No two things end a step nearer than this, or come nearer than half of it on the way [m]: places that are
+// written as floats then do not cross, either.
 double floor_of(const VecX& x, const VecX& x_new) {
   const double largest = std::max(x.lpNorm<Eigen::Infinity>(), x_new.lpNorm<Eigen::Infinity>());
   return 4 * std::sqrt(3.0) * std::ldexp(largest, -24);
@@ -91,9 +91,10 @@ int SelfContacts::zone_of(int particle) {
   return particle;
 }
 
-// The ways in common, by zone. A zone goes with the body that is in it, or stands where several are, or particles that are
-// held otherwise; or with its particles that are held, if there are any and they go the same way (else it stands); or the
-// mean way of those that touch a body; or else of all by mass. A zone of the last kind keeps its mean, so no momentum is lost.
+// The ways in common, by zone. A zone goes with the body that is in it, or stands where several are, or
+// particles that are held otherwise; or with its particles that are held, if there are any and they go the
+// same way (else it stands); or the mean way of those that touch a body; or else of all by mass. A zone of
+// the last kind keeps its mean, so no momentum is lost.
 void SelfContacts::find_common(const StepMotion& step, const VecX& x_new, bool in_common) {
   const int n = static_cast<int>(zone_.size());
   const auto way = [&](int i) { return Vec3(x_new.segment<3>(3 * i) - step.x.segment<3>(3 * i)); };
@@ -143,8 +144,8 @@ void SelfContacts::find_common(const StepMotion& step, const VecX& x_new, bool i
   }
 }
 
-// The way of a particle that goes with the body of its zone: as that turns, or, where it deforms, by the mean of what it has
-// there.
+// The way of a particle that goes with the body of its zone: as that turns, or, where it deforms, by the mean
+// of what it has there.
 Vec3 SelfContacts::way_with_body(int particle, const StepMotion& step) {
   const int zone = zone_of(particle), body = zone_body_[zone];
   if (body == several) return Vec3::Zero();
@@ -153,8 +154,8 @@ Vec3 SelfContacts::way_with_body(int particle, const StepMotion& step) {
   return deforming(moving.obstacle().shape) ? body_way_[zone] : Vec3(moving.carried(place) - place);
 }
 
-// Sets ahead_ to where the particles come that go the shares way_ of their ways. A tangle that is still has nothing but the
-// way in common, and its relief.
+// Sets ahead_ to where the particles come that go the shares way_ of their ways. A tangle that is still has
+// nothing but the way in common, and its relief.
 void SelfContacts::go_shares(const StepMotion& step, const VecX& x_new, bool in_common) {
   find_common(step, x_new, in_common);
   for (int i = 0; i < cloth_particles(); ++i) {
@@ -184,7 +185,8 @@ void SelfContacts::stop(const std::vector<Meeting>& failing, const StepMotion& s
   go_shares(step, x_new, in_common);
 }
 
-// Whether a push this way leads the particle into no body that it touches. What two bodies clamp cannot go anywhere.
+// Whether a push this way leads the particle into no body that it touches. What two bodies clamp cannot go
+// anywhere.
 bool SelfContacts::may_leave(int particle, const Vec3& push) const {
   if (hold_[particle] == Held::no) return true;
   const Contact& contact = *touches_[particle];
@@ -193,10 +195,11 @@ bool SelfContacts::may_leave(int particle, const Vec3& push) const {
                      [&](const ContactPlane& plane) { return plane.normal.dot(push) >= 0; });
 }
 
-// Pushes the sides of these pairs apart along their normals, by impulses, which keep the momentum: to a tenth of what was
-// between them at the start. A pair that ends farther apart than that met something on its way, and goes half as far again.
-// Skips a pair of which a particle would come farther than it is thick from where it wanted to go, or was stopped, or is moved
-// by its relief, which no velocity may come from; and a pair of which neither side can move. Returns whether it pushed any.
+// Pushes the sides of these pairs apart along their normals, by impulses, which keep the momentum: to a tenth
+// of what was between them at the start. A pair that ends farther apart than that met something on its way,
+// and goes half as far again. Skips a pair of which a particle would come farther than it is thick from where
+// it wanted to go, or was stopped, or is moved by its relief, which no velocity may come from; and a pair of
+// which neither side can move. Returns whether it pushed any.
 bool SelfContacts::push_apart(const std::vector<Meeting>& failing, const StepMotion& step) {
   constexpr double share = 0.1;
   const double floor = floor_of(step.x, ahead_);
@@ -247,8 +250,8 @@ bool SelfContacts::let_bodies_yield(const std::vector<Meeting>& failing) {
   return yielded;
 }
 
-// Joins the particles of each of these tangles to a zone, in which they move as a whole, but for their relief; and without
-// it where that did not help.
+// Joins the particles of each of these tangles to a zone, in which they move as a whole, but for their
+// relief; and without it where that did not help.
 void SelfContacts::stop_tangles(const std::vector<int>& tangles) {
   for (int i = 0; i < cloth_particles(); ++i) {
     if (!std::binary_search(tangles.begin(), tangles.end(), tangles_->tangle(i))) continue;
@@ -269,8 +272,8 @@ void SelfContacts::find_relief(const StepMotion& step, const std::vector<Contact
     }
 }
 
-// Pushes apart, and then shortens the ways, until nothing meets and no more triangles cross than may; ahead_ is then where they
-// end. x_new has to be wanted_, which the pushes change.
+// Pushes apart, and then shortens the ways, until nothing meets and no more triangles cross than may; ahead_
+// is then where they end. x_new has to be wanted_, which the pushes change.
 void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_common) {
   int pushes_left = in_common ? rounds_of_pushes : 0;
   for (int round = 0; round <= most_rounds && follow_all(step.x, ahead_); ++round) {
@@ -299,8 +302,8 @@ void SelfContacts::shorten(const StepMotion& step, const VecX& x_new, bool in_co
   let_pieces_stand(step);
 }
 
-// Leaves the pieces to which what still fails belongs where they began; and the one that goes farthest where so much is near
-// that there is no list of what fails. Other pieces go on, unless they meet these.
+// Leaves the pieces to which what still fails belongs where they began; and the one that goes farthest where
+// so much is near that there is no list of what fails. Other pieces go on, unless they meet these.
 void SelfContacts::let_pieces_stand(const StepMotion& step) {
   std::vector<char> stands(way_.size(), 0);  // by piece_to_stand_
   while (!pieces_part(step, stands)) {
@@ -358,8 +361,9 @@ bool SelfContacts::stand_still(const StepMotion& step, const std::vector<char>& 
   return any;
 }
 
-// Takes the particles to ahead_, and changes their velocity by what changes of their way; relief is none of it. Returns of how
-// many it changes. The second guard of a step finds the relief of the first one in x_new.
+// Takes the particles to ahead_, and changes their velocity by what changes of their way; relief is none of
+// it. Returns how many particles it changes. The second guard of a step finds the relief of the first one in
+// x_new.
 int SelfContacts::go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX& v_new) {
   int stopped = 0;
   if (first) given_.setZero(x_new.size());

@@ -1,5 +1,5 @@
-// Which particles, triangles and segments take part in contact of cloth and cloth, and what becomes of them when particles are
-// numbered anew (constraints/self_contact.h).
+// Which particles, triangles and segments take part in contact of cloth and cloth, and what becomes of them
+// when particles are numbered anew (constraints/self_contact.h).
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -59,8 +59,8 @@ void SelfContacts::renumber(const std::vector<int>& particle_of) {
   stale_ = true;
 }
 
-// How near the sides of a cut are at rest says nothing of their thickness: they are one place there, and only the guard would
-// keep them apart, by holding them together.
+// How near the sides of a cut are at rest says nothing of their thickness: they are one place there, and only
+// the guard would keep them apart, by holding them together.
 void SelfContacts::part(const Parting& parting) {
   for (SelfFace& face : faces_) face.particles = parting.face(face.particles);
   for (SelfSegment& segment : segments_)
@@ -156,8 +156,8 @@ void SelfContacts::set_particles(const StepMotion& step) {
   limits_.assign(n, 0);
 }
 
-// Pieces hang together by faces, and by the segments of ropes. A particle inside a soft body has neither, and is numbered
-// between those of its surface.
+// Pieces hang together by faces, and by the segments of ropes. A particle inside a soft body has neither, and
+// is numbered between those of its surface.
 void SelfContacts::find_pieces_to_stand() {
   std::vector<int> root(piece_.size());  // by piece
   std::iota(root.begin(), root.end(), 0);

@@ -20,7 +20,8 @@ constexpr double same_way = 0.5;  // the cosine from which two normals belong to
 constexpr double clearly_nearer = 0.7;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// What is lifted flies no farther than this on earth (self_contact.cpp), and is found to be near while it does.
+// What is lifted flies no farther than this on earth (self_contact.cpp), and is found to be near while it
+// does.
 double reach_about(double thickness) { return 1.5 * thickness; }
 
 Vec3 across(const Vec3& n, const Vec3& a) { return a - n.dot(a) * n; }
@@ -66,9 +67,10 @@ double SelfContacts::both_thicknesses(const Encounter& e) const {
   return 0.5 * (thickness_[one_of(e, false)] + thickness_[one_of(e, true)]);
 }
 
-// The thickness at which the pair comes to rest: the mean of both sides. Where one piece of cloth is near itself at
-// rest, no more than half the distance there. Of what passes through each other at rest that says nothing: there it may
-// always be a quarter of the shortest edge between the four. What a rope is joined to: rope_rest.h.
+// The thickness at which the pair comes to rest: the mean of both sides. Where one piece of cloth is near
+// itself at rest, no more than half the distance there. Of what passes through each other at rest that says
+// nothing: there it may always be a quarter of the shortest edge between the four. What a rope is joined to:
+// rope_rest.h.
 double SelfContacts::thickness_of(const Encounter& e) const {
   const double both = both_thicknesses(e);
   if (ropes_->is_rope(e)) return std::min(both, 0.5 * ropes_->way(e));
@@ -131,8 +133,8 @@ std::optional<SelfContact> SelfContacts::contact_of(const StepMotion& step, cons
   return contact;
 }
 
-// The forces of the last step, and the thickness reached there: of the same pair, or of a contact that the vertex
-// had on the same side and has no more.
+// The forces of the last step, and the thickness reached there: of the same pair, or of a contact that the
+// vertex had on the same side and has no more.
 void SelfContacts::take_over(SelfContact& contact, double recovery) const {
   const SelfContact* at = last_of(contact.who);
   if (!at && !contact.who.edges) {
@@ -179,8 +181,8 @@ void SelfContacts::find_limits(bool on_bodies) {
   });
 }
 
-// How a pair comes within its thickness, and a little more, on the way to ahead_. start, end: the corners of both ends;
-// thickest: of pairs without a rope; likely: the normal.
+// How a pair comes within its thickness, and a little more, on the way to ahead_. start, end: the corners of
+// both ends; thickest: of pairs without a rope; likely: the normal.
 Approach SelfContacts::approach_of(const StepMotion& step, const Encounter& e, const FourPoints& start,
                                    const FourPoints& end, double thickest, const Vec3& likely) const {
   if (may_pass(e) || is_sewn(e) ||
@@ -246,18 +248,19 @@ std::vector<Meeting>& SelfContacts::edges_that_go_on(const StepMotion& step, dou
   return going_on_;
 }
 
-// A vertex that meets nothing on its way is pushed from the place where it ends: pushed from where it came near, it would
-// stumble over the rim of a sheet that it slides onto. A vertex that meets something may end on the other side of it, so
-// these contacts stay as they were when the vertex came near.
+// A vertex that meets nothing on its way is pushed from the place where it ends: pushed from where it came
+// near, it would stumble over the rim of a sheet that it slides onto. A vertex that meets something may end
+// on the other side of it, so these contacts stay as they were when the vertex came near.
 void SelfContacts::look_at_ends(std::vector<Meeting>::iterator begin,
                                 std::vector<Meeting>::iterator end) const {
   if (std::any_of(begin, end, [](const Meeting& m) { return m.approach.until < 1; })) return;
   for (auto m = begin; m != end; ++m) m->approach.last = nearest(m->who.edges, corners(ahead_, m->who));
 }
 
-// Whether an end of one of two edges, one of which is a rope's and one a cloth's, is nearly as near to what the other edge is
-// of: the contact of that vertex bears it then. Those of vertices are in touching_, sorted by their vertices. Where two
-// ropes cross, their edges meet in any case: or they would sink into each other wherever no vertex is near.
+// Whether an end of one of two edges, one of which is a rope's and one a cloth's, is nearly as near to what
+// the other edge is of: the contact of that vertex bears it then. Those of vertices are in touching_, sorted
+// by their vertices. Where two ropes cross, their edges meet in any case: or they would sink into each other
+// wherever no vertex is near.
 bool SelfContacts::is_borne_otherwise(const Meeting& edges) const {
   constexpr double nearly = 0.98;
   if (ropes_->are_ropes(edges.who)) return false;
@@ -288,9 +291,9 @@ void SelfContacts::find_contacts(const StepMotion& step) {
   find_contacts_of_edges(step, thickest);
 }
 
-// A vertex has one contact with each sheet beside it: the nearest, of triangles that share a particle and lie the
-// same way. What pushed the vertex over the inside of a triangle goes on: in a valley two triangles bear it, and would do so by
-// turns.
+// A vertex has one contact with each sheet beside it: the nearest, of triangles that share a particle and lie
+// the same way. What pushed the vertex over the inside of a triangle goes on: in a valley two triangles bear
+// it, and would do so by turns.
 void SelfContacts::find_contacts_of_vertices(const StepMotion& step, double thickest) {
   std::swap(found_, near_vertices(step, *encounters_, thickest, reach_));
   if (meets_bodies(step)) add_found(near_vertices(step, *on_bodies_, surfaces_->thickest(), body_reach_));
@@ -333,8 +336,9 @@ void SelfContacts::add_found(const std::vector<Meeting>& more) {
   found_.insert(found_.end(), more.begin(), more.end());
 }
 
-// Two edges that cross are a contact where they are clearly nearer than their ends are to the other sheet, and stay one as
-// long as they are near (edges_that_go_on()): or a rim would drop and be lifted by turns. The others are not looked at.
+// Two edges that cross are a contact where they are clearly nearer than their ends are to the other sheet,
+// and stay one as long as they are near (edges_that_go_on()): or a rim would drop and be lifted by turns. The
+// others are not looked at.
 void SelfContacts::find_contacts_of_edges(const StepMotion& step, double thickest) {
   std::swap(found_, near_edges(step, *encounters_, thickest, reach_));
   if (meets_bodies(step)) add_found(near_edges(step, *on_bodies_, surfaces_->thickest(), body_reach_));

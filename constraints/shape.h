@@ -112,8 +112,8 @@ Eigen::AlignedBox3d bounds_of(const Shape& shape);  // [m]; infinite where the s
 
 // The surface of the shape as triangles, wound outwards. It has no vertices for a plane, which has no end,
 // and for a level set. Built-in shapes are drawn finely enough to look round (4 or 6 degrees an edge); their
-// vertices lie on the true surface. coarser, 0 to 3: so many times the edges round a shape are twice as long; of a mesh they
-// are its own.
+// vertices lie on the true surface. coarser, 0 to 3: so many times the edges round a shape are twice as long;
+// of a mesh they are its own.
 TriangleMesh mesh_of(const Shape& shape, int coarser = 0);
 
 // The solid that a shape bounds, with its mass spread evenly.

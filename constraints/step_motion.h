@@ -21,7 +21,8 @@ struct StepMotion {
   double last_h = 0;    // length of the last completed step [s]
   Foresight foresight = Foresight::ahead;
   double work = 0;  // work of moving bodies and pins on the particles [J]
-  // At the start [m], [m/s]. Where methods look ahead, the v of what is led is that with which it is led in this step.
+  // At the start [m], [m/s]. Where methods look ahead, the v of what is led is that with which it is led in
+  // this step.
   VecX x, v;
   VecX x_end;                   // where the last completed step ended [m]
   std::vector<double> masses;   // kg

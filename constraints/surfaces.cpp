@@ -9,8 +9,8 @@
 namespace drape::internal {
 namespace {
 
-// Springs keep edges and corners off by this share of the margin, at which vertices rest: so what lies flat touches no
-// spring, and what lies over an edge that is not sharp is borne by the faces [face_contact.h].
+// Springs keep edges and corners off by this share of the margin, at which vertices rest: so what lies flat
+// touches no spring, and what lies over an edge that is not sharp is borne by the faces [face_contact.h].
 constexpr double share_of_margin = 0.25;
 constexpr double inside = 1e-9;    // m: less is rounding
 constexpr int steps_between = 10;  // after which is looked again who is pinched

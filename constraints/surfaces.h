@@ -1,11 +1,11 @@
-// Bodies as cloth meets them with its triangles: surfaces whose vertices are particles that are held and go where the
-// bodies take them. With them the corners and edges of a body meet the triangles and edges of the cloth, so that a needle
-// does not come through between the vertices. They are the meshes among the bodies, and polyhedra in convex shapes that
-// move (MovingBody::skin): a body with a mass would else fall through a sheet whose triangles are as large as itself, since
-// springs alone keep its faces off.
-//   Cloth that starts in a body, or through its surface, has to come out first: its particles near there are pinched,
-//   and may pass. So may cloth that nothing could keep off, as where two bodies press it through each other. They are
-//   pinched until they are outside again.
+// Bodies as cloth meets them with its triangles: surfaces whose vertices are particles that are held and go
+// where the bodies take them. With them the corners and edges of a body meet the triangles and edges of the
+// cloth, so that a needle does not come through between the vertices. They are the meshes among the bodies,
+// and polyhedra in convex shapes that move (MovingBody::skin): a body with a mass would else fall through a
+// sheet whose triangles are as large as itself, since springs alone keep its faces off.
+//   Cloth that starts in a body, or through its surface, has to come out first: its particles near there are
+//   pinched, and may pass. So may cloth that nothing could keep off, as where two bodies press it through
+//   each other. They are pinched until they are outside again.
 // Internal to the library's constraints.
 #pragma once
 
@@ -20,8 +20,8 @@ namespace drape::internal {
 
 class Surfaces {
  public:
-  // Begins the step of the particles of the cloth. True when there are other surfaces, or other particles, than in the
-  // last step.
+  // Begins the step of the particles of the cloth. True when there are other surfaces, or other particles,
+  // than in the last step.
   bool begin_step(const std::vector<MovingBody>& bodies, const StepMotion& cloth);
   // Takes the ends of the ways anew, after bodies that react have changed their motion.
   void follow(const std::vector<MovingBody>& bodies);
@@ -34,10 +34,12 @@ class Surfaces {
   int body_of(int particle) const { return body_[particle - cloth_]; }
   double thickest() const { return thickest_; }     // of the faces [m]
   const StepMotion& step() const { return step_; }  // of all particles
-  // The places of all particles at the end of a step that takes the cloth to x_new [m]. Good until the next call.
+  // The places of all particles at the end of a step that takes the cloth to x_new [m]. Good until the next
+  // call.
   const VecX& with(const VecX& x_new);
 
-  // Which particles of these triangles of the cloth are pinched when a run begins, or was changed from outside.
+  // Which particles of these triangles of the cloth are pinched when a run begins, or was changed from
+  // outside.
   void look(const std::vector<MovingBody>& bodies, const std::vector<SelfFace>& cloth);
   // The same while some are; it is looked at anew every few steps.
   void look_again(const std::vector<MovingBody>& bodies, const std::vector<SelfFace>& cloth);

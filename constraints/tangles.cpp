@@ -139,8 +139,8 @@ void Tangles::end_step(const VecX& x) {
   mark();
 }
 
-// Gathers the triangles that the contour has and those that share a vertex with them; with two rings once more those that
-// share a vertex with these.
+// Gathers the triangles that the contour has and those that share a vertex with them; with two rings once
+// more those that share a vertex with these.
 void Tangles::gather(const CrossingContour& contour, int rings) {
   near_.clear();
   const auto add_around = [&](int triangle) {
@@ -327,8 +327,8 @@ void Tangles::add_relief(double most) {
     }
 }
 
-// Where contours lie close their displacements add up, and at the rim of a tangle the cloth beyond does not move: one factor
-// for each tangle, which keeps its momentum.
+// Where contours lie close their displacements add up, and at the rim of a tangle the cloth beyond does not
+// move: one factor for each tangle, which keeps its momentum.
 void Tangles::limit_relief(double most) {
   excess_.assign(places_.size(), 1);
   for (const Triangle& t : triangles_) {

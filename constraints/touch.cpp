@@ -43,7 +43,8 @@ std::vector<Vec3> points_on(const Shape& shape) {
   return points;
 }
 
-// A vertex that belongs to no triangle is no part of the surface. Returns the numbers that those which are left had.
+// A vertex that belongs to no triangle is no part of the surface. Returns the numbers that those which are
+// left had.
 std::vector<int> leave_out_what_is_no_corner(TriangleMesh& mesh) {
   std::vector<int> kept, place(mesh.positions.size(), 0);
   for (const Triangle& t : mesh.triangles) kept.insert(kept.end(), t.begin(), t.end());

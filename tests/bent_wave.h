@@ -1,5 +1,5 @@
-// The bending energy of a sheet of 0.4 m that is bent into a wave which fades out before the border, against that of
-// the wave's curvature.
+// The bending energy of a sheet of 0.4 m that is bent into a wave which fades out before the border, against
+// that of the wave's curvature.
 #pragma once
 
 #include <algorithm>
@@ -20,9 +20,10 @@ inline TriangleMesh wave_sheet(StripMesh kind, int cells) {
   return strip(kind, cells, cells, wave_sheet_size).mesh;
 }
 
-// How much larger the energy of `bending` is than that of the curvature of the wave, by its exact second derivatives
-// and the stiffness `D`: 0.01 is 1 % too stiff. The wave runs along `angle` [rad] from x to z, `length` [m] from crest
-// to crest, and is a millimetre high. `warp` is a unit vector in the plane of the sheet.
+// How much larger the energy of `bending` is than that of the curvature of the wave, by its exact second
+// derivatives and the stiffness `D`: 0.01 is 1 % too stiff. The wave runs along `angle` [rad] from x to z,
+// `length` [m] from crest to crest, and is a millimetre high. `warp` is a unit vector in the plane of the
+// sheet.
 inline double wave_energy_error(const TriangleMesh& mesh, const Force& bending, const PlateStiffness& D,
                                 const Vec3& warp, double angle, double length) {
   constexpr double L = wave_sheet_size;

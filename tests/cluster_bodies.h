@@ -62,7 +62,8 @@ struct Bodies {
       faces.push_back({t, 0, 0, number});
     }
   }
-  // A square sheet of springs about the point `at`, whose particles follow those of the boxes; it is in no cluster.
+  // A square sheet of springs about the point `at`, whose particles follow those of the boxes; it is in no
+  // cluster.
   void add_sheet(int n, double size, const Vec3& at) {
     sheet_first = static_cast<int>(places.size());
     sheet = grid(n, n, size, size);

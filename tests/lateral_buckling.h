@@ -1,9 +1,10 @@
-// A woven strip that stands on edge, held at one end, topples sideways at the weight that theory says: lateral
+// A woven strip that stands on edge, held at one end, topples sideways at the weight that theory says:
+// lateral
 // buckling of a beam under its own weight.                          [Timoshenko & Gere, Theory of Elastic Stability, 6.3]
 //   area_density b g L^3 = 12.85 sqrt(B b C),  C = 4 D_66 b the torsional rigidity of a strip b wide
-// so that Gamma = area_density g L^3 / B = 12.85 sqrt(4 D_66 / B), which is 18.2 where Poisson's ratio is 0. A
-// clamp also keeps the strip from warping, which makes it stiffer by a few per cent where it is 16 times longer
-// than wide.
+// so that Gamma = area_density g L^3 / B = 12.85 sqrt(4 D_66 / B), which is 18.2 where Poisson's ratio is 0.
+// A clamp also keeps the strip from warping, which makes it stiffer by a few per cent where it is 16 times
+// longer than wide.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +23,8 @@ namespace drape::test {
 
 inline const double critical_gamma = 12.85 * std::sqrt(2);
 
-// By which factor a small lean out of the plane of the strip grows in the second 12 s of 24; NaN: a step failed. The
-// strip has about `cells` cells along its length, and a sixteenth of them across.
+// By which factor a small lean out of the plane of the strip grows in the second 12 s of 24; NaN: a step
+// failed. The strip has about `cells` cells along its length, and a sixteenth of them across.
 inline double lean_growth(StripMesh kind, double gamma, int cells) {
   constexpr double length = 0.2, density = 0.15, g = 9.81;
   const double B = density * g * std::pow(length, 3) / gamma;

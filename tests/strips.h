@@ -1,5 +1,6 @@
-// Strips of cloth for tests against closed forms, with meshes of every kind: a strip lies in the plane y = 0 and
-// runs along x; its first two columns of vertices, at -h/2 and h/2, hold it, so that its clamp is at x = 0.
+// Strips of cloth for tests against closed forms, with meshes of every kind: a strip lies in the plane y = 0
+// and runs along x; its first two columns of vertices, at -h/2 and h/2, hold it, so that its clamp is at x =
+// 0.
 #pragma once
 
 #include <array>

@@ -13,7 +13,8 @@
 
 namespace drape::test {
 
-// A sheet of quads, nx by nz vertices, x and z from 0 in steps of h [m], with uv; two groups, near (low z) and far.
+// A sheet of quads, nx by nz vertices, x and z from 0 in steps of h [m], with uv; two groups, near (low z)
+// and far.
 inline std::string quads(int nx, int nz, double h) {
   std::string text, faces;
   for (int j = 0; j < nz; ++j)
@@ -32,8 +33,8 @@ inline std::string quads(int nx, int nz, double h) {
   }
   return text + faces;
 }
-// Two such sheets one behind the other, `gap` apart [m]: the groups near and far, and along the two sides that face each other the
-// lines near.side and far.side. Vertex i of row j of sheet p is (p nz + j) nx + i.
+// Two such sheets one behind the other, `gap` apart [m]: the groups near and far, and along the two sides
+// that face each other the lines near.side and far.side. Vertex i of row j of sheet p is (p nz + j) nx + i.
 inline std::string two_sheets(int nx, int nz, double h, double gap) {
   std::string text, faces, lines;
   for (int row = 0; row < 2 * nz; ++row)

@@ -22,7 +22,8 @@ const Fabric cloth{.area_density = density, .stretch = 500, .bend = 1e-5};
 
 double terminal(const Air& air) { return std::sqrt(2 * density * g / (air.density * air.drag)); }
 
-// One triangle: all its particles always feel the same. (A sheet of loose particles that falls flat is unstable.)
+// One triangle: all its particles always feel the same. (A sheet of loose particles that falls flat is
+// unstable.)
 TriangleMesh triangle() {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {0.1, 0, 0}, {0, 0, 0.2}};
@@ -189,7 +190,8 @@ TEST_CASE("still air takes energy and never gives any", "[air]") {
 
 TEST_CASE("a sheet that hangs in the wind stands at the angle at which its weight balances the wind",
           "[air]") {
-  // Pressure is p = rho C U^2 cos^2(a) / 2 on every part alike, so that the sheet stays straight: sin a = p / (sigma g).
+  // Pressure is p = rho C U^2 cos^2(a) / 2 on every part alike, so that the sheet stays straight: sin a = p /
+  // (sigma g).
   const TriangleMesh lying = grid(7, 11, 0.15, 0.25);
   TriangleMesh mesh = lying;
   for (Vec3& x : mesh.positions) x = Vec3(x.x(), x.z(), 0);

@@ -1,4 +1,5 @@
-// The library alone, without a scene: panels placed, seams planned, cloths and soft bodies assembled and stepped.
+// The library alone, without a scene: panels placed, seams planned, cloths and soft bodies assembled and
+// stepped.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <numbers>

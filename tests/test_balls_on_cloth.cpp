@@ -1,6 +1,6 @@
-// Balls with mass on cloth: what pushes a ball goes through its centre, however it moves, so that cloth without friction
-// neither turns it nor stops its spin; and with friction it rolls as on a slope. Against closed forms, on sheets of three
-// kinds and sizes.
+// Balls with mass on cloth: what pushes a ball goes through its centre, however it moves, so that cloth
+// without friction neither turns it nor stops its spin; and with friction it rolls as on a slope. Against
+// closed forms, on sheets of three kinds and sizes.
 #include <catch2/catch.hpp>
 #include <numbers>
 

@@ -1,5 +1,5 @@
-// Bodies with mass meet each other and bodies that stand or are led: rest, friction, impact, stacks, and together with
-// cloth. Every law is asked of a list of shapes, in steps of three lengths where it is physics.
+// Bodies with mass meet each other and bodies that stand or are led: rest, friction, impact, stacks, and
+// together with cloth. Every law is asked of a list of shapes, in steps of three lengths where it is physics.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -84,7 +84,8 @@ struct Named {
   double flat;  // where its middle is when it lies on its flat side on y = 0 [m]
 };
 
-// Bodies about 20 cm large, of every kind that can react but the level set, whose points rock, that stand at y = `height` on their flat side.
+// Bodies about 20 cm large, of every kind that can react but the level set, whose points rock, that stand at
+// y = `height` on their flat side.
 std::vector<Named> kinds(double height) {
   const Vec3 c(0, height, 0), size(0.2, 0.15, 0.3);
   const TriangleMesh cube = placed(box_mesh(size), Mat3::Identity(), c);
@@ -222,15 +223,16 @@ TEST_CASE("two bodies that collide keep both momenta, and part at the restitutio
           while (world.time < 0.4) {
             world.step(0.002);
             const Momenta now = momenta(world);
-            // A body that spins freely changes its energy by the square of the turn in a step, and an impact by the
-            // turn.
+            // A body that spins freely changes its energy by the square of the turn in a step, and an impact
+            // by the turn.
             CHECK(now.energy < energy * 1.03);
             CHECK(now.energy < before.energy * 1.1);
             energy = now.energy;
           }
           const Momenta after = momenta(world);
           CHECK((after.linear - before.linear).norm() < 1e-13);
-          // Bodies that stay together turn into each other a little: what moves them apart shifts their centres.
+          // Bodies that stay together turn into each other a little: what moves them apart shifts their
+          // centres.
           CHECK((after.angular - before.angular).norm() < (e > 0 ? 1e-12 : 0.01));
           CHECK(world.body(0).velocity()[0] < 1.5);  // they met
           const bool round =

@@ -1,4 +1,5 @@
-// What carriers (constraints/carriers.h) are told of bodies that react, and what these get where carriers push.
+// What carriers (constraints/carriers.h) are told of bodies that react, and what these get where carriers
+// push.
 #include <catch2/catch.hpp>
 
 #include "constraints/contact_step.h"

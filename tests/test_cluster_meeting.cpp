@@ -54,7 +54,8 @@ const std::array<Kind, 3> box_kinds = {{{{3, 3, 3}, {3, 4, 3}, 0.08, 300},
                                         {{2, 2, 2}, {4, 3, 5}, 0.05, 2000},
                                         {{5, 4, 5}, {2, 3, 2}, 0.1, 100}}};
 
-// What a rigid body would do that starts as the first body and is hit where `contact` is: with friction it sticks.
+// What a rigid body would do that starts as the first body and is hit where `contact` is: with friction it
+// sticks.
 ClusterMotion rigid_answer(const SelfContact& contact, double h, const std::array<ClusterBody, 2>& body,
                            const std::array<ClusterMotion, 2>& motion, const State& before, int first_size) {
   std::array<Vec3, 2> point = {Vec3::Zero(), Vec3::Zero()};

@@ -203,7 +203,8 @@ TEST_CASE("clusters keep momentum with a body that reacts at every size of their
         }
 }
 
-// The ball also presses on the triangles between their corners, by springs that a few iterations do not solve exactly.
+// The ball also presses on the triangles between their corners, by springs that a few iterations do not solve
+// exactly.
 TEST_CASE("a sheet whose faces are clusters and a ball that reacts lose little momentum", "[clusters][pbd]") {
   for (const char* contact : {"velocity", "restitution"})
     for (const int n : {6, 10, 16})

@@ -55,7 +55,8 @@ PointSet point_set(Kind kind, Random& random) {
 
 double largest_singular_value(const Mat3& A) { return Eigen::JacobiSVD<Mat3>(A).singularValues()[0]; }
 
-// max tr(R^T A) over proper rotations, by another method: the singular values, the last with the sign of the determinant.
+// max tr(R^T A) over proper rotations, by another method: the singular values, the last with the sign of the
+// determinant.
 double best(const Mat3& A) {
   const Eigen::JacobiSVD<Mat3> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Vec3& s = svd.singularValues();

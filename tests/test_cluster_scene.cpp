@@ -1,4 +1,5 @@
-// Clusters in a scene: the keys of a cloth and of a soft body, what becomes of them, and every mistake in one line.
+// Clusters in a scene: the keys of a cloth and of a soft body, what becomes of them, and every mistake in one
+// line.
 #include "app/simulation/simulation.h"
 #include "tests/mistakes.h"
 #include "tests/places.h"

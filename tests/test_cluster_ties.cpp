@@ -1,4 +1,5 @@
-// Laws of clusters that something ties: a rope that hangs on one, pins that hold one; and of a step that failed.
+// Laws of clusters that something ties: a rope that hangs on one, pins that hold one; and of a step that
+// failed.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>

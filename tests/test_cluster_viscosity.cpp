@@ -1,4 +1,5 @@
-// Laws of the viscosity of clusters: it takes the energy of the deformation as told, and leaves rigid motion as it is.
+// Laws of the viscosity of clusters: it takes the energy of the deformation as told, and leaves rigid motion
+// as it is.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <complex>
@@ -99,7 +100,8 @@ TEST_CASE("the energy of a body that swings dies away as told, however many clus
     for (int i = 0; i < free.system.particles(); ++i)
       rigid.segment<3>(3 * i) = m.at(Vec3(free.place(i) - b.centre));
     const double kept = free.system.kinetic_energy(rigid), all = free.system.kinetic_energy(free.state.v);
-    // Kinetic and elastic energy together fall with exp(-k tau t); what the method itself takes is the same with and without.
+    // Kinetic and elastic energy together fall with exp(-k tau t); what the method itself takes is the same
+    // with and without.
     for (const double tau : {2e-4, 5e-4})
       CHECK((energy(tau) - kept) / (energy(0) - kept) == Approx(std::exp(-k * tau * 0.1)).epsilon(0.05));
     CHECK(kept < 0.5 * all);

@@ -37,8 +37,8 @@ struct Copies : Assembly {
   TriangleMesh all;
 };
 
-// The sheet cut along the middle; its two sides joined by triangles of no area, or not: as programs leave meshes that they
-// take apart along seams.
+// The sheet cut along the middle; its two sides joined by triangles of no area, or not: as programs leave
+// meshes that they take apart along seams.
 TriangleMesh with_cut(TriangleMesh mesh, bool joined) {
   const std::vector<Triangle> whole = mesh.triangles;
   const auto right = [&](const Triangle& t) {

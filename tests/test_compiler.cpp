@@ -1,4 +1,5 @@
-// What is taken for granted of a compiler, and was not so: GCC 12.2 made constants other than they are written.
+// What is taken for granted of a compiler, and was not so: GCC 12.2 made constants other than they are
+// written.
 #include <catch2/catch.hpp>
 #include <vector>
 

@@ -1,5 +1,6 @@
-// Contact without friction on a linear system is a quadratic problem: of all motions that stay outside of the planes,
-// the step takes the one of least potential. Here a dense solver finds it in another way, by its multipliers.
+// Contact without friction on a linear system is a quadratic problem: of all motions that stay outside of the
+// planes, the step takes the one of least potential. Here a dense solver finds it in another way, by its
+// multipliers.
 #include "solver/forces/plate_force.h"
 #include "tests/integrators.h"
 
@@ -68,7 +69,8 @@ struct LinearProblem {
         }
   }
 
-  // The velocity at the end of a step of implicit Euler: the least v.Av/2 - b.v with N v >= c, where A is 3n by 3n.
+  // The velocity at the end of a step of implicit Euler: the least v.Av/2 - b.v with N v >= c, where A is 3n
+  // by 3n.
   VecX end_velocity() const {
     const auto n = static_cast<Eigen::Index>(masses.size());
     Matrix K = Matrix::Zero(n, n), M = Matrix::Zero(n, n);
@@ -94,7 +96,8 @@ struct LinearProblem {
         N.block<1, 3>(row, 3 * i) = p.normal.transpose();
         c[row++] = (margin - p.normal.dot(start.x.segment<3>(3 * i) - p.point)) / h;
       }
-    // With A = L L^T and w = L^T v - L^-1 b it is the least |w| with G w >= d, whose dual is a least squares problem:
+    // With A = L L^T and w = L^T v - L^-1 b it is the least |w| with G w >= d, whose dual is a least squares
+    // problem:
     // y >= 0 with the least |[G d]^T y - (0, 1)|; then w = (G^T y) / (1 - d.y).      [Lawson & Hanson, chapter 23.4]
     const Eigen::LLT<Matrix> L(A);
     const VecX u = L.matrixL().solve(b);

@@ -1,5 +1,5 @@
-// Contacts settle within a step: what the bodies do to the cloth is then found from the forces alone, and obeys
-// Signorini's and Coulomb's laws; and every step says how far it is from that.
+// Contacts settle within a step: what the bodies do to the cloth is then found from the forces alone, and
+// obeys Signorini's and Coulomb's laws; and every step says how far it is from that.
 #include "solver/forces/woven.h"
 #include "solver/integrators/merit.h"
 #include "tests/integrators.h"
@@ -10,7 +10,8 @@ using namespace drape::test;
 
 namespace {
 
-// A sheet that falls on bodies: round, into a corner of two planes, into one of three, which is more than lock it.
+// A sheet that falls on bodies: round, into a corner of two planes, into one of three, which is more than
+// lock it.
 struct Landing {
   std::string name;
   std::vector<Shape> bodies;

@@ -1,5 +1,5 @@
-// A closed surface that overlaps itself: the distance is that to the surface of all of its parts together. The oracle cuts
-// away from every triangle of a part what lies in the others, which are convex.
+// A closed surface that overlaps itself: the distance is that to the surface of all of its parts together.
+// The oracle cuts away from every triangle of a part what lies in the others, which are convex.
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -86,7 +86,8 @@ TriangleMesh part(int kind, int level, double size) {
                    : lat_long_sphere(4 << level, 5 << level, 0.6 * size, Vec3::Zero());
 }
 
-// Two convex parts that overlap each other, and one that lies in the first; of three kinds, of growing fineness.
+// Two convex parts that overlap each other, and one that lies in the first; of three kinds, of growing
+// fineness.
 Overlap overlap(int kind, int level) {
   Random r;
   return {{placed(part(kind, level, 1), {0, 0, 0}, r), placed(part(kind, level, 0.7), {0.6, 0.1, 0.05}, r),
@@ -159,7 +160,8 @@ TEST_CASE("where three parts overlap, the side is right, and the depth to within
 }
 
 TEST_CASE("a tube that is bent into itself is one body", "[shapes][mesh]") {
-  // All that is within a of a line that goes once round a circle of radius b, and on, by 0.6 rad, half of a beside itself.
+  // All that is within a of a line that goes once round a circle of radius b, and on, by 0.6 rad, half of a
+  // beside itself.
   const double a = 0.2, b = 0.6, turn = 2 * pi + 0.6, beside = 0.5 * a / (2 * pi);
   const auto line = [&](double t) { return Vec3(b * std::cos(t), beside * t, b * std::sin(t)); };
   for (int n : {12, 24, 48}) {
@@ -212,8 +214,8 @@ TEST_CASE("a tube that is bent into itself is one body", "[shapes][mesh]") {
 
 namespace {
 
-// A limb of radius 0.2 m whose axis turns by `angle` about a line 0.16 m above it, so that it is folded through itself in the
-// crook: the line along which it meets itself ends at vertices of the fold.
+// A limb of radius 0.2 m whose axis turns by `angle` about a line 0.16 m above it, so that it is folded
+// through itself in the crook: the line along which it meets itself ends at vertices of the fold.
 TriangleMesh bent_limb(int n, double angle) {
   const double radius = 0.2, pivot = 0.16, bend = 0.15,
                arm = 0.6;  // m; the axis turns from x = -bend to bend

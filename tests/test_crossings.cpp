@@ -1,5 +1,5 @@
-// Laws of triangles that pass through each other: as many as rational arithmetic finds, whatever is done to the mesh
-// that changes none; contours close or end; and what `drape check` says of them.
+// Laws of triangles that pass through each other: as many as rational arithmetic finds, whatever is done to
+// the mesh that changes none; contours close or end; and what `drape check` says of them.
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
 #include <limits>
@@ -44,7 +44,8 @@ Rational volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
          (u[0] * v[1] - u[1] * v[0]) * w[2];
 }
 
-// Whether the edge pq passes through the triangle, by the point where it meets the plane and its three weights there.
+// Whether the edge pq passes through the triangle, by the point where it meets the plane and its three
+// weights there.
 bool passes(const Vec3& p, const Vec3& q, const std::array<Vec3, 3>& t) {
   const Rational at_p = volume(t[0], t[1], t[2], p), at_q = volume(t[0], t[1], t[2], q);
   if (at_p.sign() * at_q.sign() >= 0) return false;

@@ -1,4 +1,5 @@
-// The search for what could meet: it misses nothing, whatever moves, and does not begin again for what moves elsewhere.
+// The search for what could meet: it misses nothing, whatever moves, and does not begin again for what moves
+// elsewhere.
 #include "constraints/encounters.h"
 
 #include <Eigen/Geometry>
@@ -17,8 +18,8 @@ namespace {
 
 constexpr double edge = 0.01, gap = 0.003;  // m
 
-// Sheets of n x n vertices, one above the other. The upper one of two may be a body: then its pairs with the lower one count,
-// without those of a vertex of the lower one.
+// Sheets of n x n vertices, one above the other. The upper one of two may be a body: then its pairs with the
+// lower one count, without those of a vertex of the lower one.
 struct Sheets {
   Sheets(Kind kind, int n, double distance, bool on_body = false, int sheets = 2) : body(on_body) {
     const TriangleMesh sheet = bent(n, kind, edge * (n - 1), [](double, double) { return 0.0; });
@@ -282,7 +283,8 @@ TEST_CASE("the search misses nothing of the parts and within the gaps that it is
         for (int i = 0; i < 2 * two.half; ++i)
           x_new.segment<3>(3 * i) += motion(moves, two, i, step, number(random));
         REQUIRE(two.encounters.follow(two.x, x_new, gap));
-        // The gap of two edges is another one in every step, and one that is seldom asked for comes near meanwhile.
+        // The gap of two edges is another one in every step, and one that is seldom asked for comes near
+        // meanwhile.
         const auto gap_of = [&](const Encounter& e) {
           return e.edges && (e.v[0] + e.v[1] + e.v[2] + e.v[3] + step) % 4 != 0 ? 0.3 * gap : gap;
         };

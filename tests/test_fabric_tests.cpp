@@ -262,7 +262,8 @@ TEST_CASE("what a laboratory measured stands beside what the virtual tests find"
   CHECK(0.15 * 9.80665 * c * c * c == Approx(measured.at("bending rigidity, warp").get<double>()));
   CHECK(measured.at("bending length, bias").is_null());
   CHECK(measured.at("shear modulus, picture frame").get<double>() == Approx(46.6).epsilon(0.02));
-  // A second strip that has another direction, and a strip in the bias in place of a frame: load / (4 extension).
+  // A second strip that has another direction, and a strip in the bias in place of a frame: load / (4
+  // extension).
   NamedFabric both = load_fabric("mine.toml", folder.path);
   both.tests.cantilevers.push_back({.length = 0.1, .droop = {.warp = 0.01, .weft = {}, .bias = 0.06}});
   CHECK(*measured_value(both, "bending rigidity, bias") == *measured_value(both, "bending rigidity, warp"));

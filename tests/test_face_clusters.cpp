@@ -1,4 +1,5 @@
-// Laws of cloth whose faces are clusters: what its stiffness means, what a projection keeps, and what many of them come to.
+// Laws of cloth whose faces are clusters: what its stiffness means, what a projection keeps, and what many of
+// them come to.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 

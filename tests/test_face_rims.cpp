@@ -1,4 +1,5 @@
-// Triangles of the cloth over the corners and rims of a box: where they touch, and that they come to rest there.
+// Triangles of the cloth over the corners and rims of a box: where they touch, and that they come to rest
+// there.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numbers>
@@ -11,8 +12,8 @@
 using namespace drape;
 using namespace drape::test;
 
-// Behind a corner or a rim the nearest face of the box changes from one side of the lowest point to the other. The
-// box turns by 0.3 rad in the step, and the normal with it.
+// Behind a corner or a rim the nearest face of the box changes from one side of the lowest point to the
+// other. The box turns by 0.3 rad in the step, and the normal with it.
 TEST_CASE("a triangle that cuts off a corner or a rim of a box is pushed straight out", "[faces]") {
   constexpr double h = 0.01;
   std::mt19937 random(5);
@@ -45,7 +46,8 @@ TEST_CASE("a triangle that cuts off a corner or a rim of a box is pushed straigh
         REQUIRE(step.touching_faces().size() == 1);
         const FaceContact& contact = step.touching_faces()[0];
         CHECK(contact.normal.dot(rotation(0.3, Vec3::UnitY()) * n) > 0.99);
-        // The deepest point lies equally far behind the faces that meet there. The search may miss 0.3 of that.
+        // The deepest point lies equally far behind the faces that meet there. The search may miss 0.3 of
+        // that.
         CHECK(constraints.bodies()[0].distance(contact.place) < -0.7 * depth / n.sum());
       }
 }

@@ -1,4 +1,5 @@
-// `drape fit` by virtual tests: measurements of a known fabric give the fabric back, and what cannot be known is said.
+// `drape fit` by virtual tests: measurements of a known fabric give the fabric back, and what cannot be known
+// is said.
 #include <catch2/catch.hpp>
 #include <cmath>
 

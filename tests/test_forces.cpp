@@ -110,8 +110,8 @@ struct Network {
   }
 };
 
-// One force of every kind that depends on positions and velocities alone, and where its particles are at rest.
-// (The force of contacts with faces depends on which contacts there are, too.)
+// One force of every kind that depends on positions and velocities alone, and where its particles are at
+// rest. (The force of contacts with faces depends on which contacts there are, too.)
 struct Resting {
   std::unique_ptr<Force> force;
   VecX x;

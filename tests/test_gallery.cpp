@@ -1,5 +1,5 @@
-// The scenes of the gallery as the program reads them: nothing of the cloth ends a step inside a body, and no cloth that
-// meets cloth passes through any.
+// The scenes of the gallery as the program reads them: nothing of the cloth ends a step inside a body, and no
+// cloth that meets cloth passes through any.
 //   -phi(x) <= 0        vertices, to round-off: they are guarded
 //   -phi(x) <= margin   eight points of every edge: contact is between vertices and a body
 // phi [m]: signed distance of the body where it is then. Each scene goes to where its cloth lies on the body,

@@ -18,7 +18,8 @@ struct Dirty {
   double s;        // at a + s (b - a)
 };
 
-// Two sheets of 10 x 10 cm, joined along a line by triangles without area; pins hold the first at vertices 0 and 1.
+// Two sheets of 10 x 10 cm, joined along a line by triangles without area; pins hold the first at vertices 0
+// and 1.
 std::vector<Dirty> dirty_meshes() {
   std::vector<Dirty> all;
   TriangleMesh twice;  // every vertex of the joint twice, at the same place

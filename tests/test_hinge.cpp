@@ -57,7 +57,8 @@ TriangleMesh two_triangles(const VecX& x) {
 }  // namespace
 
 TEST_CASE("lattices of hinges are the plates that theory says", "[woven][reference]") {
-  // The energy of a cell under a small constant curvature. The diagonals of the squares run down, along (1, -1).
+  // The energy of a cell under a small constant curvature. The diagonals of the squares run down, along (1,
+  // -1).
   struct Lattice {
     const char* name;
     Vec3 b;

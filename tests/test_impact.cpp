@@ -1,4 +1,5 @@
-// Cloth that hits a body: what one linear solve leaves of a motion that bends far in a step is energy that nothing brought.
+// Cloth that hits a body: what one linear solve leaves of a motion that bends far in a step is energy that
+// nothing brought.
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -34,7 +35,8 @@ Impact impact(ClothModel model, Kind kind, int n, double tilt) {
   for (int step = 0; step < 15; ++step) {
     const StepReport report = all.advance(0.01);
     REQUIRE(report.done);
-    const double stored = all.system->stored_energy(all.state.x), energy = all.system->total_energy(all.state);
+    const double stored = all.system->stored_energy(all.state.x),
+                 energy = all.system->total_energy(all.state);
     least = std::min(least, energy);
     found.stored = std::max(found.stored, stored / brought);
     found.risen = std::max(found.risen, (energy - least) / brought);

@@ -43,7 +43,8 @@ double out_of_plane_on_a_ball(ClothPart part, int steps, std::string* hash = nul
   return farthest;
 }
 
-// The largest deflection of a strip that is clamped at both ends and shortened to `load` times what buckles it.
+// The largest deflection of a strip that is clamped at both ends and shortened to `load` times what buckles
+// it.
 double deflection(StripMesh kind, double load, double amplitude, double length = 0.1) {
   Strip s = strip(kind, 20, 4, length);
   double last = -1;

@@ -18,7 +18,8 @@ using namespace drape::test;
 
 namespace {
 
-// Sheets that lie on each other: on every triangle presses a vertex of the sheet above, and one of the sheet below.
+// Sheets that lie on each other: on every triangle presses a vertex of the sheet above, and one of the sheet
+// below.
 struct Pile {
   using Springs = StencilForce<PointTriangleLaw>;
   static constexpr double h = 0.01, gap = 0.001;

@@ -1,5 +1,5 @@
-// Cloth that lands on a slope, lies on it or is laid on it: Coulomb's law for sheets of three kinds and sizes, against
-// closed forms.
+// Cloth that lands on a slope, lies on it or is laid on it: Coulomb's law for sheets of three kinds and
+// sizes, against closed forms.
 #include <catch2/catch.hpp>
 #include <numbers>
 
@@ -63,7 +63,8 @@ const Fabric poplin{.area_density = 0.12, .stretch = 500, .bend = 8e-6};
 }  // namespace
 
 TEST_CASE("cloth that lands on a slope loses mu times what the slope takes of its fall", "[contact]") {
-  // All impulses of the slope together stop the fall onto it, and friction takes mu times as much, however it lands.
+  // All impulses of the slope together stop the fall onto it, and friction takes mu times as much, however it
+  // lands.
   const double mu = 0.1, slope = pi / 6, duration = 0.4;
   for (const bool of_springs : {false, true})
     for (const Kind kind : kinds)

@@ -143,8 +143,8 @@ TEST_CASE("the program uses of the library what any other program can use", "[la
   CHECK(looked_at > 100);
 }
 
-// Two test files may have types, templates and inline functions of one name: outside a namespace without a name the linker would
-// keep one of them for both.
+// Two test files may have types, templates and inline functions of one name: outside a namespace without a
+// name the linker would keep one of them for both.
 TEST_CASE("what a test file defines for itself stands in a namespace without a name", "[layering]") {
   const auto starts = [](const std::string& line, const std::string& word) {
     return line.rfind(word, 0) == 0;
@@ -191,8 +191,8 @@ TEST_CASE("of the internal headers only those of SUNDIALS show a library besides
     }
 }
 
-// What a file may open at the left margin. A name that two files give to different types is a fault that only the
-// linker could see, so what is not offered to users keeps out of the namespace of what is.
+// What a file may open at the left margin. A name that two files give to different types is a fault that only
+// the linker could see, so what is not offered to users keeps out of the namespace of what is.
 TEST_CASE(
     "public names of the library are in drape, its other names in drape::internal, the program's in "
     "drape::app",

@@ -1,4 +1,5 @@
-// Cloth that is led, under cloth that it touches: what does not rub on it is not taken along, however suddenly it starts.
+// Cloth that is led, under cloth that it touches: what does not rub on it is not taken along, however
+// suddenly it starts.
 #include <catch2/catch.hpp>
 #include <numeric>
 

@@ -303,7 +303,8 @@ TEST_CASE("nothing to do is done in no iterations", "[solvers]") {
 }
 
 TEST_CASE("where all that acts is along what is locked there is nothing to do", "[solvers]") {
-  // The projections leave their round-off of it, which no iteration can lessen. With z of Problem A z acts, too.
+  // The projections leave their round-off of it, which no iteration can lessen. With z of Problem A z acts,
+  // too.
   for (const std::string& name : names()) {
     for (const bool moving : {false, true}) {
       for (const unsigned seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
@@ -334,7 +335,8 @@ TEST_CASE("where all that acts is along what is locked there is nothing to do", 
 }
 
 TEST_CASE("what acts freely is solved as far as round-off of what is locked lets it", "[solvers]") {
-  // Such as cloth without weight that is drawn tight round a body: nearly all that acts is along the locked normals.
+  // Such as cloth without weight that is drawn tight round a body: nearly all that acts is along the locked
+  // normals.
   for (const std::string& name : names()) {
     for (const double share : {1e-14, 1e-13, 1e-12, 1e-9}) {
       for (const unsigned seed : {1u, 2u, 3u}) {

@@ -1,4 +1,5 @@
-// Sewn cloth that starts through itself: what a merged seam leaves of it is as if the cloth had started in one.
+// Sewn cloth that starts through itself: what a merged seam leaves of it is as if the cloth had started in
+// one.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -33,8 +34,8 @@ void add_faces(Constraints& constraints, const std::vector<Triangle>& triangles)
   constraints.add_self_faces(faces);
 }
 
-// Three sheets of n x n vertices above each other. The last lies this gap [m] above the second, but for a dent in the
-// middle, which may reach through.
+// Three sheets of n x n vertices above each other. The last lies this gap [m] above the second, but for a
+// dent in the middle, which may reach through.
 Sheet three_layers(int n, Kind kind, double gap, double dent) {
   Sheet all;
   std::vector<Vec3> places;

@@ -1,5 +1,5 @@
-// Linear solvers over moving runs. "auto" solves as the method that it names, and takes the cheaper one of the two;
-// multigrid needs few iterations in every step.
+// Linear solvers over moving runs. "auto" solves as the method that it names, and takes the cheaper one of
+// the two; multigrid needs few iterations in every step.
 #include <map>
 
 #include "mesh/base/threads.h"
@@ -51,8 +51,8 @@ struct Cost {
   }
 };
 
-// Solves by the solver of that name and counts what it costs. "auto" is checked against a solver of its own for
-// each of its methods, which gets the same systems in the same order.
+// Solves by the solver of that name and counts what it costs. "auto" is checked against a solver of its own
+// for each of its methods, which gets the same systems in the same order.
 class CountingSolver final : public LinearSolver {
  public:
   CountingSolver(std::string_view name, Cost& cost) : solver_(make_linear_solver(name)), cost_(cost) {}
@@ -180,8 +180,8 @@ TEST_CASE("multigrid takes few iterations in every step of a moving sheet, whate
         INFO(side << " vertices a side, on a ball " << on_ball << ", woven " << as_woven << ": "
                   << cost.iterations << " iterations in " << cost.solves << " solves");
         CHECK(cost.iterations <= 13 * cost.solves);
-        // Hung sheets that differ by a vertex a side take 16 to 32 at most, by chance. Where contacts have changed,
-        // levels that were kept may have to be made anew within a solve.
+        // Hung sheets that differ by a vertex a side take 16 to 32 at most, by chance. Where contacts have
+        // changed, levels that were kept may have to be made anew within a solve.
         CHECK(cost.most_iterations <= (on_ball ? 44 : 36));
       }
 }

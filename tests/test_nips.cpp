@@ -19,7 +19,8 @@ constexpr double g = 9.81, margin = 1e-3;
 
 Mat3 about_z(double a) { return Eigen::AngleAxisd(a, Vec3::UnitZ()).toRotationMatrix(); }
 
-// A sheet of 50 g, 50 cm x 50 cm, that lies on y = margin, turned with everything else by `tilt` [rad] about the z axis.
+// A sheet of 50 g, 50 cm x 50 cm, that lies on y = margin, turned with everything else by `tilt` [rad] about
+// the z axis.
 struct Desk {
   double tilt;
   TriangleMesh mesh;

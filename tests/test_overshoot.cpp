@@ -1,5 +1,5 @@
-// A Newton step that raises the incremental potential, because edges that were slack have become taut, is put right by
-// the next one.
+// A Newton step that raises the incremental potential, because edges that were slack have become taut, is put
+// right by the next one.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>

@@ -1,4 +1,5 @@
-// Laws of the integrator "pbd": what one projection keeps, what many of them come to, and what its stiffness means.
+// Laws of the integrator "pbd": what one projection keeps, what many of them come to, and what its stiffness
+// means.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 

@@ -263,8 +263,8 @@ TEST_CASE("the maps of colours go the usual way", "[picture]") {
   CHECK(longer[0] > longer[2] + 80);
   CHECK(*std::min_element(none.begin(), none.end()) > 240);
   CHECK(colour_of(strain, 7) == colour_of(strain, 0.1));
-  // Compression and extension are as far from white as each other, and blue against red, which a red-green blind
-  // eye tells apart, too.
+  // Compression and extension are as far from white as each other, and blue against red, which a red-green
+  // blind eye tells apart, too.
   double paler = 3;
   for (double s = 0.02; s < 0.101; s += 0.02) {
     const Pixel less = colour_of(strain, -s), more = colour_of(strain, s);

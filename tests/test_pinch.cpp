@@ -1,4 +1,5 @@
-// Cloth between two bodies that close on it and do not give way: it stays there, keeps still, and comes out where it was.
+// Cloth between two bodies that close on it and do not give way: it stays there, keeps still, and comes out
+// where it was.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numbers>
@@ -29,7 +30,8 @@ Jaw mesh(double side) {
   return {"mesh", std::make_shared<const SurfaceDistance>(lat_long_sphere(24, 40, 0.1, {0, 0.1 * side, 0}))};
 }
 
-// A sheet in the plane y = 0, held along its border, and two jaws that are `apart` [m] at the given times [s].
+// A sheet in the plane y = 0, held along its border, and two jaws that are `apart` [m] at the given times
+// [s].
 struct Press : Assembly {
   using Way = std::vector<std::pair<double, double>>;
 

@@ -1,5 +1,5 @@
-// The force of bending, by a plate or by hinges, flat at rest and bent at rest: laws of its energy, its matrix and its
-// rest shape.
+// The force of bending, by a plate or by hinges, flat at rest and bent at rest: laws of its energy, its
+// matrix and its rest shape.
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -200,7 +200,8 @@ TEST_CASE("cloth that rests bent spins as a rigid body does", "[woven]") {
   Fabric fabric{.area_density = 0.15, .stretch = 500, .bend = 1e-4};
   fabric.weave.rest_angle = 1;
   all.add(ClothPart{.mesh = roll, .fabric = fabric, .model = ClothModel::woven, .imperfection = 0});
-  // One solve a step slows every sheet that spins out of its plane; five let a bent one show what it does itself.
+  // One solve a step slows every sheet that spins out of its plane; five let a bent one show what it does
+  // itself.
   all.use("implicit-euler", "mpcg+block-ic0", {.newton_iterations = 5, .tolerance = 1e-10});
   const auto momentum = [&] {
     Vec3 L = Vec3::Zero();

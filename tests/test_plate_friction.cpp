@@ -1,5 +1,5 @@
-// Dry friction of a fabric's threads against bending: the loop of KES-FB2, what it leaves of a fold and of a droop, and
-// that it makes no energy.
+// Dry friction of a fabric's threads against bending: the loop of KES-FB2, what it leaves of a fold and of a
+// droop, and that it makes no energy.
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
@@ -168,7 +168,8 @@ TEST_CASE("a rolled strip left alone stays rolled by H / B, and one without fric
 
 TEST_CASE("a cantilever that sags comes to rest higher than one that was pulled down and let go",
           "[woven][friction]") {
-  // Small deflections: at s from the tip the weight asks for the moment M = q s^2 / 2, and B kappa = M - m, |m| <= H.
+  // Small deflections: at s from the tip the weight asks for the moment M = q s^2 / 2, and B kappa = M - m,
+  // |m| <= H.
   const double L = 0.05, q = 0.15 * 9.81, most = 0.5 * q * L * L, holds = 0.2 * most, bend = 5e-4;
   const auto droop = [&](double (*curvature)(double M, double h)) {
     double sum = 0;
@@ -346,7 +347,8 @@ TEST_CASE("friction remembers each piece of a halved step once, and nothing of a
     for (std::size_t t = 0; t < one.memory->rest.size(); ++t)
       CHECK(one.memory->rest[t] == two.memory->rest[t]);
   }
-  // The first half is done, then every piece fails: the step returns to where it began, and so does what rubs.
+  // The first half is done, then every piece fails: the step returns to where it began, and so does what
+  // rubs.
   class LateFailing final : public LinearSolver {
    public:
     std::string_view name() const override { return "late"; }

@@ -1,4 +1,5 @@
-// Ropes meet cloth, soft bodies and ropes: as thick as they are, with friction, and nothing passes through them.
+// Ropes meet cloth, soft bodies and ropes: as thick as they are, with friction, and nothing passes through
+// them.
 #include <cmath>
 #include <limits>
 
@@ -91,7 +92,8 @@ struct Meeting : Assembly {
     }
     return {least, most};
   }
-  // The nearest that the axes of two ropes are, or those of one whose ends are farther apart along it than `along` [m].
+  // The nearest that the axes of two ropes are, or those of one whose ends are farther apart along it than
+  // `along` [m].
   double between(std::size_t k, std::size_t l, double along = 0) const {
     const std::vector<Vec3> p = points(k), q = points(l);
     double least = 1, from = 0;

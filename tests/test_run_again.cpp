@@ -1,5 +1,5 @@
-// What a run tells of cloth that missed its bodies and of pins that disagree, and what it leaves of an earlier run in the
-// same folder.
+// What a run tells of cloth that missed its bodies and of pins that disagree, and what it leaves of an
+// earlier run in the same folder.
 #include <unistd.h>
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,5 @@
-// A band of cloth that is drawn over a cylinder of cloth: friction between layers bears exp(mu angle) of the tension.
+// A band of cloth that is drawn over a cylinder of cloth: friction between layers bears exp(mu angle) of the
+// tension.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -16,7 +17,8 @@ namespace {
 
 constexpr double radius = 0.05, thickness = 1e-3, hangs = 0.06;  // m
 
-// A band of the given edges [m], wound about the z axis at `around` [m] over half a turn, whose ends hang down.
+// A band of the given edges [m], wound about the z axis at `around` [m] over half a turn, whose ends hang
+// down.
 TriangleMesh wound(Kind kind, double edge, double around, double width) {
   const double over = std::numbers::pi * around, length = over + 2 * hangs;
   const int along = static_cast<int>(std::lround(length / edge)) + 1;

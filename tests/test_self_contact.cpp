@@ -152,7 +152,8 @@ TEST_CASE("layers on the floor come to rest a thickness apart", "[self-contact]"
 
 namespace {
 
-// Sheets of n x n vertices above each other, `apart` [m], the lowest `above` [m] the place where it rests on the floor.
+// Sheets of n x n vertices above each other, `apart` [m], the lowest `above` [m] the place where it rests on
+// the floor.
 Layers pile_of(int layers, int n, double apart, double above, bool cuts = true) {
   std::vector<TriangleMesh> meshes;
   for (int k = 0; k < layers; ++k)
@@ -211,7 +212,8 @@ TEST_CASE("what stops the lowest layers of a pile that falls lets the others fal
     INFO(n << " vertices along an edge");
     const int layers = 50;
     Layers pile = pile_of(layers, n, 5e-3, 8e-3, false);
-    // At 1.2 m/s the layers come down 12 mm in a step, more than two gaps. Half of the pile is still above the floor.
+    // At 1.2 m/s the layers come down 12 mm in a step, more than two gaps. Half of the pile is still above
+    // the floor.
     for (int k = 0; k < 14; ++k) {
       REQUIRE(pile.advance(0.01).done);
       REQUIRE(pile.crossings() == 0);

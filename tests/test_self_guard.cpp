@@ -1,4 +1,5 @@
-// What the guard of cloth against cloth leaves alone: pins, what lies on a body, and the motion that all share.
+// What the guard of cloth against cloth leaves alone: pins, what lies on a body, and the motion that all
+// share.
 #include <random>
 
 #include "constraints/self_contact.h"
@@ -173,7 +174,8 @@ TEST_CASE("the guard pushes what touches a body off it, never into it, and not w
           INFO(n << " vertices along an edge, " << (above ? "above" : "below") << ", clamped " << clamped
                  << ", normal " << normal.transpose());
           Guarded two(n);
-          // One vertex of a sheet comes through the other sheet by 0.02 mm, where the sheets end 0.1 mm apart.
+          // One vertex of a sheet comes through the other sheet by 0.02 mm, where the sheets end 0.1 mm
+          // apart.
           const double way = above ? -1 : 1;
           const int half = two.half(), first = above ? half : 0, astray = first + half / 2 + n / 2;
           for (int i = first; i < first + half; ++i) two.move(i, {0, way * 3.9e-3, 0});

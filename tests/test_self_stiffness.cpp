@@ -103,7 +103,8 @@ TEST_CASE("contacts become softer again when their load is gone", "[self-contact
 }
 
 TEST_CASE("a blow to contacts that were eased is no load that comes back", "[self-contact]") {
-  // The upper half of a light pile gets a blow from above. One pile was heavy before, and had become soft again.
+  // The upper half of a light pile gets a blow from above. One pile was heavy before, and had become soft
+  // again.
   constexpr double heavy = 100, light = 5, blow = 6;  // m/s^2, m/s^2, m/s
   for (Kind kind : kinds)
     for (int n : {4, 6, 8}) {
@@ -127,8 +128,9 @@ TEST_CASE("a blow to contacts that were eased is no load that comes back", "[sel
 }
 
 TEST_CASE("a contact whose load comes back when it is eased is not eased as far again", "[self-contact]") {
-  // Stands for what would snap where a contact gives way: the pile is light until its springs are down to a share of
-  // what they were, and is then heavy for a while. Springs that forget go up and down eight times in this time.
+  // Stands for what would snap where a contact gives way: the pile is light until its springs are down to a
+  // share of what they were, and is then heavy for a while. Springs that forget go up and down eight times in
+  // this time.
   constexpr double heavy = 100, light = 5, gives_way = 0.6, for_a_while = 0.3;  // m/s^2, m/s^2, -, s
   for (Kind kind : kinds)
     for (int n : {4, 6, 8}) {

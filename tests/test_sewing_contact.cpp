@@ -1,4 +1,5 @@
-// Seams that close among cloth that meets itself: their two sides come together, and nothing passes through anything.
+// Seams that close among cloth that meets itself: their two sides come together, and nothing passes through
+// anything.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -29,8 +30,8 @@ int most_crossings(Simulation& s, double until, double h) {
   return most;
 }
 
-// Both panels lie side by side, this far apart [m] at one end of the seam, and turned away from each other by this angle [deg].
-// One is held at its top, and swings down while the seam closes.
+// Both panels lie side by side, this far apart [m] at one end of the seam, and turned away from each other by
+// this angle [deg]. One is held at its top, and swings down while the seam closes.
 Simulation side_by_side(const TwoPanels& panels, const std::string& model, double apart, double angle = 0,
                         const std::string& then = "merge") {
   const Folder folder;

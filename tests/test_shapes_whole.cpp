@@ -1,5 +1,5 @@
-// Laws of what is said of a shape as a whole, over a list of shapes: its mesh lies on its surface, its box holds
-// the mesh, its mass is that of what is inside.
+// Laws of what is said of a shape as a whole, over a list of shapes: its mesh lies on its surface, its box
+// holds the mesh, its mass is that of what is inside.
 #include <catch2/catch.hpp>
 
 #include "mesh/lattice/solid.h"
@@ -11,7 +11,8 @@ using namespace drape::test;
 
 namespace {
 
-// What is inside a shape by its distance alone, of density 1: cubes of side h, those that the surface passes by shares.
+// What is inside a shape by its distance alone, of density 1: cubes of side h, those that the surface passes
+// by shares.
 Solid counted(const Shape& shape, double h) {
   const Eigen::AlignedBox3d box = bounds_of(shape);
   double volume = 0;

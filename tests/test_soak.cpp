@@ -1,5 +1,5 @@
-// Long searches for a way through cloth, by ./build.sh soak: hidden from the usual tests, which run some of the same cases.
-// DRAPE_SOAK sets the number of cases, DRAPE_SOAK_DROPS that of garments that are dropped.
+// Long searches for a way through cloth, by ./build.sh soak: hidden from the usual tests, which run some of
+// the same cases. DRAPE_SOAK sets the number of cases, DRAPE_SOAK_DROPS that of garments that are dropped.
 #include <Eigen/Geometry>
 #include <cstdlib>
 #include <random>
@@ -35,8 +35,8 @@ Mat3 any_rotation(Random& random) {
   return Eigen::Quaterniond(q.normalized()).toRotationMatrix();
 }
 
-// Two to four small sheets with edges of about 2 cm near each other: turned, irregular, parallel at a hair's breadth, or
-// slivers, and some of them far from the origin.
+// Two to four small sheets with edges of about 2 cm near each other: turned, irregular, parallel at a hair's
+// breadth, or slivers, and some of them far from the origin.
 TriangleMesh any_sheets(Random& random) {
   TriangleMesh all;
   const int sheets = whole(random, 2, 4), kind = whole(random, 0, 4);
@@ -89,8 +89,8 @@ TEST_CASE("a million motions: no cloth passes through cloth", "[.][soak]") {
     step.h = 0.01;
     step.x = stacked(mesh.positions);
     if (crossings(mesh, step.x, false) > 0) continue;
-    // Far from the origin floats may cross from the start, and what lies nearer together than floats can tell apart may do so
-    // wherever it moves.
+    // Far from the origin floats may cross from the start, and what lies nearer together than floats can tell
+    // apart may do so wherever it moves.
     const bool floats = shortest_edge(mesh) > 1e-6 && crossings(mesh, step.x, true) == 0;
     const std::size_t n = mesh.positions.size();
     for (std::size_t i = 0; i < n; ++i) {

@@ -1,4 +1,5 @@
-// Soft bodies of tetrahedra, by springs along their edges and by clusters: what a modulus means, and how they move.
+// Soft bodies of tetrahedra, by springs along their edges and by clusters: what a modulus means, and how they
+// move.
 #include <catch2/catch.hpp>
 
 #include "mesh/tetrahedra/msh.h"
@@ -63,7 +64,8 @@ TEST_CASE("a body that swells stores what its modulus says", "[soft]") {
     INFO(kind);
     const Body body(rabbit(), kind);
     constexpr double e = 1e-4;
-    // Of springs the solid of Poisson's ratio 1/4, 9/2 K e^2 with K = 2/3 Y; of clusters three times Y e^2 / 2.
+    // Of springs the solid of Poisson's ratio 1/4, 9/2 K e^2 with K = 2/3 Y; of clusters three times Y e^2 /
+    // 2.
     const double expected = (kind == std::string("links") ? 3 : 1.5) * Y * e * e * volume(body.mesh);
     CHECK(body.system.elastic_energy((1 + e) * body.state.x) == Approx(expected).epsilon(1e-3));
   }

@@ -1,5 +1,5 @@
-// Laws of forces with stencils of 2, 3 and 4 particles, of those that stand and of those that are found anew in
-// every step; and the overlay of the matrix that carries their blocks.
+// Laws of forces with stencils of 2, 3 and 4 particles, of those that stand and of those that are found anew
+// in every step; and the overlay of the matrix that carries their blocks.
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <random>

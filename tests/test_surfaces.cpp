@@ -1,4 +1,5 @@
-// Bodies that cloth with self_contact meets with their triangles: nothing comes through, whichever of them moves.
+// Bodies that cloth with self_contact meets with their triangles: nothing comes through, whichever of them
+// moves.
 #include "mesh/base/threads.h"
 #include "mesh/distance/triangle_crossings.h"
 #include "solver/assembly/assembly.h"
@@ -156,8 +157,8 @@ TEST_CASE("a spiked body with mass that meets a free sheet keeps the momentum of
     }
 }
 
-// Shapes wider and narrower than an edge of the sheet: none may come through, by a corner, a rim or as a whole, without being
-// told; and hardly any may be told.
+// Shapes wider and narrower than an edge of the sheet: none may come through, by a corner, a rim or as a
+// whole, without being told; and hardly any may be told.
 TEST_CASE("a body of any shape that falls on a hung sheet is held by it", "[surfaces]") {
   const Shape shapes[] = {
       Box{.centre = {0.013, 0.1, 0.007}, .size = Vec3::Constant(0.04)},
@@ -199,8 +200,8 @@ TEST_CASE("a body of any shape that falls on a hung sheet is held by it", "[surf
   CHECK(passed <= 1);  // of 45
 }
 
-// The polyhedron of a round shape lies below its surface: what starts between both, or in both, comes out as from a body that
-// stands, which has no polyhedron.
+// The polyhedron of a round shape lies below its surface: what starts between both, or in both, comes out as
+// from a body that stands, which has no polyhedron.
 TEST_CASE("cloth that starts inside a round shape comes out, whether the shape moves or not", "[surfaces]") {
   constexpr double radius = 0.25;
   const Motion later =
@@ -373,7 +374,8 @@ TEST_CASE("where a body is pressed into itself, cloth stays between, keeps still
           "[surfaces]") {
   for (int n : {12, 17, 23}) {
     INFO(n << " vertices along an edge");
-    // Two blocks, one mesh, with a sheet hung between them. They close until they overlap by 2 cm, and open again.
+    // Two blocks, one mesh, with a sheet hung between them. They close until they overlap by 2 cm, and open
+    // again.
     const TriangleMesh body = together({box({0.2, 0.2, 0.06}), box({0.19, 0.19, 0.06})});
     const int first = body.vertex_count() / 2;
     const auto frames = std::make_shared<MeshFrames>();

@@ -116,7 +116,8 @@ TEST_CASE("two sheets that pass through each other come apart, and stay so", "[s
       }
 }
 
-// A small sheet lies above a large one, but for the larger part of it: by weight the smaller part would follow.
+// A small sheet lies above a large one, but for the larger part of it: by weight the smaller part would
+// follow.
 TEST_CASE("of two layers that cross the higher one comes out above, whichever part is lighter",
           "[self-contact]") {
   for (int n : {10, 16, 23})
@@ -177,7 +178,8 @@ TEST_CASE("tangles come apart with any integrator, and with the same bits on any
   CHECK(ends[0] == ends[2]);
 }
 
-// Its two neighbours hold it: a spring that becomes stiffer, because it is pressed in, is pressed in as before.
+// Its two neighbours hold it: a spring that becomes stiffer, because it is pressed in, is pressed in as
+// before.
 TEST_CASE("a layer between two that do not give way does not make contacts ever stiffer", "[self-contact]") {
   std::vector<TriangleMesh> meshes;
   for (double height : {0.0, 0.0006, 0.0012})

@@ -1,4 +1,5 @@
-// Laws of meshes that are cut along edges: no triangle changes, vertices part where fans do, what is written has the new borders.
+// Laws of meshes that are cut along edges: no triangle changes, vertices part where fans do, what is written
+// has the new borders.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
@@ -52,7 +53,8 @@ std::vector<CutEdge> path(const std::vector<int>& vertices) {
 
 bool names_twice(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
-// The parts of the triangles round a vertex by walks over edges that are not cut: an independent way to what should part.
+// The parts of the triangles round a vertex by walks over edges that are not cut: an independent way to what
+// should part.
 std::vector<std::set<int>> parts_round(const TriangleMesh& mesh, int vertex, const std::set<CutEdge>& cut) {
   std::set<int> left;
   const auto has = [&](int t, int v) {
@@ -233,7 +235,8 @@ TEST_CASE("a cut that is no edge is refused", "[tear]") {
 
 namespace {
 
-// The place and the texture coordinate of every corner of every face, with the group and material lines before it.
+// The place and the texture coordinate of every corner of every face, with the group and material lines
+// before it.
 std::vector<std::string> corners_of(const TriangleMesh& mesh) {
   const ObjDocument& d = *mesh.document;
   std::vector<std::string> list;

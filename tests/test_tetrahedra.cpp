@@ -1,4 +1,5 @@
-// Laws of bodies of tetrahedra: volumes, surfaces, counts, and Gmsh's files in all four kinds, read and refused.
+// Laws of bodies of tetrahedra: volumes, surfaces, counts, and Gmsh's files in all four kinds, read and
+// refused.
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -63,7 +64,8 @@ TEST_CASE("volumes, surface and counts of a body of tetrahedra agree", "[tetrahe
   for (const TetrahedralMesh& mesh : {cubes(1, 1, 1), cubes(3, 2, 4), cubes(6, 5, 3), rabbit()}) {
     std::vector<int> vertices;
     const TriangleMesh surface = surface_of(mesh, vertices);
-    // The surface is closed, has its normals outwards (a volume of the other sign would be subtracted) and bounds the same.
+    // The surface is closed, has its normals outwards (a volume of the other sign would be subtracted) and
+    // bounds the same.
     for (const Edge& e : edges(surface)) CHECK((e.triangles == 2 && e.forward == 1));
     double by_surface = 0;
     for (const Triangle& t : surface.triangles)
@@ -136,8 +138,8 @@ TEST_CASE("the rabbit is whole and well shaped", "[tetrahedra]") {
 
 namespace {
 
-// A .msh file of the mesh as Gmsh would write it: node numbers with gaps and out of order, a node that nothing has, points,
-// lines and triangles besides, sections that are not read.
+// A .msh file of the mesh as Gmsh would write it: node numbers with gaps and out of order, a node that
+// nothing has, points, lines and triangles besides, sections that are not read.
 class Writer {
  public:
   Writer(bool version_4, bool binary) : v4_(version_4), binary_(binary) {}

@@ -1,5 +1,5 @@
-// Laws of mesh/triangles/topology.h: counts against Euler's formula, lists that do not depend on the order of the
-// triangles, walks that end on any mesh.
+// Laws of mesh/triangles/topology.h: counts against Euler's formula, lists that do not depend on the order of
+// the triangles, walks that end on any mesh.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>

@@ -4,6 +4,7 @@
 
 #include "mesh/obj/examine.h"
 #include "mesh/obj/obj.h"
+#include "mesh/triangles/generate.h"
 #include "tests/garment.h"
 
 using namespace drape;
@@ -97,4 +98,40 @@ TEST_CASE("weld that finds nothing to join says so", "[scene]") {
   CHECK(std::any_of(told.begin(), told.end(), [](const std::string& m) {
     return m.find("weld = true joins nothing") != std::string::npos;
   }));
+}
+
+TEST_CASE("a body whose frames jump, turn too far or turn it inside out is warned of, and no other",
+          "[scene]") {
+  const Folder folder;
+  folder.write("c.obj", "v 0 3 0\nv 0.1 3 0\nv 0 3 0.1\nf 1 2 3\n");
+  const TriangleMesh ball = sphere(1, 0.2);
+  const auto frame = [&](const std::string& name, const Mat3& turn, const Vec3& way) {
+    TriangleMesh moved = ball;
+    for (Vec3& x : moved.positions) x = turn * x + way;
+    write_obj(folder.path / name, moved, moved.positions);
+  };
+  frame("0.obj", Mat3::Identity(), Vec3::Zero());
+  const auto warnings = [&](const Mat3& turn, const Vec3& way) {
+    frame("1.obj", turn, way);
+    const Simulation made = make_simulation(read_scene(
+        parse_toml("[[cloth]]\nmesh = \"c.obj\"\narea_density = \"0.2 kg/m^2\"\n[[obstacle]]\nname = \"b\"\n"
+                   "shape = \"mesh\"\nmesh = \"0.obj\"\nframes = [\"0.obj\", \"1.obj\"]\n",
+                   "s.toml"),
+        {}, folder.path, "s.toml"));
+    std::string all;
+    for (const std::string& message : made.messages)
+      if (message.starts_with("warning: body b")) all += message + "\n";
+    return all;
+  };
+  const auto turned_by = [](double angle) {
+    return Mat3(Eigen::AngleAxisd(angle, Vec3(1, 2, 0).normalized()));
+  };
+  const Mat3 mirrored = Vec3(-1, 1, 1).asDiagonal();
+  using Catch::Contains;
+  CHECK_THAT(warnings(turned_by(0), {0.6, 0, 0}), Contains("jumps by 0.6 m, 0.87 times its size"));
+  CHECK_THAT(warnings(turned_by(0), {0.6, 0, 0}), Contains("between its frames 1 and 2 (0 and 0.04 s)"));
+  CHECK_THAT(warnings(turned_by(2.5), {0, 0, 0}), Contains("of its volume half-way"));
+  CHECK_THAT(warnings(mirrored, {0, 0, 0}), Contains("is turned inside out"));
+  CHECK(warnings(turned_by(1.3), {0.3, 0, 0}).empty());
+  CHECK(warnings(0.5 * turned_by(0.5), {0, 0, 0}).empty());
 }

@@ -16,7 +16,8 @@ using Catch::Contains;
 
 namespace {
 
-// Two squares of 1 m side by side, which share the corners 2 and 3, and an ear whose corners are all in both groups.
+// Two squares of 1 m side by side, which share the corners 2 and 3, and an ear whose corners are all in both
+// groups.
 const std::string two_squares =
     "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\nv 1 2 0\n"
     "vt 0 0\nvt 0 1\nvt 1 0\nvt 1 1\nvt 2 0\nvt 2 1\nvt 1 2\n"

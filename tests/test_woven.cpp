@@ -164,8 +164,8 @@ TEST_CASE("constant curvature of a plate is in equilibrium on every mesh and in 
 TEST_CASE(
     "a plate bends with the energy of its curvature in every direction, and nothing but a plane is free",
     "[woven]") {
-  // The error falls with the square of the mesh size. The stiffness is written out: a strip on the bias that does not
-  // curve across has the rigidity (warp + weft + 2 cross) / 4 + twist.
+  // The error falls with the square of the mesh size. The stiffness is written out: a strip on the bias that
+  // does not curve across has the rigidity (warp + weft + 2 cross) / 4 + twist.
   const Fabric fabric = directed();
   const Weave& weave = fabric.weave;
   const double cross = weave.bend_poisson * std::sqrt(B * *weave.bend_weft);

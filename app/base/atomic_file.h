@@ -8,8 +8,8 @@
 
 namespace drape::app {
 
-// The functions that write or read throw InputError "out/sheet.pc2: cannot write: No space left on device; ...". The
-// destructor removes a file that keep() was not called for.
+// The functions that write or read throw InputError "out/sheet.pc2: cannot write: No space left on device;
+// ...". The destructor removes a file that keep() was not called for.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path);

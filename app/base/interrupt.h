@@ -1,5 +1,5 @@
-// Ctrl-C, SIGTERM and the end of the terminal (SIGHUP, where nohup does not have it ignored) ask a run to end after the
-// step that it is computing; the third such signal ends the program at once.
+// Ctrl-C, SIGTERM and the end of the terminal (SIGHUP, where nohup does not have it ignored) ask a run to end
+// after the step that it is computing; the third such signal ends the program at once.
 #pragma once
 
 #include <exception>
@@ -18,13 +18,13 @@ struct Interrupted : std::exception {
 };
 void end_if_interrupted();  // throws Interrupted after the first such signal
 
-// Gives the standard streams that are closed the null device. Else a file that the run opens could get the number of one of
-// them, and what is printed would land in the file.
+// Gives the standard streams that are closed the null device. Else a file that the run opens could get the
+// number of one of them, and what is printed would land in the file.
 void open_closed_streams();
 // Ignores SIGPIPE and SIGXFSZ, so that a write that fails reports its error instead of ending the program.
 void ignore_broken_outputs();
-// Throws InputError when what was printed did not arrive, as where the disk is full. Who stops reading, like `head`, has
-// what they want.
+// Throws InputError when what was printed did not arrive, as where the disk is full. Who stops reading, like
+// `head`, has what they want.
 void check_printed();
 
 }  // namespace drape::app

@@ -1,8 +1,8 @@
 // Arrays in NumPy's file format, which numpy.load reads, also with mmap_mode.       [NEP 1, version 1.0]
 //   "\x93NUMPY", 1, 0, uint16 length, {'descr': '<f4', 'fortran_order': False, 'shape': (frames, n, 3), }
 //   blanks and a line end up to 128 bytes, then the numbers in C order, little endian.
-// The numbers are float32 ('<f4'), int32 ('<i4') or bytes ('|u1'). The first axis counts frames (of triangles it counts
-// triangles); they are written and read one at a time.
+// The numbers are float32 ('<f4'), int32 ('<i4') or bytes ('|u1'). The first axis counts frames (of triangles
+// it counts triangles); they are written and read one at a time.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ class NpyWriter {
   void add(const std::vector<float>& frame);
   void add(const std::vector<std::int32_t>& frame);
   void add(const std::vector<std::uint8_t>& frame);
-  // Writes the number of frames into the header. All frames become as long along their first axis as the last: what
-  // was not there yet has the numbers of its original (app/base/padded_frames.h).
+  // Writes the number of frames into the header. All frames become as long along their first axis as the
+  // last: what was not there yet has the numbers of its original (app/base/padded_frames.h).
   void close(const std::vector<int>& copy_of = {});
   void keep() { file_.keep(); }
 
@@ -48,7 +48,8 @@ class NpyReader {
 
   int frames() const { return frames_; }
   const std::vector<int>& frame_shape() const { return frame_shape_; }
-  // The numbers of frame k, from 0; bytes and whole numbers come as numbers too (whole ones are exact up to 2^24).
+  // The numbers of frame k, from 0; bytes and whole numbers come as numbers too (whole ones are exact up to
+  // 2^24).
   std::vector<float> frame(int k);
 
  private:

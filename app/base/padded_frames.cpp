@@ -5,8 +5,8 @@
 
 namespace drape::app {
 
-// From the last frame to the first: no frame begins farther on than its padded place, so that nothing is overwritten
-// before it was read.
+// From the last frame to the first: no frame begins farther on than its padded place, so that nothing is
+// overwritten before it was read.
 void pad_frames(AtomicFile& file, std::size_t start, std::size_t size, const std::vector<int>& vertices,
                 int n, const std::vector<int>& copy_of) {
   const std::size_t all = static_cast<std::size_t>(n) + copy_of.size();

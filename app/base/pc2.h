@@ -19,10 +19,11 @@ class Pc2Writer {
  public:
   Pc2Writer(std::filesystem::path path, int points);
 
-  // Adds a sample: the positions of all points [m]. There may be more from sample to sample, copies of points.
+  // Adds a sample: the positions of all points [m]. There may be more from sample to sample, copies of
+  // points.
   void add(const std::vector<Vec3>& positions);
-  // Writes the number of samples into the header. All samples get all points: copy k, which is a copy of point
-  // copy_of[k], is where its original is as long as it is not there.
+  // Writes the number of samples into the header. All samples get all points: copy k, which is a copy of
+  // point copy_of[k], is where its original is as long as it is not there.
   void close(const std::vector<int>& copy_of = {});
   void keep() { file_.keep(); }
   // Hands over the closed file, to be kept together with others.

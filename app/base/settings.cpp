@@ -92,7 +92,8 @@ void apply(const std::string& path, Node value, Node& root) {
       throw InputError(where + ": '" + parts[i - 1] + "' has no parts");
     }
   }
-  // An option of its own and a setting, or two names of one entry. What a body is by --onto and the like may be refined.
+  // An option of its own and a setting, or two names of one entry. What a body is by --onto and the like may
+  // be refined.
   const std::string& given = node->where;
   if (given.starts_with("--") && !where.starts_with(given) && parts.front() != "obstacle")
     throw InputError(where + ": " + given + " gives the same value; give one of them");

@@ -8,8 +8,9 @@
 
 namespace drape::app {
 
-// Prints the description of a scene, a pattern or a mesh file, or of the folder of a run, and writes the sheets that cross
-// into the new folder `mark` unless that is empty (crossings.h). Returns 0; throws InputError.
+// Prints the description of a scene, a pattern or a mesh file, or of the folder of a run, and writes the
+// sheets that cross into the new folder `mark` unless that is empty (crossings.h). Returns 0; throws
+// InputError.
 int check_file(const std::filesystem::path& file, const std::filesystem::path& mark);
 
 // Prints counts, size and defects of a mesh; `name` stands in front.

@@ -54,8 +54,8 @@ class FabricFile {
     return "\"" + rounded(value, digits) + " " + unit + "\"";
   }
 
-  // The list that the number at `from` ("kes.B", "" when nothing gave it) and what follows from it stand in. A number
-  // that the file says nothing of counts as measured.
+  // The list that the number at `from` ("kes.B", "" when nothing gave it) and what follows from it stand in.
+  // A number that the file says nothing of counts as measured.
   Names& list_of(const std::string& from, bool by_formula) {
     const auto in = [&](const Names& names) {
       return std::any_of(names.begin(), names.end(), [&](const std::string& name) {

@@ -5,7 +5,8 @@
 
 namespace drape::app {
 
-// `root` is the file that `named` was read from, `from` its name. `fitting` is null when formulas gave everything.
+// `root` is the file that `named` was read from, `from` its name. `fitting` is null when formulas gave
+// everything.
 std::string fabric_file(const Node& root, const NamedFabric& named, const Fitting* fitting,
                         const std::string& from);
 

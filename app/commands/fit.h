@@ -1,6 +1,6 @@
-// `drape fit`: what a laboratory measured, as the parameters of a fabric in a file of their own. By direct formulas
-// (app/scene/laboratory.h), and where there is none by virtual tests (app/textile/fitting.h). The file says of each
-// number what it is from.
+// `drape fit`: what a laboratory measured, as the parameters of a fabric in a file of their own. By direct
+// formulas (app/scene/laboratory.h), and where there is none by virtual tests (app/textile/fitting.h). The
+// file says of each number what it is from.
 #pragma once
 
 #include <string>
@@ -15,7 +15,8 @@ struct FitWords {
   bool quiet = false;  // nothing but errors, and the file where it is printed
 };
 
-// Returns the exit code: 0 done; 1 no parameters fit, with nothing written; 130 interrupted. Throws InputError.
+// Returns the exit code: 0 done; 1 no parameters fit, with nothing written; 130 interrupted. Throws
+// InputError.
 int fit(const FitWords& words);
 
 }  // namespace drape::app

@@ -18,8 +18,9 @@ namespace {
 constexpr double rests_for = 0.3;     // s, after the last crossing: layers come apart up to their thickness
 constexpr double gives_up_after = 2;  // s, without fewer crossings
 
-// The mesh in weightless air: nothing moves it but its stiffness, and what brings it apart. It resists compression
-// with all of its stiffness: cloth that may wrinkle finer than its mesh stays folded where it was crossed.
+// The mesh in weightless air: nothing moves it but its stiffness, and what brings it apart. It resists
+// compression with all of its stiffness: cloth that may wrinkle finer than its mesh stays folded where it was
+// crossed.
 Scene weightless(const UntangleWords& words) {
   const std::string label = "drape untangle " + words.mesh;
   const auto text = [&](const std::string& value) { return Node::of_text(value, label); };
@@ -113,8 +114,8 @@ std::string reason(bool failed, const Search& search, const Cloth& cloth, const 
   return why;
 }
 
-// Returns how many pairs cross in what was written; a polygon may be cut otherwise there. What crosses nowhere, and has
-// no layers, is written as it was read.
+// Returns how many pairs cross in what was written; a polygon may be cut otherwise there. What crosses
+// nowhere, and has no layers, is written as it was read.
 int write(const UntangleWords& words, const Scene& scene, const Cloth& cloth, const Search& search) {
   const TriangleMesh mesh = read_obj(words.mesh);
   std::vector<Vec3> places = mesh.positions;

@@ -15,8 +15,8 @@ struct UntangleWords {
   bool quiet = false;
 };
 
-// Returns the exit code: 0 when nothing crosses any more, 1 when something still does or a step failed, 130 when it was
-// interrupted; the mesh is written in all of these cases. Throws InputError.
+// Returns the exit code: 0 when nothing crosses any more, 1 when something still does or a step failed, 130
+// when it was interrupted; the mesh is written in all of these cases. Throws InputError.
 int untangle_file(const UntangleWords& words);
 
 }  // namespace drape::app

@@ -32,7 +32,8 @@ bool count(const StepReport& report, IntegratorRow& row) {
   return true;
 }
 
-// m, of all vertices of the start: particles may become one or part on the way, in one run sooner than in another.
+// m, of all vertices of the start: particles may become one or part on the way, in one run sooner than in
+// another.
 VecX vertices_of(const Simulation& simulation) {
   std::vector<Vec3> all;
   for (const Cloth& cloth : simulation.cloths) {

@@ -88,7 +88,8 @@ ReportTable table_of_runs(const Comparison& comparison, int vertices) {
   return table;
 }
 
-// What the cheapest run of each integrator costs whose largest strain is off the reference's by no more than this much.
+// What the cheapest run of each integrator costs whose largest strain is off the reference's by no more than
+// this much.
 ReportTable table_of_work(const Comparison& comparison, const std::vector<int>& sizes) {
   constexpr std::array<double, 6> errors = {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003};
   ReportTable table;

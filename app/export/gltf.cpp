@@ -53,7 +53,8 @@ class GltfWriter {
   }
 
  private:
-  // Places of the mesh's vertices; those of a body that is moved by its node about its centre. Ropes are tubes.
+  // Places of the mesh's vertices; those of a body that is moved by its node about its centre. Ropes are
+  // tubes.
   std::vector<Vec3> positions(const Shape& shape, std::size_t k) const {
     std::vector<Vec3> x =
         DrawnShape(source_.shape(shape.number)).positions(source_.positions(shape.number, k));

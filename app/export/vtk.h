@@ -2,7 +2,8 @@
 // time.
 //   Numbers are float32 and int32, little endian, raw after the XML ("appended"). No XML library can write
 //   that, since it is not XML; names are escaped here.
-//   Point data of cloths: velocity [m/s], strain (0.01 = 1 %), contact (0 free, 1 slides, 2 sticks, 3 on cloth, 4 stopped).
+//   Point data of cloths: velocity [m/s], strain (0.01 = 1 %), contact (0 free, 1 slides, 2 sticks, 3 on
+//   cloth, 4 stopped).
 #pragma once
 
 #include "app/export/faces.h"

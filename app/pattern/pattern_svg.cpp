@@ -257,8 +257,8 @@ class SvgReader {
     }
   }
 
-  // An id, a class or a label that begins with "grain", as in "Grainline" and "grain-front"; also behind the name of a
-  // panel: "front.grain".
+  // An id, a class or a label that begins with "grain", as in "Grainline" and "grain-front"; also behind the
+  // name of a panel: "front.grain".
   static bool is_grain(const pugi::xml_node& node) {
     Names names = words(node.attribute("class").value());
     for (const char* key : {"id", "label", "inkscape:label"}) names.emplace_back(node.attribute(key).value());

@@ -122,8 +122,8 @@ Frames frames_of(const std::string& word) {
   throw py::value_error("frames: there is no '" + word + "'; " + suggestion(word, {"pc2", "obj", "none"}));
 }
 
-// A run that is under way. Where it writes files, nobody else steps the simulation until it is finished; a run without
-// files may be left in its middle, and ends where another one begins.
+// A run that is under way. Where it writes files, nobody else steps the simulation until it is finished; a
+// run without files may be left in its middle, and ends where another one begins.
 class PartialRun {
  public:
   PartialRun(Shared whole, const std::optional<fs::path>& out, const std::string& frames,
@@ -170,7 +170,8 @@ class PartialRun {
   }
 
  private:
-  // By a step. Where seams may close or cloth may tear, arrays may get other memory: so also what stands for that.
+  // By a step. Where seams may close or cloth may tear, arrays may get other memory: so also what stands for
+  // that.
   std::vector<const void*> used() const {
     const Simulation& simulation = whole_->simulation;
     std::vector<const void*> all = {&simulation.state, this};

@@ -182,7 +182,8 @@ void add_reports(py::module_& m) {
           "note", [](const SolveReport& r) { return remark(r); }, "what the user should know")
       .def_property_readonly(
           "history", [](const SolveReport& r) { return copied(r.history); },
-          "the relative residual of every iteration, from 0; empty for a direct solver")
+          "the relative residual of every iteration, from 0; empty for a direct solver and for those of "
+          "other libraries")
       .def_property_readonly(
           "solution", [](const SolveReport& r) { return copied_rows(r.solution); },
           "(n, 3) [m/s], particle order")

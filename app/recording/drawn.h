@@ -1,5 +1,5 @@
-// A shape as it is drawn: a rope is a line of particles, and is drawn as a tube of its radius; all others are drawn as
-// they are.
+// A shape as it is drawn: a rope is a line of particles, and is drawn as a tube of its radius; all others are
+// drawn as they are.
 #pragma once
 
 #include <vector>

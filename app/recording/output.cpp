@@ -75,8 +75,8 @@ bool is_frame_in(const fs::path& frames, const Names& names, const fs::path& inp
 // Whether this process is gone, on this machine.
 bool is_gone(int process) { return process > 0 && kill(process, 0) != 0 && errno == ESRCH; }
 
-// Removes halves of files, .NAME.PID.part, of programs that were killed. Those of the last hour may be of a program on
-// another machine that writes into the same folder.
+// Removes halves of files, .NAME.PID.part, of programs that were killed. Those of the last hour may be of a
+// program on another machine that writes into the same folder.
 void remove_dead_parts(const fs::path& folder) {
   constexpr std::string_view ending = ".part";
   std::error_code ignored;
@@ -98,7 +98,8 @@ void remove_dead_parts(const fs::path& folder) {
   for (const fs::path& path : dead) fs::remove(path, ignored);
 }
 
-// In a folder whose frames appear one by one, until there is a run.json: so the next run knows them, should this one fail.
+// In a folder whose frames appear one by one, until there is a run.json: so the next run knows them, should
+// this one fail.
 constexpr const char* unfinished = ".unfinished-run";
 
 // Whether a run wrote here. Only then are files taken away that this run does not write.
@@ -220,8 +221,9 @@ void Output::finish(const State& state, RunRecord& record) {
   list_written();
 }
 
-// What an earlier run wrote of its frames and this one does not: it would show another motion beside the new mesh, or
-// belong to another mesh of that name. At the start of a run whose frames appear one by one that is all of it.
+// What an earlier run wrote of its frames and this one does not: it would show another motion beside the new
+// mesh, or belong to another mesh of that name. At the start of a run whose frames appear one by one that is
+// all of it.
 void Output::remove_earlier(bool all) const {
   if (!was_run_before_) return;
   std::vector<fs::path> earlier = bodies_.not_written();

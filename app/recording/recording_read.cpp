@@ -298,7 +298,8 @@ void Recording::find_frames(std::size_t k) {
   find_triangles(k);
 }
 
-// How the run cut polygons. Without the file, as of runs without frames, they are cut as their last shape suggests.
+// How the run cut polygons. Without the file, as of runs without frames, they are cut as their last shape
+// suggests.
 void Recording::find_triangles(std::size_t k) {
   const fs::path path = field_path(folder_, shapes_[k].name, "triangles");
   TriangleMesh& mesh = shapes_[k].mesh;

@@ -17,7 +17,8 @@ Json vector_json(const Vec3& v) { return Json::List{v[0], v[1], v[2]}; }
 
 const char* damping_name(DampingKind kind) { return kind == DampingKind::axial ? "axial" : "relative"; }
 
-// How many vertices of the mesh a rule takes. A box takes particles of a soft body, which its mesh does not have.
+// How many vertices of the mesh a rule takes. A box takes particles of a soft body, which its mesh does not
+// have.
 Json count_of(const PinRule& rule, const Cloth& cloth) {
   if (cloth.soft && std::holds_alternative<PinBox>(rule)) return {};
   return static_cast<long>(select(rule, cloth.mesh).size());

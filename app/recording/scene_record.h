@@ -10,7 +10,8 @@
 
 namespace drape::app {
 
-// cloth: the same, made ready to run; null when it is not, and then a warp that is chosen by its mesh is not known.
+// cloth: the same, made ready to run; null when it is not, and then a warp that is chosen by its mesh is not
+// known.
 Json fabric_json(const ClothEntry& entry, const Cloth* cloth);
 Json material_json(const SoftMaterial& material);
 Json rope_material_json(const RopeMaterial& material);
@@ -21,8 +22,8 @@ Json settings_json(const std::vector<Setting>& settings);
 Json::Members contact_json(const Obstacle& obstacle);           // friction, margin, restitution
 Json::Members numerics_json(const SimulationOptions& options);  // what the steps are made with
 
-// The cloths, soft bodies, ropes and bodies of a scene with all of these, as run.json has them. Pins and seams are
-// included where `simulation` is that of the scene; it is null when there is none.
+// The cloths, soft bodies, ropes and bodies of a scene with all of these, as run.json has them. Pins and
+// seams are included where `simulation` is that of the scene; it is null when there is none.
 Json::Members scene_json(const Scene& scene, const Simulation* simulation);
 
 struct SceneFact {

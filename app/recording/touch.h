@@ -1,4 +1,5 @@
-// What a vertex touches at the end of a step, as it is recorded. Of several, `stopped` counts most, then a body.
+// What a vertex touches at the end of a step, as it is recorded. Of several, `stopped` counts most, then a
+// body.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// Shows on stderr how far a run is: as a bar with the time left when stderr is a terminal, and else as a line after every
-// tenth of the run and after every minute. A step that takes long is told while it goes on.
+// Shows on stderr how far a run is: as a bar with the time left when stderr is a terminal, and else as a line
+// after every tenth of the run and after every minute. A step that takes long is told while it goes on.
 #pragma once
 
 #include <chrono>
@@ -18,8 +18,8 @@ class Progress {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // duration of the run [s]. patience: a step that has taken that long is told, and again when it has taken twice as long,
-  // or on a terminal a second later.
+  // duration of the run [s]. patience: a step that has taken that long is told, and again when it has taken
+  // twice as long, or on a terminal a second later.
   Progress(double duration, bool quiet, Clock::duration patience = std::chrono::seconds(10),
            std::FILE* to = stderr);
   ~Progress() { end(); }

@@ -73,7 +73,8 @@ class Run {
   Clock::time_point start_ = Clock::now();
   std::vector<double> strain_of_triangles_;  // scratch
   VecX x_before_;                            // at the start of the step [m]
-  // The longest way of a particle in the last step, over the length of the step [m/s]: moves without velocity count.
+  // The longest way of a particle in the last step, over the length of the step [m/s]: moves without velocity
+  // count.
   double fastest_way_ = 0;
   bool framed_ = false;  // there is a frame of the present state
   bool settled_ = false;

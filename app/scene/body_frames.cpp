@@ -1,13 +1,13 @@
 #include "app/scene/body_frames.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <optional>
 #include <system_error>
 #include <utility>
 
 #include "app/base/pc2.h"
+#include "app/base/text_file.h"
 #include "app/scene/load_mesh.h"
 #include "mesh/obj/obj.h"
 
@@ -20,11 +20,7 @@ constexpr const char* expected_frames =
     "expected a pattern with one %d or %04d such as \"walk/body_%04d.obj\", a list of OBJ files, or a .pc2 "
     "file";
 
-bool has_extension(const fs::path& path, std::string_view wanted) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == wanted;
-}
+bool has_extension(const fs::path& path, std::string_view wanted) { return lower_extension(path) == wanted; }
 
 // "body_%04d.obj" taken apart: what stands before the number and after it, and its least number of digits.
 struct Pattern {
@@ -98,8 +94,9 @@ double mean_edge(const TriangleMesh& mesh) {  // m
   return sum / (3 * std::max(mesh.triangle_count(), 1));
 }
 
-// Bodies breathe, and do not tear: where edges are several times as long as in the frame before, the file is most often
-// another one than was meant. edge: the mean length of an edge [m] in the frame before, and then in this one.
+// Bodies breathe, and do not tear: where edges are several times as long as in the frame before, the file is
+// most often another one than was meant. edge: the mean length of an edge [m] in the frame before, and then
+// in this one.
 void want_same_edges(const TriangleMesh& frame, const fs::path& file, const ObstacleEntry& entry,
                      double& edge) {
   constexpr double most = 3;

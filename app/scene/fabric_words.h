@@ -7,8 +7,8 @@
 
 namespace drape::app {
 
-// "135.2 g/m^2, stretch 500 N/m, shear 41 N/m, bend 1.95 / 0.61 uN.m"; of two numbers the first is along the warp, the
-// second along the weft.
+// "135.2 g/m^2, stretch 500 N/m, shear 41 N/m, bend 1.95 / 0.61 uN.m"; of two numbers the first is along the
+// warp, the second along the weft.
 std::string in_words(const Fabric& fabric);
 
 // The same for a model of springs, which takes the means of warp and weft.

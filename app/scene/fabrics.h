@@ -3,8 +3,8 @@
 // fitted and assumed.
 //
 // Data folders: $DRAPE_DATA when it is set, whose fabrics go before those of the same name in the built-in
-// folder. That is the first of these: the folder given to set_data_folder(), ../share/drape beside the program
-// if it has fabrics, the data folder of the source tree that the program was built from.
+// folder. That is the first of these: the folder given to set_data_folder(), ../share/drape beside the
+// program if it has fabrics, the data folder of the source tree that the program was built from.
 #pragma once
 
 #include <filesystem>
@@ -16,9 +16,9 @@
 
 namespace drape::app {
 
-// The share of compression (Weave::compression) that a fabric has where its file does not say it. Threads in a weave
-// buckle when they are pushed together. With this share drape coefficients depend least on the mesh, and garments
-// on a floor keep 97 % or more of their area.
+// The share of compression (Weave::compression) that a fabric has where its file does not say it. Threads in
+// a weave buckle when they are pushed together. With this share drape coefficients depend least on the mesh,
+// and garments on a floor keep 97 % or more of their area.
 constexpr double usual_compression = 0.1;
 
 struct NamedFabric {
@@ -39,8 +39,8 @@ void set_data_folder(const std::filesystem::path& folder);
 Names fabric_names();                          // of the data folders, sorted
 bool is_fabric_file(const std::string& name);  // "my.toml" is a file, "cotton-broad" a name
 
-// `name` is one of fabric_names(), or a file, which is looked for from `folder`. Throws InputError, which names
-// file and line.
+// `name` is one of fabric_names(), or a file, which is looked for from `folder`. Throws InputError, which
+// names file and line.
 NamedFabric load_fabric(const std::string& name, const std::filesystem::path& folder = {});
 
 // The same, with the file as data. notes: receives what is said of the keys; may be null.

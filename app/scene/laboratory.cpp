@@ -137,8 +137,8 @@ void check_rises(const Table& fast, const Fast& e) {
   rises("E100", e.E5, e.E100, "E5, the extension at a twentieth of the load");
 }
 
-// FAST's formability takes the slope between the loads of 5 and 20 gf/cm. Where it is not known, the secant of the
-// smallest load: what a cloth that hangs comes nearest to.
+// FAST's formability takes the slope between the loads of 5 and 20 gf/cm. Where it is not known, the secant
+// of the smallest load: what a cloth that hangs comes nearest to.
 void set_stretch_of_fast(const Fast& e, Fabric& fabric) {
   if (!e.E5 || !e.E20) {
     if (e.E5)

@@ -1,6 +1,6 @@
-// What tests of a fabric gave that no formula turns into parameters: keys of a fabric file. They change nothing in a
-// run. `drape test-fabric` shows the drape test beside its own; `drape fit` looks for the parameters with which its
-// virtual tests give the same.
+// What tests of a fabric gave that no formula turns into parameters: keys of a fabric file. They change
+// nothing in a run. `drape test-fabric` shows the drape test beside its own; `drape fit` looks for the
+// parameters with which its virtual tests give the same.
 #pragma once
 
 #include <optional>

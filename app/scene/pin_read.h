@@ -17,7 +17,8 @@ PinEntry read_pin(Table& pin, const std::filesystem::path& folder, PinsOf of = P
 // `end`, required: whether it is the last end of a rope, and not its first.
 bool read_is_last(Table& table, const About& about);
 
-// Throws InputError unless the scene has exactly one obstacle of this name, which stands at `where` under this key.
+// Throws InputError unless the scene has exactly one obstacle of this name, which stands at `where` under
+// this key.
 void check_obstacle(const std::string& where, const std::string& key, const std::string& name,
                     const std::vector<ObstacleEntry>& obstacles);
 void check_follow(const PinEntry& pin, const std::vector<ObstacleEntry>& obstacles);

@@ -129,7 +129,8 @@ void read_clusters(Table& table, ClothEntry& cloth) {
   std::string what;
   table.read(
       "clusters", what, Names{"faces"},
-      {"what holds the cloth together in its plane instead of springs or a membrane, for `pbd`: each face "
+      {"what holds the cloth together in its plane instead of springs or a membrane, for `pbd` and explicit "
+       "integrators: each face "
        "is drawn to its own shape, as stiff as `stretch` says, and resists compression too; it bends as "
        "the model has it",
        "by the model"});
@@ -272,7 +273,7 @@ void check_names(const Scene& scene) {
 
 }  // namespace
 
-bool is_tetrahedra(const fs::path& path) { return path.extension() == ".msh"; }
+bool is_tetrahedra(const fs::path& path) { return lower_extension(path) == ".msh"; }
 bool is_pattern(const fs::path& path) {
   const std::string extension = lower_extension(path);
   return extension == ".svg" || extension == ".toml";

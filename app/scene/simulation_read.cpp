@@ -75,7 +75,7 @@ void read_contact(Table& table, SimulationOptions& options) {
   std::string word;
   table.read("contact", word, names_of(contact_modes()),
              {"constraint: held in the solve; velocity: velocities projected onto the surface, what explicit "
-              "integrators do when nothing is said; restitution: impacts spring back, for these only",
+              "integrators do when nothing is said; restitution: impacts spring back, for these and pbd only",
               "by the integrator"});
   if (!table.has("contact")) return;
   for (const ContactModeInfo& info : contact_modes())

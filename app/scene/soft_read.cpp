@@ -48,11 +48,11 @@ void read_cubes(Table& table, SoftEntry& soft) {
 
 // One cluster for each cell or tetrahedron, or so many.
 void read_clusters(Table& table, SoftEntry& soft) {
-  const Node* const node = table.take(
-      "clusters", "\"tetrahedra\", \"cells\", or a number",
-      {"what holds the body together instead of springs, for `pbd`: one for each tetrahedron or cell, "
-       "or so many that overlap; stiff by `young`",
-       "springs"});
+  const Node* const node = table.take("clusters", "\"tetrahedra\", \"cells\", or a number",
+                                      {"what holds the body together instead of springs, for `pbd` and "
+                                       "explicit integrators: one for each tetrahedron or cell, "
+                                       "or so many that overlap; stiff by `young`",
+                                       "springs"});
   if (!node) return;
   const std::string one = is_tetrahedra(soft.mesh) ? "tetrahedra" : "cells";
   if (node->kind == Node::Kind::text && node->text == one)

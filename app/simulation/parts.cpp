@@ -40,8 +40,8 @@ void warn_of_scale(const ClothEntry& entry, const TriangleMesh& mesh, const Tria
                      rounded(entry.uv_scale * std::sqrt(area / flat), 4) + " m)");
 }
 
-// Where the warp runs that nobody gave: y of a mesh that stands, as the grain of a garment does, and z of one that
-// lies. A trace of the other direction says it for triangles that are square to the first.
+// Where the warp runs that nobody gave: y of a mesh that stands, as the grain of a garment does, and z of one
+// that lies. A trace of the other direction says it for triangles that are square to the first.
 Vec3 down_the_cloth(const TriangleMesh& rest) {
   constexpr double trace = 1e-3;
   double standing = 0;  // m^2, area that stands less area that lies

@@ -1,5 +1,5 @@
-// A rope of a scene: its points or a line of a file, divided and placed; its ends joined to vertices of other parts, or
-// fastened to bodies.
+// A rope of a scene: its points or a line of a file, divided and placed; its ends joined to vertices of other
+// parts, or fastened to bodies.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -20,8 +20,8 @@ std::string in_words(const Vec3& x) {
 }
 std::string end_of(bool last) { return last ? "its last end" : "its first end"; }
 
-// Pieces that meet end to end, in any order, as one line, which goes as the first of them goes: programs write an 'l' for
-// each edge. Nothing where they branch, close a ring or are apart.
+// Pieces that meet end to end, in any order, as one line, which goes as the first of them goes: programs
+// write an 'l' for each edge. Nothing where they branch, close a ring or are apart.
 std::optional<Polyline> end_to_end(const std::vector<const Polyline*>& pieces) {
   std::map<int, std::vector<std::size_t>> at;  // vertex -> the pieces that end there
   for (std::size_t k = 0; k < pieces.size(); ++k)

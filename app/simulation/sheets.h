@@ -1,5 +1,5 @@
-// The cloths and soft bodies of a scene as one list of triangles, and the segments of its ropes after them, to look for
-// those that pass through each other (mesh/distance/triangle_crossings.h).
+// The cloths and soft bodies of a scene as one list of triangles, and the segments of its ropes after them,
+// to look for those that pass through each other (mesh/distance/triangle_crossings.h).
 #pragma once
 
 #include <string>
@@ -25,8 +25,8 @@ class Sheets {
   std::vector<CrossingContour> contours() const;
   int crossings() const { return crossing_count(contours()); }
   const std::string& name_of(int triangle) const;  // of the sheet that has it
-  // For each sheet, in the order in which they were added, its triangles that cross another, ascending; of a rope its
-  // segments.
+  // For each sheet, in the order in which they were added, its triangles that cross another, ascending; of a
+  // rope its segments.
   std::vector<std::vector<int>> crossing_triangles() const;
 
  private:

@@ -19,7 +19,8 @@ struct Body {
   std::string level_set;  // of a level set: its voxels and its error, in words
 };
 
-// A scene that is ready to run. Its parts are the cloths of the scene, followed by the soft bodies and the ropes.
+// A scene that is ready to run. Its parts are the cloths of the scene, followed by the soft bodies and the
+// ropes.
 struct Simulation : Assembly {
   using Assembly::Assembly;
 

@@ -1,5 +1,5 @@
-// A soft body of a scene: a box of particles, or the user's own mesh in cells that it passes through or that lie
-// inside it.
+// A soft body of a scene: a box of particles, or the user's own mesh in cells that it passes through or that
+// lie inside it.
 #include "app/base/free_memory.h"
 #include "app/scene/load_mesh.h"
 #include "app/simulation/parts.h"

@@ -1,5 +1,10 @@
 #include "app/simulation/unlikely.h"
 
+#include <algorithm>
+#include <limits>
+
+#include "mesh/triangles/extent.h"
+
 namespace drape::app {
 namespace {
 
@@ -78,7 +83,67 @@ void tell_of_large_ball(const ObstacleEntry& body, double cloth, Names& messages
                      " times the size of the cloth: was it meant in cm or mm?");
 }
 
+double volume(const TriangleMesh& mesh, const std::vector<Vec3>& x) {  // m^3, negative where it is inside out
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles)
+    sum += (x[t[0]] - x[0]).dot((x[t[1]] - x[0]).cross(x[t[2]] - x[0])) / 6;
+  return sum;
+}
+
+// The least way of a vertex between two frames [m].
+double common_way(const std::vector<Vec3>& before, const std::vector<Vec3>& after) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < before.size(); ++i) least = std::min(least, (after[i] - before[i]).norm());
+  return least;
+}
+
+std::string between(const MeshFrames& frames, int k) {
+  return "between its frames " + std::to_string(k + 1) + " and " + std::to_string(k + 2) + " (" +
+         rounded(frames.time(k), 4) + " and " + rounded(frames.time(k + 1), 4) + " s)";
+}
+
+// Half of the way between two frames, on which vertices go straight, a body that turns by a quarter has half of its volume.
+void warn_of_volume(const std::string& start, const TriangleMesh& mesh, const std::vector<Vec3>& before,
+                    const std::vector<Vec3>& after, const std::string& when, Names& messages) {
+  constexpr double least = 0.5;
+  std::vector<Vec3> middle = before;
+  for (std::size_t i = 0; i < middle.size(); ++i) middle[i] += 0.5 * (after[i] - before[i]);
+  const double first = volume(mesh, before), last = volume(mesh, after), kept = volume(mesh, middle) / first;
+  if (last * first < 0)
+    messages.push_back(start + "is turned inside out " + when +
+                       ": cloth ends inside of it; was it mirrored, or are its vertices in another order?");
+  else if (kept < least * std::min(1.0, last / first))
+    messages.push_back(start + "keeps " + rounded(100 * std::max(kept, 0.0), 2) +
+                       " % of its volume half-way " + when +
+                       ", since its vertices go straight: does it turn too far in one frame?");
+}
+
+void warn_of_frames(const std::string& name, const DeformingBody& body, Names& messages) {
+  const MeshFrames& frames = *body.frames;
+  const std::string start = "warning: body " + name + " ";
+  std::vector<Vec3> before, after;
+  frames.positions_at(frames.time(0), before);
+  const std::size_t told = messages.size();
+  for (int k = 0; k + 1 < frames.frame_count() && messages.size() == told; ++k, before.swap(after)) {
+    frames.positions_at(frames.time(k + 1), after);
+    const double size = box_of(before, body.surface->mesh().triangles).diagonal().norm(),
+                 way = common_way(before, after);
+    if (way > 0.5 * size)
+      messages.push_back(start + "jumps by " + rounded(way, 3) + " m, " + rounded(way / size, 2) +
+                         " times its size, " + between(frames, k) +
+                         ": all that is on the way is hit; is there a cut in the film?");
+    if (body.surface->closed())
+      warn_of_volume(start, body.surface->mesh(), before, after, between(frames, k), messages);
+  }
+}
+
 }  // namespace
+
+void warn_of_unlikely_frames(const Scene& scene, const std::vector<MovingBody>& bodies, Names& messages) {
+  for (std::size_t k = 0; k < scene.obstacles.size(); ++k)
+    if (const DeformingBody* const body = deforming(bodies[k].obstacle().shape))
+      warn_of_frames(scene.obstacles[k].name, *body, messages);
+}
 
 void tell_of_unlikely_values(const Scene& scene, double size, Names& messages) {
   for (const ClothEntry& cloth : scene.cloths) {

@@ -28,9 +28,6 @@ void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
   constexpr double negligible = 1e-9;  // m
   const std::vector<double> depth = simulation.constraints->penetration(simulation.state.x);
   const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
-  std::vector<char> carried(depth.size(), 0);  // by a body, in which it may be
-  for (const MovingPin& pin : simulation.constraints->moving_pins())
-    if (pin.body >= 0) carried[static_cast<std::size_t>(pin.particle)] = 1;
   for (const Cloth& cloth : simulation.cloths) {
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       int inside = 0, deepest = -1;
@@ -38,8 +35,7 @@ void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
       double deepest_depth = least;
       for (int i = cloth.first_particle; i < cloth.end_particle; ++i) {
         const auto particle = static_cast<std::size_t>(i);
-        if (!(depth[particle] > least) || simulation.system->masses()[particle] == 0 || carried[particle])
-          continue;
+        if (!(depth[particle] > least) || simulation.system->masses()[particle] == 0) continue;
         const double d =
             simulation.constraints->radius_of(i) - bodies[k].distance(simulation.state.x.segment<3>(3 * i));
         if (!(d > least)) continue;
@@ -67,8 +63,6 @@ void warn_of_vertices_inside(const Scene& scene, Simulation& simulation) {
 void tell_of_vertices_within_margin(const Scene& scene, Simulation& simulation) {
   const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
   std::vector<char> carried(simulation.system->masses().size(), 0);  // held, or moved along a path
-  for (const MovingPin& pin : simulation.constraints->moving_pins())
-    carried[static_cast<std::size_t>(pin.particle)] = 1;
   for (const int i : simulation.constraints->pinned()) carried[static_cast<std::size_t>(i)] = 1;
   for (const Cloth& cloth : simulation.cloths)
     for (const MovingBody& body : bodies) {
@@ -95,7 +89,8 @@ void tell_of_vertices_within_margin(const Scene& scene, Simulation& simulation) 
     }
 }
 
-// Where a body with triangles comes through a cloth between its vertices. Of a cloth with vertices inside that is told already.
+// Where a body with triangles comes through a cloth between its vertices. Of a cloth with vertices inside
+// that is told already.
 void warn_of_crossed_bodies(const Scene& scene, Simulation& simulation) {
   for (const Cloth& cloth : simulation.cloths)
     for (const MovingBody& body : simulation.constraints->bodies()) {
@@ -170,9 +165,9 @@ void tell_of_directions(const ClothEntry& entry, Names& messages) {
                      (rest.empty() ? "" : ", and leaves out " + rest));
 }
 
-// Folds are some three bending lengths wide. An edge as long as one bending length cannot follow them, and one of one
-// and a half not even where the fabric wrinkles finer than the mesh: measured with `drape test-fabric` on meshes of
-// half a bending length to two.
+// Folds are some three bending lengths wide. An edge as long as one bending length cannot follow them, and
+// one of one and a half not even where the fabric wrinkles finer than the mesh: measured with `drape
+// test-fabric` on meshes of half a bending length to two.
 void warn_if_coarse_for_folds(const ClothEntry& entry, const Cloth& cloth, Names& messages) {
   const Fabric& fabric = cloth.fabric;
   const double bend = std::min(fabric.bend, fabric.weave.bend_weft.value_or(fabric.bend)),
@@ -199,7 +194,8 @@ void tell_of_weld(const ClothEntry& entry, const Cloth& cloth, Names& messages) 
       "they are meant to be, merge them by distance in a modeller, or leave weld out");
 }
 
-// How many particles are at exactly the place of another one with which they do not become one in the first step.
+// How many particles are at exactly the place of another one with which they do not become one in the first
+// step.
 int coincident(const Cloth& cloth) {
   std::vector<char> counted(static_cast<std::size_t>(cloth.end_particle - cloth.first_particle), 0);
   const auto mark = [&](int vertex) -> char& {
@@ -253,8 +249,8 @@ double size_of(const VecX& x) {
   return box.isEmpty() ? 0 : box.diagonal().norm();
 }
 
-// The same of cloth that nothing keeps from itself: where floats tell places to a thousandth of its edges only, what is
-// written is not what was computed.
+// The same of cloth that nothing keeps from itself: where floats tell places to a thousandth of its edges
+// only, what is written is not what was computed.
 void tell_of_place(const Cloth& cloth, const VecX& x, Names& messages) {
   const double far = x.segment(3 * cloth.first_particle, 3 * (cloth.end_particle - cloth.first_particle))
                          .cwiseAbs()
@@ -342,8 +338,8 @@ void warn_if_long(const Cloth& cloth, Names& messages) {
                      "along; use a grid of squares, or model = \"noh-jung\"");
 }
 
-// Contact holds vertices: an edge as long as a body is wide lets it through. Cloth with self_contact meets all
-// of a body that is a mesh, or a convex shape that moves.
+// Contact holds vertices: an edge as long as a body is wide lets it through. Cloth with self_contact meets
+// all of a body that is a mesh, or a convex shape that moves.
 void warn_if_coarse(const Scene& scene, Simulation& simulation) {
   const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
   for (std::size_t part = 0; part < simulation.cloths.size(); ++part) {
@@ -431,6 +427,7 @@ void add_warnings(const Scene& scene, Simulation& simulation) {
     tell_of_directions(cloth, simulation.messages);
   }
   tell_of_unlikely_values(scene, size_of(simulation.state.x), simulation.messages);
+  warn_of_unlikely_frames(scene, simulation.constraints->bodies(), simulation.messages);
   for (std::size_t k = 0; k < scene.cloths.size(); ++k) {
     tell_of_weld(scene.cloths[k], simulation.cloths[k], simulation.messages);
     tell_of_open_seams(scene.cloths[k], simulation.cloths[k], simulation.messages);

@@ -15,8 +15,8 @@ struct Shape {
   double gamma, chord_angle, droop;  // the droop as a share of the length
 };
 
-// The strip whose tip stands at phi_tip [rad] from the vertical. Followed from the tip in units of c, it obeys
-// phi'' = t sin phi and ends where it is horizontal, phi = pi/2, at t = L / c = Gamma^(1/3).
+// The strip whose tip stands at phi_tip [rad] from the vertical. Followed from the tip in units of c, it
+// obeys phi'' = t sin phi and ends where it is horizontal, phi = pi/2, at t = L / c = Gamma^(1/3).
 Shape shape(double phi_tip) {
   using Values = std::array<double, 4>;  // phi, phi', and how far down and out the tip is
   const auto slope = [](const Values& y, Values& dy, double t) {
@@ -41,7 +41,8 @@ Shape shape(double phi_tip) {
   return {t * t * t, std::atan2(y[2], y[3]), y[2] / t};
 }
 
-// Gamma of the shape of which `measure` is `value`; the measure grows from the level strip to the one that hangs.
+// Gamma of the shape of which `measure` is `value`; the measure grows from the level strip to the one that
+// hangs.
 double gamma_where(double Shape::*measure, double value) {
   const auto excess = [&](double phi_tip) { return shape(phi_tip).*measure - value; };
   std::uintmax_t most = 100;

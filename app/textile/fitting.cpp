@@ -140,7 +140,8 @@ std::vector<Measurement> chosen_measurements(const NamedFabric& named, const Nam
                                              const SpecimenOptions& specimens) {
   const bool bend = std::any_of(names.begin(), names.end(), is_bend), shear = in(names, "stretch.shear");
   std::vector<Measurement> chosen;
-  // Shear has a part in the drape of a disc, too; but where shear alone is sought, flat specimens say more of it.
+  // Shear has a part in the drape of a disc, too; but where shear alone is sought, flat specimens say more of
+  // it.
   for (Measurement& m : measurements_of(named.tests, specimens))
     if (m.bends ? bend || by_user : shear) chosen.push_back(std::move(m));
   return chosen;

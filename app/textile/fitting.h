@@ -1,6 +1,7 @@
 // Parameters with which virtual tests give what a laboratory measured:
 //   least over ln p of the sum of ((found(p) - measured) / tolerance)^2
-// The parameters are the stiffnesses that the file does not give. The tests are deterministic, and so is the fit.
+// The parameters are the stiffnesses that the file does not give. The tests are deterministic, and so is the
+// fit.
 #pragma once
 
 #include "app/textile/measurements.h"
@@ -36,7 +37,8 @@ struct Fitting {
   bool met() const;  // whether every measurement is met
 };
 
-// The parameters that the file does not give and that a measurement of it can give. Empty: formulas do for it.
+// The parameters that the file does not give and that a measurement of it can give. Empty: formulas do for
+// it.
 Names parameters_to_fit(const NamedFabric& fabric);
 
 // `parameters` empty: parameters_to_fit(). `say` receives a line for every trial. Throws InputError when the

@@ -1,5 +1,5 @@
-// What a laboratory measured and no formula turns into parameters, each beside the virtual test that has to give
-// the same.
+// What a laboratory measured and no formula turns into parameters, each beside the virtual test that has to
+// give the same.
 #pragma once
 
 #include "app/scene/fabrics.h"
@@ -27,17 +27,18 @@ struct SpecimenOptions {
   int repeats = 3;     // specimens of a drape test
 };
 
-// Tolerances: 5 points of a drape coefficient, 10 % of a length or a force. The count of nodes is shown and not
-// compared: it jumps. Throws InputError when a specimen is too small for the mesh.
+// Tolerances: 5 points of a drape coefficient, 10 % of a length or a force. The count of nodes is shown and
+// not compared: it jumps. Throws InputError when a specimen is too small for the mesh.
 std::vector<Measurement> measurements_of(const MeasuredTests& tests, const SpecimenOptions& options);
 
-// What the file of a fabric says was measured of a quantity of the virtual tests, in SI units: a drape coefficient and
-// its nodes as they are, a bending length or rigidity from the droop of a strip by the elastica, a shear modulus from a
-// frame that is sheared evenly or from a long strip in the bias. Of several results the first that has it.
+// What the file of a fabric says was measured of a quantity of the virtual tests, in SI units: a drape
+// coefficient and its nodes as they are, a bending length or rigidity from the droop of a strip by the
+// elastica, a shear modulus from a frame that is sheared evenly or from a long strip in the bias. Of several
+// results the first that has it.
 std::optional<double> measured_value(const NamedFabric& fabric, const std::string& quantity);
 
-// Parameters to start from: those of the elastica, of a frame whose fabric is sheared evenly, of a long strip in
-// the bias, and of a drape coefficient that grows with the bending length.
+// Parameters to start from: those of the elastica, of a frame whose fabric is sheared evenly, of a long strip
+// in the bias, and of a drape coefficient that grows with the bending length.
 double bend_to_start_from(const MeasuredTests& tests, double area_density, const std::string& direction);
 double shear_to_start_from(const MeasuredTests& tests);
 

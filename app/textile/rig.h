@@ -21,8 +21,8 @@ struct Cut {
 
 class Rig {
  public:
-  // Every vertex starts at start(x), where x [m] is its place in the specimen; the vertices in the clamps stay
-  // there. Throws InputError when the model cannot be made of the fabric.
+  // Every vertex starts at start(x), where x [m] is its place in the specimen; the vertices in the clamps
+  // stay there. Throws InputError when the model cannot be made of the fabric.
   Rig(const Specimen& specimen, const Cut& cut, const Vec3& gravity,
       const std::function<Vec3(const Vec3&)>& start);
   Rig(const Rig&) = delete;
@@ -35,8 +35,8 @@ class Rig {
   // steps.
   bool settle(double h, double speed, int most);
 
-  // Brings a specimen that is loaded by its clamps alone to equilibrium: by steps so long that inertia does not
-  // count.
+  // Brings a specimen that is loaded by its clamps alone to equilibrium: by steps so long that inertia does
+  // not count.
   bool relax() { return settle(10, 1e-11, 400); }
 
   const State& state() const { return state_; }

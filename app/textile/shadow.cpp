@@ -96,7 +96,8 @@ drawing::Image Shadow::picture(double specimen_radius, std::optional<double> mea
 }
 
 Waves waves(const std::vector<double>& outline, double least) {
-  // Begins at the lowest place. A maximum has been passed as soon as the outline has fallen by `least` below it.
+  // Begins at the lowest place. A maximum has been passed as soon as the outline has fallen by `least` below
+  // it.
   const auto lowest = std::min_element(outline.begin(), outline.end()) - outline.begin();
   const auto count = static_cast<std::ptrdiff_t>(outline.size());
   Waves found{0, 0};

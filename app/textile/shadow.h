@@ -19,8 +19,8 @@ class Shadow {
 
   double area() const;                  // m^2
   std::vector<double> outline() const;  // m, the largest radius in the shadow, in 720 directions
-  // With a black circle round the specimen before it was draped, and, where a drape coefficient was measured, a red one
-  // whose area is the shadow that was measured.
+  // With a black circle round the specimen before it was draped, and, where a drape coefficient was measured,
+  // a red one whose area is the shadow that was measured.
   drawing::Image picture(double specimen_radius, std::optional<double> measured_coefficient = {}) const;
 
  private:

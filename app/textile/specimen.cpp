@@ -45,8 +45,8 @@ std::vector<int> vertices_where(const TriangleMesh& mesh, const Test& test) {
   return found;
 }
 
-// Adds a copy of a chain of vertices, moved by `place`, and the triangles between the chain and its copy. Holds
-// both.
+// Adds a copy of a chain of vertices, moved by `place`, and the triangles between the chain and its copy.
+// Holds both.
 template <class Place>
 void clamp(Specimen& specimen, const std::vector<int>& chain, bool closed, const Place& place) {
   TriangleMesh& mesh = specimen.mesh;

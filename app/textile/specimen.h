@@ -24,8 +24,8 @@ Specimen strip_between_clamps(double length, double width, double edge);
 // A square about (side / 2, 0) in the plane of x and z, whose four sides are held: two of them by each clamp.
 Specimen hinged_frame(double side, double edge);
 
-// A disc about the origin that lies on a plate: without what lies well inside the plate, and held by two rings
-// of vertices, as far inside the edge of the plate as outside.
+// A disc about the origin that lies on a plate: without what lies well inside the plate, and held by two
+// rings of vertices, as far inside the edge of the plate as outside.
 Specimen disc_on_plate(double radius, double plate_radius, double edge);
 
 }  // namespace drape::app

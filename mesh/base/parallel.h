@@ -1,5 +1,5 @@
-// Loops over fixed chunks. The chunks depend on the size and the kind of the work only, never on the number of threads,
-// and every sum is taken chunk by chunk in order. So 1, 2 or 7 threads give the same bits.
+// Loops over fixed chunks. The chunks depend on the size and the kind of the work only, never on the number
+// of threads, and every sum is taken chunk by chunk in order. So 1, 2 or 7 threads give the same bits.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace drape {
 
-// What a loop does for each item. Light: it reads and writes a few numbers of a vector. Heavy: it goes through a row of
-// a matrix, or works out a force or a contact.
+// What a loop does for each item. Light: it reads and writes a few numbers of a vector. Heavy: it goes
+// through a row of a matrix, or works out a force or a contact.
 enum class Work { light, heavy };
 
 // For fewer items a second thread costs more than it brings.
@@ -39,7 +39,8 @@ void even_then_odd(int count, bool serial, const F& f) {
 inline constexpr int chunk_size = 512;
 inline int chunk_count(int n) { return (n + chunk_size - 1) / chunk_size; }
 
-// Chunks of heavy work on few items are small, so that two threads share them evenly. All sums have chunks of one size.
+// Chunks of heavy work on few items are small, so that two threads share them evenly. All sums have chunks of
+// one size.
 constexpr int heavy_chunk_size(int n) { return n < 8192 ? 128 : chunk_size; }
 inline int heavy_chunk_count(int n) { return (n + heavy_chunk_size(n) - 1) / heavy_chunk_size(n); }
 

@@ -13,8 +13,8 @@ constexpr double ambiguous = 1e-10;  // s2 + s3 as a share of s1 below which a r
 // The derivative of tr(R^T A) by a turn of R: twice the axis of the antisymmetric part of S = R^T A.
 Vec3 turn_of(const Mat3& S) { return {S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1)}; }
 
-// Solves (tr S 1 - sym S) w = turn_of(S), if that matrix is surely positive definite. Its determinant is at most its
-// smallest eigenvalue times (tr S)^2.
+// Solves (tr S 1 - sym S) w = turn_of(S), if that matrix is surely positive definite. Its determinant is at
+// most its smallest eigenvalue times (tr S)^2.
 std::optional<Vec3> newton_turn(const Mat3& S) {
   const double trace = S.trace();
   const double a = S(1, 1) + S(2, 2), b = S(0, 0) + S(2, 2), c = S(0, 0) + S(1, 1);

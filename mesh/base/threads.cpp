@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -28,8 +29,12 @@ void breathe() {
 // made the same loops a hundred times slower.)
 class Helpers {
  public:
-  explicit Helpers(int count) {
-    for (int k = 0; k < count; ++k) threads_.emplace_back([this] { serve(); });
+  // Where the system has no room for more threads there are fewer: the caller does their work.
+  explicit Helpers(int count) : wanted_(count) {
+    try {
+      for (int k = 0; k < count; ++k) threads_.emplace_back([this] { serve(); });
+    } catch (const std::system_error&) {
+    }
   }
   Helpers(const Helpers&) = delete;
   Helpers& operator=(const Helpers&) = delete;
@@ -48,7 +53,7 @@ class Helpers {
     if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
   }
 
-  int count() const { return static_cast<int>(threads_.size()); }
+  int wanted() const { return wanted_; }
 
  private:
   // A loop is known by its generation. The ticket holds the generation and the number of chunks that are
@@ -107,6 +112,7 @@ class Helpers {
   std::atomic<int> count_{0}, done_{0};
   std::atomic<bool> stop_{false}, failed_{false};
   std::exception_ptr failure_;
+  int wanted_;
   std::vector<std::thread> threads_;
 };
 
@@ -148,7 +154,7 @@ void run_in_parallel(int count, void (*f)(const void*, int), const void* context
     return;
   }
   std::unique_ptr<Helpers>& helpers = helpers_of_process();
-  if (!helpers || helpers->count() != threads() - 1) {
+  if (!helpers || helpers->wanted() != threads() - 1) {
     helpers.reset();
     helpers = std::make_unique<Helpers>(threads() - 1);
   }

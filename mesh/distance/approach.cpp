@@ -10,7 +10,8 @@
 namespace drape {
 namespace {
 
-// Where two edges roll on each other, a look proves no more of the way than takes their ends about as far as they are apart.
+// Where two edges roll on each other, a look proves no more of the way than takes their ends about as far as
+// they are apart.
 constexpr int most_looks = 1000;
 constexpr double least_step = 1e-7;
 

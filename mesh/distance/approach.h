@@ -1,12 +1,12 @@
-// A vertex and a triangle, or two edges, whose corners go straight from one place to another while s goes from 0 to
-// 1: how near they are, and how far on their ways they surely stay apart.
+// A vertex and a triangle, or two edges, whose corners go straight from one place to another while s goes
+// from 0 to 1: how near they are, and how far on their ways they surely stay apart.
 //   Two surfaces that are apart first meet in such a pair [Provot 1997].
 // A direction n separates the corners of one side, A, from those of the other, B, by
 //   f(s) = min over A of n . x(s)  -  max over B of n . x(s).
-// For a fixed n this is a concave function of s. So where f is above a gap at both ends, it is above it all the way,
-// and where it falls below the gap at the end, it stays above it at least until the chord does. From there the next
-// n is taken: that of the points which are nearest to each other. Only sums and products, with a bound on their
-// rounding: the answer errs on the safe side.
+// For a fixed n this is a concave function of s. So where f is above a gap at both ends, it is above it all
+// the way, and where it falls below the gap at the end, it stays above it at least until the chord does. From
+// there the next n is taken: that of the points which are nearest to each other. Only sums and products, with
+// a bound on their rounding: the answer errs on the safe side.
 #pragma once
 
 #include <array>
@@ -46,12 +46,12 @@ struct Approach {
   bool touching = false;  // whether they touched at the start, so that nothing was proven
   Nearest last = {};      // at the s at which was looked last
 };
-// gap [m] >= 0. When they are nearer than the gap at s = 0, until is 0. likely: a direction that may separate them, to be
-// tried first.
+// gap [m] >= 0. When they are nearer than the gap at s = 0, until is 0. likely: a direction that may separate
+// them, to be tried first.
 Approach approach(bool edges, const FourPoints& start, const FourPoints& end, double gap,
                   const Vec3& likely = Vec3::Zero());
-// The same for the end of the way; on the way half of the gap is enough. Where they start nearer than the gap, they need not
-// go farther apart. Two sides that touch at the start count as apart.
+// The same for the end of the way; on the way half of the gap is enough. Where they start nearer than the
+// gap, they need not go farther apart. Two sides that touch at the start count as apart.
 Approach approach_from_within(bool edges, const FourPoints& start, const FourPoints& end, double gap,
                               const Vec3& likely = Vec3::Zero());
 

@@ -29,7 +29,8 @@ double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-// Divides every group into clusters: from a face on over those beside it whose normals differ little from its own.
+// Divides every group into clusters: from a face on over those beside it whose normals differ little from its
+// own.
 void CoveredFaces::make_clusters(const std::vector<Face>& faces, const std::vector<Vec3>& x,
                                  const MovingBoxes& boxes) {
   const auto normal = [&](int f) {
@@ -113,7 +114,8 @@ void CoveredFaces::fit_cluster(Cluster& cluster, const std::vector<Face>& faces,
   cluster.spread = least > 0 ? 1 - 2 * least * least : 2;
 }
 
-// A connected surface whose normals all lie in one half-space does not pass through itself, but for what its border
+// A connected surface whose normals all lie in one half-space does not pass through itself, but for what its
+// border
 // does.                                             [Volino & Magnenat-Thalmann 1994, section 3]
 bool CoveredFaces::cannot_meet(int cluster, int other) const {
   const Cluster &a = clusters_[cluster], &b = clusters_[other];
@@ -153,8 +155,8 @@ void CoveredFaces::look(const std::vector<Face>& faces, const std::vector<Vec3>&
     for (int k = first; k <= last; ++k) cover_[part_[k]] = Cover::all;
   }
   spread_from_lines(faces, x, boxes);
-  // What meets others may be covered, too, by a third part of the body. About a line w is on an average half of what is
-  // behind both faces more than in front of them.
+  // What meets others may be covered, too, by a third part of the body. About a line w is on an average half
+  // of what is behind both faces more than in front of them.
   std::erase_if(lines_, [&](const MeetingLine& line) {
     const Vec3 middle = line.at(0.5, [&](int v) -> const Vec3& { return x[v]; });
     return winding(middle, line.faces, faces, x, boxes) - 1 > 0.5;
@@ -167,9 +169,9 @@ void CoveredFaces::look(const std::vector<Face>& faces, const std::vector<Vec3>&
   }
 }
 
-// Where a surface is folded through itself, as in an armpit, the line along which it meets itself ends at a vertex of the
-// fold, and what is covered hangs together with what is not. So faces beside the line are looked at one by one, and from
-// those that are covered on those beside them.
+// Where a surface is folded through itself, as in an armpit, the line along which it meets itself ends at a
+// vertex of the fold, and what is covered hangs together with what is not. So faces beside the line are
+// looked at one by one, and from those that are covered on those beside them.
 void CoveredFaces::spread_from_lines(const std::vector<Face>& faces, const std::vector<Vec3>& x,
                                      const MovingBoxes& boxes) {
   seen_.assign(faces.size(), 0);

@@ -1,8 +1,11 @@
-// Which parts of a closed surface lie inside the body, because the body overlaps itself: an arm in the torso, thighs
-// that are pressed into each other, an eye in its head. They are no surface of the solid that all parts make together.
-//   w(x) = 1 / (4 pi) sum over the triangles of their solid angles seen from x: how often the surface surrounds x
+// Which parts of a closed surface lie inside the body, because the body overlaps itself: an arm in the torso,
+// thighs that are pressed into each other, an eye in its head. They are no surface of the solid that all
+// parts make together.
+//   w(x) = 1 / (4 pi) sum over the triangles of their solid angles seen from x: how often the surface
+//   surrounds x
 //                        [Jacobson, Kavan & Sorkine-Hornung 2013, Robust inside-outside segmentation, eq. 5]
-// A triangle is covered when w is at least 1 on the side to which its normal points. Far groups of triangles count as
+// A triangle is covered when w is at least 1 on the side to which its normal points. Far groups of triangles
+// count as
 // one, w is rounded to a whole number.           [Barill et al. 2018, Fast winding numbers for soups and clouds]
 // Where triangles pass through each other they are covered in part, up to the contour along which they meet.
 #pragma once
@@ -79,8 +82,8 @@ class CoveredFaces {
   double winding(const Vec3& from, const std::array<int, 2>& without, const std::vector<Face>& faces,
                  const std::vector<Vec3>& x, const MovingBoxes& boxes) const;
 
-  // Made once, for the surface as it is when it is looked at first. What is found later depends on it where the surface
-  // meets itself within a few triangles.
+  // Made once, for the surface as it is when it is looked at first. What is found later depends on it where
+  // the surface meets itself within a few triangles.
   std::vector<Cluster> clusters_;
   std::vector<int> cluster_faces_, group_start_;  // the clusters of a group stand side by side
   // Of a cluster: itself, and those that share a vertex with it.

@@ -45,7 +45,8 @@ void MovingBoxes::mark_kinds(int first_kind) {
     }
 }
 
-// Makes patches of the faces below a child, which are those from `first` on in the tree's order. Returns how many they are.
+// Makes patches of the faces below a child, which are those from `first` on in the tree's order. Returns how
+// many they are.
 int MovingBoxes::make_patches(int node, int child, int first) {
   constexpr int most = 32;
   int count = nodes_[node].count[child];

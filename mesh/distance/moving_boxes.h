@@ -21,8 +21,8 @@ namespace drape::internal {
 
 class MovingBoxes {
  public:
-  // Groups the faces by where they are when the vertices are at these places, up to `most_faces` in a box. Pairs are
-  // asked for between the first `first_kind` faces and the others alone; 0: between all.
+  // Groups the faces by where they are when the vertices are at these places, up to `most_faces` in a box.
+  // Pairs are asked for between the first `first_kind` faces and the others alone; 0: between all.
   MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places, int most_faces = 4,
               int first_kind = 0);
 
@@ -48,13 +48,14 @@ class MovingBoxes {
   };
   const std::vector<Patch>& patches() const { return patches_; }
   int face(int place) const { return order_[place]; }  // in the tree's order
-  // Calls meet(p, q), p <= q, once for every two patches that can come within the margin [m] at some s and have pairs to ask
-  // for, and with p = q for those within a patch. meet returns whether to go on; returns false when it did not.
+  // Calls meet(p, q), p <= q, once for every two patches that can come within the margin [m] at some s and
+  // have pairs to ask for, and with p = q for those within a patch. meet returns whether to go on; returns
+  // false when it did not.
   template <class Meet>
   bool near_patches(const Meet& meet, double margin) const;
-  // Calls ask(face, other) once for every two faces of two patches, or within one, that can come within the margin of each
-  // other at some s: their boxes come as near along each axis at a common s. ask returns whether to go on; returns false
-  // when it did not.
+  // Calls ask(face, other) once for every two faces of two patches, or within one, that can come within the
+  // margin of each other at some s: their boxes come as near along each axis at a common s. ask returns
+  // whether to go on; returns false when it did not.
   template <class Ask>
   bool pairs_of_patches(int first, int second, const Ask& ask, double margin) const;
 
@@ -72,9 +73,9 @@ class MovingBoxes {
   };
   static constexpr int deepest = 64;  // most entries of a search's stack: three per level
 
-  // Calls meet(node, child, other node, its child) for what comes near below a child of a node and below those children
-  // of another that are marked in `others`, down to where ends(node, child). Where both are the same: for what comes
-  // near within it. Returns false as soon as meet does.
+  // Calls meet(node, child, other node, its child) for what comes near below a child of a node and below
+  // those children of another that are marked in `others`, down to where ends(node, child). Where both are
+  // the same: for what comes near within it. Returns false as soon as meet does.
   template <class Ends, class Meet>
   bool pairs_between(int node, int child, int other, unsigned others, float margin, const Ends& ends,
                      const Meet& meet) const;

@@ -1,6 +1,7 @@
 // The edges of one triangle that pass through another one, as exact as the coordinates are given.
 //   An edge passes through a triangle when its ends lie strictly on both sides of the plane, and it meets the
-//   triangle, border included. Triangles that only touch do not cross, nor do those that have a vertex in common.
+//   triangle, border included. Triangles that only touch do not cross, nor do those that have a vertex in
+//   common.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +25,8 @@ inline bool boxes_touch(const std::vector<Vec3>& x, const Triangle& s, const Tri
   return true;
 }
 
-// Calls found(a, b), a < b, for every edge of s that passes through t. Returns whether s is on one side of the plane of t:
-// then no edge of t passes through s, either.
+// Calls found(a, b), a < b, for every edge of s that passes through t. Returns whether s is on one side of
+// the plane of t: then no edge of t passes through s, either.
 template <class Found>
 bool passing_edges(const std::vector<Vec3>& x, const Triangle& s, const Triangle& t, const Found& found) {
   std::array<int, 3> side;

@@ -3,12 +3,12 @@
 // the side.
 //   phi(x) = s |x - c|,  s = sign((x - c) . n_c),  n_c the angle-weighted pseudo-normal of the feature at c
 //                         [Baerentzen & Aanaes 2005]
-// Where a closed body overlaps itself, the nearest point c may be on a part of the surface that lies inside. Then x is
-// inside, too (from outside a straight way to the nearest point meets no surface before), and the distance is that to
-// the nearest point that does not lie inside: on a face, or on the line along which two faces meet.
-// A surface at rest is searched with Embree's tree and keeps its normals. A moving surface is searched with
-// our own boxes, and its normals are made for the s that is asked for: normals interpolated between those at
-// the start and at the end of the step could tell the wrong side.
+// Where a closed body overlaps itself, the nearest point c may be on a part of the surface that lies inside.
+// Then x is inside, too (from outside a straight way to the nearest point meets no surface before), and the
+// distance is that to the nearest point that does not lie inside: on a face, or on the line along which two
+// faces meet. A surface at rest is searched with Embree's tree and keeps its normals. A moving surface is
+// searched with our own boxes, and its normals are made for the s that is asked for: normals interpolated
+// between those at the start and at the end of the step could tell the wrong side.
 #include "mesh/distance/surface_distance.h"
 
 #include <Eigen/Geometry>
@@ -108,7 +108,8 @@ struct SurfaceDistance::Tree {
   Candidate find(const Vec3& x, const SurfacePose<Standing>& pose, const Take& take) const;
   template <class Take>
   Candidate find(const Vec3& x, const SurfacePose<Moving>& pose, const Take& take) const;
-  // The nearest point of all of the surface. When that is covered, `deep` is set, and it is the nearest that is not.
+  // The nearest point of all of the surface. When that is covered, `deep` is set, and it is the nearest that
+  // is not.
   template <class Places>
   Candidate find(const Vec3& x, const SurfacePose<Places>& pose, bool& deep) const;
   template <class Places>
@@ -253,7 +254,8 @@ Candidate SurfaceDistance::Tree::find(const Vec3& x, const SurfacePose<Places>& 
   return deep ? best : nearest;
 }
 
-// A point of a face that others pass through is looked at where it is at the end of the step, or at its start.
+// A point of a face that others pass through is looked at where it is at the end of the step, or at its
+// start.
 template <class Places>
 bool SurfaceDistance::Tree::is_covered(const Candidate& c, const SurfacePose<Places>& pose) const {
   const double s = time_of(pose);

@@ -6,9 +6,9 @@
 //              from the surface to the point
 //
 // A surface is closed when every edge has exactly two triangles and the surface has two sides. Each connected
-// piece is wound outwards on its own. Where a closed surface overlaps itself (an arm in the torso), and where one piece
-// lies in another (the inner wall of a hollow body), what is inside any of them is inside, and its distance is that to
-// the surface of all of them together (mesh/distance/covered_faces.h).
+// piece is wound outwards on its own. Where a closed surface overlaps itself (an arm in the torso), and where
+// one piece lies in another (the inner wall of a hollow body), what is inside any of them is inside, and its
+// distance is that to the surface of all of them together (mesh/distance/covered_faces.h).
 //
 // After move(start, end) every vertex goes straight from its start to its end while s [-] goes from 0 to 1,
 // and every question is about the surface at a given s. Which triangles are neighbours and which side is
@@ -30,7 +30,8 @@ namespace drape {
 struct SurfacePoint {
   double distance;  // m, negative inside
   Vec3 normal;      // unit vector, the gradient of the distance: it points outwards
-  // The nearest triangle of the surface lies inside, too: the point is where the body overlaps itself, or beside that.
+  // The nearest triangle of the surface lies inside, too: the point is where the body overlaps itself, or
+  // beside that.
   bool covered = false;
 };
 
@@ -88,8 +89,8 @@ class SurfaceDistance {
   };
   Anchor anchor(const Vec3& x, double s = 0) const;
   Vec3 place(const Anchor& anchor, double s) const;
-  // Where the surface carries a point that is beside it at s, until s = 1. Where the body overlaps itself, two parts of
-  // the surface carry it, and it goes the mean of their ways.
+  // Where the surface carries a point that is beside it at s, until s = 1. Where the body overlaps itself,
+  // two parts of the surface carry it, and it goes the mean of their ways.
   Vec3 carried(const Vec3& x, double s) const;
 
   bool closed() const;

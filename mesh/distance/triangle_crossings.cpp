@@ -54,7 +54,8 @@ class Search {
   std::vector<CrossingContour> contours();
 
  private:
-  // Finds the edges of one triangle that pass through the other; a segment has its edge twice. True: they cannot cross.
+  // Finds the edges of one triangle that pass through the other; a segment has its edge twice. True: they
+  // cannot cross.
   bool look_through(int of, int through) {
     const auto before = passages_.size();
     return internal::passing_edges(x_, triangles_[of], triangles_[through], [&](int a, int b) {
@@ -73,8 +74,8 @@ class Search {
   std::vector<PairPassage> passages_;
 };
 
-// Two pairs are joined when they have the passage of an edge through a triangle in common. Where only one pair has it,
-// the contour ends.
+// Two pairs are joined when they have the passage of an edge through a triangle in common. Where only one
+// pair has it, the contour ends.
 std::vector<CrossingContour> Search::contours() {
   std::vector<int> root(pairs_.size());
   std::iota(root.begin(), root.end(), 0);
@@ -117,8 +118,8 @@ std::vector<CrossingContour> Search::contours() {
   return contours;
 }
 
-// Calls look_at(part, face, other) for what comes near each other, up to most_crossing_pairs. Several parts of the search
-// go on side by side.
+// Calls look_at(part, face, other) for what comes near each other, up to most_crossing_pairs. Several parts
+// of the search go on side by side.
 template <class LookAt>
 void look_at_near_ones(const MovingBoxes& boxes, bool serial, Search& search, const LookAt& look_at) {
   constexpr int parts_at_once = 64, pairs_of_a_part = 32;  // of patches of faces

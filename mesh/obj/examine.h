@@ -34,7 +34,8 @@ struct MeshReport {
   Eigen::AlignedBox3d box() const { return {lower, upper}; }
 };
 
-// Vertices at exactly the same place are no defect of a mesh that will be welded, nor are those that will be sewn together.
+// Vertices at exactly the same place are no defect of a mesh that will be welded, nor are those that will be
+// sewn together.
 MeshReport examine(const TriangleMesh& mesh, bool will_be_welded = false, const std::vector<int>& sewn = {});
 
 std::string format(const Defect& defect);  // "warning: 3 vertices ... (vertices 4, 9 and 11)"

@@ -69,8 +69,8 @@ struct ObjDocument {
 // What a file must have at least: a surface, or lines, such as those of ropes.
 enum class ObjNeed { faces, faces_or_lines };
 
-// Throws InputError when the file is missing, a directory, binary or empty, when it has no vertices or not what it
-// needs, when a number is not finite, or when a face refers to a vertex that is not there.
+// Throws InputError when the file is missing, a directory, binary or empty, when it has no vertices or not
+// what it needs, when a number is not finite, or when a face refers to a vertex that is not there.
 TriangleMesh read_obj(const std::filesystem::path& path, ObjNeed need = ObjNeed::faces);
 
 // The same from memory; `name` stands in error messages.

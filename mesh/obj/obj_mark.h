@@ -8,9 +8,9 @@
 
 namespace drape {
 
-// The mesh's document, or for a mesh without one a document of its triangles, in which the faces of these triangles
-// stand under a 'g' line of this name, and no more under the one that they stood under. Other faces that stood under the
-// name do no more. All else is as it was.
+// The mesh's document, or for a mesh without one a document of its triangles, in which the faces of these
+// triangles stand under a 'g' line of this name, and no more under the one that they stood under. Other faces
+// that stood under the name do no more. All else is as it was.
 ObjDocument with_group(const TriangleMesh& mesh, const std::vector<int>& triangles, const std::string& name);
 
 }  // namespace drape

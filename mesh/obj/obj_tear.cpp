@@ -31,7 +31,8 @@ class TornLines {
     std::sort(sides_.begin(), sides_.end());
   }
 
-  // The statement as one or several 'l' lines: a new one begins where the next edge lies on another side of a cut.
+  // The statement as one or several 'l' lines: a new one begins where the next edge lies on another side of a
+  // cut.
   std::vector<std::string> of(std::string_view statement) const {
     std::string_view rest = statement;
     internal::obj::next_word(rest);
@@ -72,8 +73,8 @@ class TornLines {
     const bool there = found != sides_.end() && std::get<0>(*found) == from && std::get<1>(*found) == to;
     return there ? &*found : nullptr;
   }
-  // The vertices at the ends of the edge from u to v, on the side that the line goes with. Where no triangle has this edge, the
-  // line goes on from `end` and to v itself.
+  // The vertices at the ends of the edge from u to v, on the side that the line goes with. Where no triangle
+  // has this edge, the line goes on from `end` and to v itself.
   std::pair<int, int> ends(int u, int v, int end) const {
     const Side* found = side(u, v);
     if (!found) found = side(v, u);
@@ -111,8 +112,8 @@ class TornFaces {
   }
 
  private:
-  // Adds face f, of the triangles [first, last), as it is. Does nothing and returns false where one of its corners would be two
-  // vertices.
+  // Adds face f, of the triangles [first, last), as it is. Does nothing and returns false where one of its
+  // corners would be two vertices.
   bool add_whole(std::size_t f, std::size_t first, std::size_t last) {
     const ObjDocument& document = *mesh_.document;
     const std::size_t before = corners_.size();

@@ -91,8 +91,8 @@ class GridSearch {
   }
 
   // Checks every vertex by the numbers of quads and edges around it. A vertex inside has 4 quads and 4 edges.
-  // A vertex on a boundary has at most three quads, four where a slit ends, and one edge more than quads. Two corners of
-  // holes may touch.
+  // A vertex on a boundary has at most three quads, four where a slit ends, and one edge more than quads. Two
+  // corners of holes may touch.
   void check_vertices(int vertices) const {
     std::vector<int> quads(static_cast<std::size_t>(vertices), 0), edges = quads;
     for (const Quad& quad : grid_.quads)

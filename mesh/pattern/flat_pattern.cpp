@@ -34,7 +34,8 @@ std::vector<Vec3> texture_points(const ObjDocument& document, double scale) {
 // A triangle of the pattern is this much thinner than that of the mesh at most.
 constexpr double thinnest = 1e-3;
 
-// Area over the square of the longest edge: 0 where the corners are in a line, but for the rounding of their coordinates.
+// Area over the square of the longest edge: 0 where the corners are in a line, but for the rounding of their
+// coordinates.
 double shape(const TriangleMesh& mesh, const Triangle& t) {
   double longest = 0;
   for (std::size_t k = 0; k < 3; ++k)

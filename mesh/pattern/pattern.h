@@ -25,8 +25,8 @@ struct Panel {
   std::string name;
   Chain outline;
   std::vector<Chain> holes, lines;  // lines are open chains inside the panel; edges of the mesh lie on them
-  // Direction of the warp; not zero. Texture coordinates are places in the panel, turned so that the warp runs along v.
-  // Unset: along y, so that nothing is turned.
+  // Direction of the warp; not zero. Texture coordinates are places in the panel, turned so that the warp
+  // runs along v. Unset: along y, so that nothing is turned.
   std::optional<Vec2> grain = {};
 };
 

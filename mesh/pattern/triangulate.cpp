@@ -124,8 +124,8 @@ class Assembler {
     made_.panels.push_back(report);
   }
 
-  // Of the last panel: where its vertices are, turned about its middle so that the grain points up or, which is the
-  // same to a fabric, down.
+  // Of the last panel: where its vertices are, turned about its middle so that the grain points up or, which
+  // is the same to a fabric, down.
   void add_texture(const std::optional<Vec2>& grain) {
     const auto begin = made_.mesh.positions.begin() + first_;
     Eigen::AlignedBox2d box;

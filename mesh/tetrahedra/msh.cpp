@@ -1,4 +1,5 @@
-// From the parts of a .msh file to a mesh: what tetrahedra have, numbered from 0, and whether they make a body.
+// From the parts of a .msh file to a mesh: what tetrahedra have, numbered from 0, and whether they make a
+// body.
 #include "mesh/tetrahedra/msh.h"
 
 #include <algorithm>

@@ -194,7 +194,8 @@ void MshReader::read_elements_2() {
   long long left = words_.whole("the number of elements");
   words_.end_line();
   while (left > 0) {
-    // A text names type and tags for every element, after its number; a binary file for a block of them, before it.
+    // A text names type and tags for every element, after its number; a binary file for a block of them,
+    // before it.
     long long number = words_.binary ? 0 : words_.integer("the number of an element");
     const ElementKind& kind = read_kind();
     const long long count = words_.binary ? words_.integer("the number of elements in a block") : 1;

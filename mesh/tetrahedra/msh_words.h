@@ -1,5 +1,5 @@
-// The letters of a .msh file: words between blanks, or numbers as they stand in memory. Sections have the same fields in the
-// same order either way, so the reader asks for fields and need not know which way it is.
+// The letters of a .msh file: words between blanks, or numbers as they stand in memory. Sections have the
+// same fields in the same order either way, so the reader asks for fields and need not know which way it is.
 //   text     every field is a word
 //   binary   integer: 4 bytes, size: 8 bytes, real: 8 bytes, in the byte order of this machine; names of sections are words
 #pragma once

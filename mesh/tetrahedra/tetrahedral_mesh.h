@@ -1,6 +1,6 @@
 // A body of tetrahedra, as plain data: vertices, tetrahedra, named sets of vertices.
-//   V = (b - a) x (c - a) . (d - a) / 6, positive for a tetrahedron a b c d that is not inverted; its faces with normals
-//   outwards are a c b, a b d, a d c and b c d.
+//   V = (b - a) x (c - a) . (d - a) / 6, positive for a tetrahedron a b c d that is not inverted; its faces
+//   with normals outwards are a c b, a b d, a d c and b c d.
 #pragma once
 
 #include <array>
@@ -27,13 +27,13 @@ std::vector<double> vertex_volumes(
 std::vector<std::pair<int, int>> edges_of(
     const TetrahedralMesh& mesh);  // the lower vertex first; sorted, each once
 
-// The faces that belong to one tetrahedron, with normals outwards, in the order of the tetrahedra. The vertices of the surface
-// are those of its faces in ascending order, and `vertices` receives their numbers in the mesh. Groups have what lies on the
-// surface; those that have nothing there are left out.
+// The faces that belong to one tetrahedron, with normals outwards, in the order of the tetrahedra. The
+// vertices of the surface are those of its faces in ascending order, and `vertices` receives their numbers in
+// the mesh. Groups have what lies on the surface; those that have nothing there are left out.
 TriangleMesh surface_of(const TetrahedralMesh& mesh, std::vector<int>& vertices);
 
-// Two tetrahedra that lie on the same side of a face that both have, or three that have one, so that they overlap:
-// their numbers. {-1, -1} when there are none.
+// Two tetrahedra that lie on the same side of a face that both have, or three that have one, so that they
+// overlap: their numbers. {-1, -1} when there are none.
 std::pair<int, int> overlapping(const TetrahedralMesh& mesh);
 
 }  // namespace drape

@@ -21,8 +21,9 @@ class MeshFrames {
 
   int frame_count() const { return static_cast<int>(times_.size()); }
   int vertex_count() const { return vertices_; }
-  double first_time() const { return times_.front(); }  // s
-  double last_time() const { return times_.back(); }    // s
+  double time(int frame) const { return times_[static_cast<std::size_t>(frame)]; }  // s
+  double first_time() const { return times_.front(); }                              // s
+  double last_time() const { return times_.back(); }                                // s
 
   // Writes the positions [m] at this time [s] into `out`. There must be a frame. Allocates nothing when `out`
   // already has the right size.

@@ -104,8 +104,8 @@ CornerSets fans(const TriangleMesh& mesh, const std::vector<Side>& sides, const 
   return sets;
 }
 
-// The mesh with a copy of its vertex for all sets of corners there but the lowest one. `set` tells the lowest corner of the
-// set that a corner is in, or -1 where the corner keeps its vertex.
+// The mesh with a copy of its vertex for all sets of corners there but the lowest one. `set` tells the lowest
+// corner of the set that a corner is in, or -1 where the corner keeps its vertex.
 template <class Set>
 TornTriangles with_copies(const TriangleMesh& mesh, const Set& set) {
   std::vector<std::pair<int, int>> first_corners;  // (vertex, lowest corner) of every set

@@ -54,7 +54,8 @@ std::vector<double> internal::cloth_masses(const Cloth& cloth) {
 
 namespace {
 
-// The edges of a woven cloth, from its first particle; where two triangles differ about a length, the first's.
+// The edges of a woven cloth, from its first particle; where two triangles differ about a length, the
+// first's.
 std::vector<RestEdge> rest_edges(const Cloth& cloth, const TriangleMesh& mesh) {
   std::vector<RestEdge> all;
   for (int t : counted_triangles(mesh))
@@ -175,9 +176,9 @@ Layers layers_of(const std::optional<SelfContactOptions>& options, const Triangl
   return layers;
 }
 
-// Where the cloth starts: off its mesh by its imperfection, and by its layers. A vertex of several layers belongs to the
-// lowest. Where none is given, what lies below at exactly the same place counts (`below`, by vertex), half a layer lower than
-// layers that are given, so that both kinds stay apart.
+// Where the cloth starts: off its mesh by its imperfection, and by its layers. A vertex of several layers
+// belongs to the lowest. Where none is given, what lies below at exactly the same place counts (`below`, by
+// vertex), half a layer lower than layers that are given, so that both kinds stay apart.
 std::vector<Vec3> start_of(const Cloth& cloth, const Layers& layers, const std::vector<int>& below) {
   std::vector<Vec3> positions = cloth.mesh.positions;
   if (cloth.imperfection > 0) {
@@ -333,8 +334,8 @@ void Assembly::make_system(std::vector<double> masses, Forces forces) {
   }
 }
 
-// Tells the constraints what is being sewn together. Beside stitches that are kept, which hold to a micrometre, everything
-// may pass.
+// Tells the constraints what is being sewn together. Beside stitches that are kept, which hold to a
+// micrometre, everything may pass.
 void Assembly::sew() {
   std::vector<SewnPair> sewn;
   for (const Cloth& cloth : cloths)

@@ -3,7 +3,8 @@
 //   merged, several vertices are one particle. A soft body is a lattice of particles; its mesh is the surface
 //   of the lattice, or another one that the lattice carries.
 //   The points of a rope are particles; its mesh has a line ('l' of an OBJ file) and no triangles.
-// ClothPart, SoftPart and RopePart are plain data from which an Assembly (solver/assembly/assembly.h) makes a Cloth.
+// ClothPart, SoftPart and RopePart are plain data from which an Assembly (solver/assembly/assembly.h) makes a
+// Cloth.
 #pragma once
 
 #include <memory>
@@ -32,13 +33,13 @@ enum class ClothModel {
   woven      // membrane and plate, for any triangle mesh (solver/forces/woven.h)
 };
 
-// How a cloth or a soft body meets itself and others that have this (constraints/self_contact.h). A soft body is met at
-// the surface of its lattice.
+// How a cloth or a soft body meets itself and others that have this (constraints/self_contact.h). A soft body
+// is met at the surface of its lattice.
 struct SelfContactOptions {
   double thickness = 1e-3;  // m: two layers rest at the mean of their thicknesses
   double friction = 0.3;    // mu: between two cloths the root of the product of both
-  // What is worn over what, from the inside out (SelfFace::layer), of a cloth or of groups of its mesh. A layer starts
-  // 5 um farther out than the one below it, so that sheets at one place have an order, too.
+  // What is worn over what, from the inside out (SelfFace::layer), of a cloth or of groups of its mesh. A
+  // layer starts 5 um farther out than the one below it, so that sheets at one place have an order, too.
   std::optional<int> layer = {};
   struct Group {
     std::string group;
@@ -55,18 +56,18 @@ struct ClothPart {
   ClothModel model = ClothModel::noh_jung;
   std::optional<Vec3> warp = {};            // direction in the rest shape, of a woven cloth
   std::vector<GroupWarp> group_warps = {};  // the same of groups of the mesh, instead of that
-  // How far the start is off `mesh` [m] (solver/assembly/imperfection.h). Unset: woven_imperfection of a woven
-  // cloth, 0 of the others.
+  // How far the start is off `mesh` [m] (solver/assembly/imperfection.h). Unset: woven_imperfection of a
+  // woven cloth, 0 of the others.
   std::optional<double> imperfection = {};
   std::vector<SeamPlan> seams = {};
   // Whether each face is a cluster in place of what stretches (solver/forces/face_clusters.h).
   bool clusters = false;
-  // Whether vertices at exactly the same place become one particle; false: only those that edges of no length join do, of
-  // cloth with self_contact.
+  // Whether vertices at exactly the same place become one particle; false: only those that edges of no length
+  // join do, of cloth with self_contact.
   bool weld = false;
   std::optional<SelfContactOptions> self_contact = {};  // unset: the cloth passes through cloth
-  // The strain l / L - 1 of an edge above which the cloth tears there (solver/assembly/tear_rule.h); unset: it never
-  // tears.
+  // The strain l / L - 1 of an edge above which the cloth tears there (solver/assembly/tear_rule.h); unset:
+  // it never tears.
   std::optional<double> tear = {};
   std::optional<MeshReport> report = {};  // what examine() says of the mesh; unset: examine() is called
 };
@@ -90,8 +91,8 @@ struct SoftPart {
   std::optional<SelfContactOptions> self_contact = {};  // unset: cloth passes through it
 };
 
-// How a rope meets itself, other ropes, cloths and soft bodies that have the like (constraints/self_contact.h): as thick as
-// its material's radius says.
+// How a rope meets itself, other ropes, cloths and soft bodies that have the like
+// (constraints/self_contact.h): as thick as its material's radius says.
 struct RopeContact {
   double friction = 0.3;  // mu: as in SelfContactOptions
 };
@@ -129,9 +130,9 @@ struct Cloth {
   ClothModel model = ClothModel::noh_jung;
   std::vector<Vec3> warp;  // direction in the rest shape, of each triangle; [0, 0, 0] where nothing says it
   bool face_clusters = false;  // in place of what stretches
-  // Vertices that become one particle when the system is made: those that ClothPart::weld names, or of cloth with
-  // self_contact those that edges of no length join, because two points at one place have no sides on which other cloth
-  // could be kept. (Grids of choi_ko stay as they are.)
+  // Vertices that become one particle when the system is made: those that ClothPart::weld names, or of cloth
+  // with self_contact those that edges of no length join, because two points at one place have no sides on
+  // which other cloth could be kept. (Grids of choi_ko stay as they are.)
   std::vector<std::pair<int, int>> at_one_place;
   double imperfection = 0;             // m, how far the start is off `mesh`
   std::shared_ptr<BendMemory> memory;  // of a woven cloth whose threads rub
@@ -159,7 +160,8 @@ struct Cloth {
 // Largest relative stretch of an edge: max (l - L) / L; 0 when none is stretched.
 double largest_strain(const std::vector<Cloth>& cloths, const VecX& x);
 
-// The two factors by which the rest shape of a triangle is stretched, less 1: negative where it is compressed.
+// The two factors by which the rest shape of a triangle is stretched, less 1: negative where it is
+// compressed.
 struct PrincipalStrains {
   double least, largest;
   double area, area_at_rest;  // m^2
@@ -167,9 +169,9 @@ struct PrincipalStrains {
 // Nothing where the triangle is sewn shut or has no area at rest.
 std::optional<PrincipalStrains> principal_strains(const Cloth& cloth, std::size_t triangle, const VecX& x);
 
-// The strain that every particle of the system is shown with: of a woven cloth, of the principal strains of the
-// triangles there, and of springs, of l / L - 1 of the edges there, the one of larger magnitude, with its sign.
-// 0 where nothing meets.
+// The strain that every particle of the system is shown with: of a woven cloth, of the principal strains of
+// the triangles there, and of springs, of l / L - 1 of the edges there, the one of larger magnitude, with its
+// sign. 0 where nothing meets.
 void particle_strains(const Cloth& cloth, const VecX& x, std::vector<double>& strain);
 
 // How the triangles of all cloths are strained, by their principal strains.

@@ -2,8 +2,9 @@
 //   An open seam pulls the two vertices of each of its pairs together (solver/forces/seam_spring.h). Once its
 //   time is over and no pair is farther apart than `near_enough` of the length of the edges there, the two
 //   particles of each pair become one: mass and momentum are added, and the forces of the cloth are made
-//   anew, across the seam as well. The Assembly merges the particles (solver/assembly/assembly.h). A pair of a
-//   seam to be merged that begins nearer than `closed_already` of these edges becomes one in the first step.
+//   anew, across the seam as well. The Assembly merges the particles (solver/assembly/assembly.h). A pair of
+//   a seam to be merged that begins nearer than `closed_already` of these edges becomes one in the first
+//   step.
 #pragma once
 
 #include <memory>
@@ -48,8 +49,8 @@ struct OpenSeam {
   bool begins_closed(
       std::size_t pair) const;  // so that the pair becomes one in the first step, if it is merged at all
   bool begins_closed() const;   // the same of all pairs
-  // Takes out the pairs that may become one: all of them when its time is over and they have met, else those that began
-  // closed.
+  // Takes out the pairs that may become one: all of them when its time is over and they have met, else those
+  // that began closed.
   std::vector<std::pair<int, int>> take_closed(const Embedding& embedding, const State& state);
 };
 

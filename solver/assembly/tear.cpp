@@ -23,8 +23,8 @@ double strain(const RestEdge& e, const VecX& x) {
   return (x.segment<3>(3 * e.j) - x.segment<3>(3 * e.i)).norm() / e.L - 1;
 }
 
-// Whether an edge is strained too far that may be cut in this step. pinned: particles, ascending. Copies nothing: where cloth
-// draws back, or is held as far as it gives way, this is so for many steps.
+// Whether an edge is strained too far that may be cut in this step. pinned: particles, ascending. Copies
+// nothing: where cloth draws back, or is held as far as it gives way, this is so for many steps.
 bool may_tear(const Cloth& cloth, const State& state, const std::vector<int>& pinned) {
   const Tearing& tearing = *cloth.tearing;
   const auto draws_back = [&](int particle) {
@@ -54,7 +54,8 @@ std::vector<CutEdge> diagonals_of_quads(const Cloth& cloth) {
   return all;
 }
 
-// Of the triangles between particles, numbered from the first one: a cloth tears across its seams as anywhere else.
+// Of the triangles between particles, numbered from the first one: a cloth tears across its seams as anywhere
+// else.
 std::vector<CutEdge> edges_to_cut(const Cloth& cloth, const State& state, const std::vector<int>& pinned) {
   const int first = cloth.first_particle;
   const TriangleMesh between = internal::between_particles(cloth);
@@ -124,8 +125,8 @@ void add_faces(const Cloth& cloth, const TornCloth& torn, Parting& parting) {
   }
 }
 
-// Gives a cloth whose particles have their new numbers its torn mesh and the copies after its particles. A vertex is the
-// particle that its triangles are of.
+// Gives a cloth whose particles have their new numbers its torn mesh and the copies after its particles. A
+// vertex is the particle that its triangles are of.
 void become(TornCloth torn, Cloth& cloth) {
   Embedding embedding;
   std::vector<int> particle(torn.mesh.mesh.positions.size(), -1);
@@ -232,7 +233,8 @@ void Assembly::part_particles(const std::vector<std::vector<CutEdge>>& cuts) {
     if (cuts[k].empty()) continue;
     Cloth& cloth = cloths[k];
     become(std::move(torn[k]), cloth);
-    // A copy has the mass of its triangles, and what is left stays with its original: what else hangs there, too.
+    // A copy has the mass of its triangles, and what is left stays with its original: what else hangs there,
+    // too.
     const std::vector<double> of_triangles = particle_masses(cloth);
     internal::note_cuts(cuts[k], copies[k], state.time, of_triangles.size(), *cloth.tearing);
     for (std::size_t c = 0; c < copies[k].size(); ++c) {

@@ -9,8 +9,8 @@ namespace drape {
 
 struct Tearing {
   double limit = 0;  // strain l / L - 1 of an edge above which the cloth tears there [-]
-  // Vertex n + k of the mesh is a copy of vertex copy_of[k]; n: vertices at the start. Where a seam was merged, particles may
-  // part at which each vertex stays whole.
+  // Vertex n + k of the mesh is a copy of vertex copy_of[k]; n: vertices at the start. Where a seam was
+  // merged, particles may part at which each vertex stays whole.
   std::vector<int> copy_of;
   int cuts = 0;  // edges that were cut so far
   // By particle of the cloth, from its first one; those beyond the end were never cut.

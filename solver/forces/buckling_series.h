@@ -1,5 +1,5 @@
-// The dimensionless law of a beam that buckles into a circular arc (solver/forces/buckling_spring.h), for a Number that is a
-// double or four of them: it does the same with each.
+// The dimensionless law of a beam that buckles into a circular arc (solver/forces/buckling_spring.h), for a
+// Number that is a double or four of them: it does the same with each.
 #pragma once
 
 #include <array>
@@ -32,7 +32,8 @@ constexpr Series make_series() {
 
 inline constexpr Series series = make_series();
 
-// A first guess of y = u^2 for a given delta: y / delta by a polynomial, with a relative error of 1.7e-6 over [0, 1].
+// A first guess of y = u^2 for a given delta: y / delta by a polynomial, with a relative error of 1.7e-6 over
+// [0, 1].
 inline constexpr std::array<double, 11> first_guess = {6.00000987, 1.79775804,  0.906505409, -0.761262068,
                                                        9.09424265, -36.9159818, 95.0077116,  -150.586427,
                                                        145.215122, -77.9596806, 18.0715896};
@@ -44,8 +45,8 @@ Number first_squared_angle(const Number& delta) {
   return delta * quotient;
 }
 
-// y: the u^2 at which sinc(u) = 1 - delta. One step of Halley's method on G(y) = y S(y) - delta, with G' = -C / 2, brings
-// the relative error to 6e-16.
+// y: the u^2 at which sinc(u) = 1 - delta. One step of Halley's method on G(y) = y S(y) - delta, with G' = -C
+// / 2, brings the relative error to 6e-16.
 template <class Number>
 void find_squared_angle(const Number& delta, Number& y) {
   y = first_squared_angle(delta);

@@ -104,8 +104,8 @@ void Clusters::list_places(int particles) {
 void Clusters::match(const VecX& x, std::vector<ClusterPose>& poses) const {
   parallel_for(heavy_chunk_count(count()), static_cast<int>(members_.size()) < serial_below(Work::heavy),
                [&](int chunk) {
-                 const int end = std::min(count(), (chunk + 1) * chunk_size);
-                 for (int c = chunk * chunk_size; c < end; ++c)
+                 const int end = std::min(count(), (chunk + 1) * heavy_chunk_size(count()));
+                 for (int c = chunk * heavy_chunk_size(count()); c < end; ++c)
                    poses[c] = matched((*this)[c], x, poses[c].rotation);
                });
 }
@@ -114,8 +114,8 @@ void Clusters::take_shapes(const Clusters& others, const std::vector<ClusterPose
                            const VecX& x) {
   parallel_for(heavy_chunk_count(count()), static_cast<int>(members_.size()) < serial_below(Work::heavy),
                [&](int chunk) {
-                 const int end = std::min(count(), (chunk + 1) * chunk_size);
-                 for (int c = chunk * chunk_size; c < end; ++c)
+                 const int end = std::min(count(), (chunk + 1) * heavy_chunk_size(count()));
+                 for (int c = chunk * heavy_chunk_size(count()); c < end; ++c)
                    for (std::size_t k = start_[c]; k < start_[c + 1]; ++k) {
                      const Vec3 here =
                          poses[c].rotation.conjugate() * (at(x, members_[k].particle) - poses[c].centre);

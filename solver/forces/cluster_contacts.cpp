@@ -126,7 +126,8 @@ int ClusterContacts::number_of(int key, const CarriedMotion& motion) {
                                  .free = motion_of(members, body, motion.start, motion.v)});
 }
 
-// Adds the part of a particle to the point that is made next: of its clusters, which are pushed at this place, or its own.
+// Adds the part of a particle to the point that is made next: of its clusters, which are pushed at this
+// place, or its own.
 void ClusterContacts::hold(int particle, double weight, const Vec3& place, const CarriedMotion& motion) {
   if (!is_carried(particle)) {
     impulses_.hold(number_of(static_cast<int>(clusters_.size()) + particle, motion), weight, Vec3::Zero());
@@ -287,8 +288,8 @@ void ClusterContacts::take_impulses(double h) {
   }
 }
 
-// The part of the step that is left to each body after its impacts: the mean over the points where it is hit. It meets the
-// surface of a body within the step, and a pair when the step begins.
+// The part of the step that is left to each body after its impacts: the mean over the points where it is hit.
+// It meets the surface of a body within the step, and a pair when the step begins.
 void ClusterContacts::find_parts(const CarriedMotion& motion) {
   for (std::size_t k = 0; k < touches_.size(); ++k) {
     const Impulses::Point& point = impulses_.points()[k];
@@ -342,7 +343,8 @@ void ClusterContacts::meet_by_particle(const CarriedMotion& motion) {
   inner_.answer(motion);
 }
 
-// Parts the pairs whose particles come nearer within their clusters, each by itself and without friction. What is tolerated is more than sweeps leave of stiff bodies, which have to rub.
+// Parts the pairs whose particles come nearer within their clusters, each by itself and without friction.
+// What is tolerated is more than sweeps leave of stiff bodies, which have to rub.
 void ClusterContacts::part_particles(const CarriedMotion& motion) const {
   for (const Touch& touch : touches_) {
     if (!touch.pair) continue;

@@ -1,25 +1,28 @@
-// Clusters (solver/forces/cluster.h) that meet bodies, each other, cloth and ropes: where a particle of a cluster touches, the
-// impulse acts on the whole cluster as on a rigid body (solver/forces/cluster_body.h). A particle in several clusters shares it
-// among them by its shares. All impulses of a substep, of all clusters, are found together (solver/forces/impulses.h).
+// Clusters (solver/forces/cluster.h) that meet bodies, each other, cloth and ropes: where a particle of a
+// cluster touches, the impulse acts on the whole cluster as on a rigid body (solver/forces/cluster_body.h). A
+// particle in several clusters shares it among them by its shares. All impulses of a substep, of all
+// clusters, are found together (solver/forces/impulses.h).
 //   particle on a body    u = sum_c s_c (v_c + w_c x r_c) - v_b,   s_c = w_i / m_i
 //   pair of cloth         u = sum_k w_k sum_c s_kc (v_c + w_c x r_kc)    with the w_k of constraints/self_contact.h
-// Cluster c gets s_c J, or sum_k w_k s_kc J, there; where both sides of a pair are of clusters, in the middle between them, so that
-// friction turns nothing that it should not. A particle of a pair that is in no free cluster is a body of its own, which
-// does not turn: K then has w_k^2 / m_k. What it meets of other bodies is answered here as well.
+// Cluster c gets s_c J, or sum_k w_k s_kc J, there; where both sides of a pair are of clusters, in the middle
+// between them, so that friction turns nothing that it should not. A particle of a pair that is in no free
+// cluster is a body of its own, which does not turn: K then has w_k^2 / m_k. What it meets of other bodies is
+// answered here as well.
 //   velocity      n.u >= -gap/h, with friction
 //   restitution   first the impact without friction, n.u' >= -e n.u for what approaches a body; then n.u >= 0 with friction,
 //                 against what the forces do. Pairs have e = 0: n.u >= -gap/h, with friction, in both.
 //   friction      |J_T| <= mu J.n, and against the slip where that is reached                       [Coulomb]
 //   recovery      what begins too deep is brought out with the recovery speed at most, and gets no velocity from it, but by bodies
 //                 in the mode `velocity`, as its particles do
-// as constraints/response.h has it for a particle. What is left, such as particles that move within their cluster, is answered
-// by particle: of bodies by that, of pairs by the push w_k / m_k along the normal.
+// as constraints/response.h has it for a particle. What is left, such as particles that move within their
+// cluster, is answered by particle: of bodies by that, of pairs by the push w_k / m_k along the normal.
 //
-// A body that reacts (constraints/reacting_body.h) takes part with its own K and gets the opposite impulses. Where such bodies
-// touch each other and obstacles (constraints/body_meeting.h), those impulses are found in the same sweeps. What particles that
-// move within their cluster meet of such a body is answered here, too (solver/forces/inner_contacts.h). A cluster with a particle
-// that is held, or that a body carries, is no free body: its particles are on their own. So are pairs with no free cluster, and
-// those with one on both sides: springs answer them.
+// A body that reacts (constraints/reacting_body.h) takes part with its own K and gets the opposite impulses.
+// Where such bodies touch each other and obstacles (constraints/body_meeting.h), those impulses are found in
+// the same sweeps. What particles that move within their cluster meet of such a body is answered here, too
+// (solver/forces/inner_contacts.h). A cluster with a particle that is held, or that a body carries, is no
+// free body: its particles are on their own. So are pairs with no free cluster, and those with one on both
+// sides: springs answer them.
 // J [N s], u, v, v_b [m/s], w [rad/s], K [1/kg], r, gap [m], h [s].
 #pragma once
 

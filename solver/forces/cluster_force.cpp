@@ -67,8 +67,8 @@ void ClusterForce::take_up_viscosity(const Substep& substep) {
   viscous_.take_shapes(clusters_, start_, viscosity_ / (substep.h + viscosity_), substep.start);
 }
 
-// A particle that is held does not move, and one that a body carries moves as the body gives way: the impulse on it is that of
-// its own mass. It has been put back since the last iteration, so only what is new is added.
+// A particle that is held does not move, and one that a body carries moves as the body gives way: the impulse
+// on it is that of its own mass. It has been put back since the last iteration, so only what is new is added.
 void ClusterForce::project(Substep& substep) {
   if (substep.first) moved_.setZero(substep.x.size());
   x_free_ = substep.x;

@@ -1,12 +1,14 @@
 // Clusters (solver/forces/cluster.h) as a force: every particle is drawn to the mean of its goals.
 //   E = sum over clusters k/2 sum w_i |x_i - g_i|^2,   f_i = k m_i (mean of g_i - x_i)
-// The stiffness of a solid of Young's modulus Y [Pa] and density rho [kg/m^3] is k = 3 Y / (rho b2), b2 the mean of |b|^2
-// over the shares of all clusters [m^2]: what is strained by e in all directions alike then has the energy Y e^2 / 2 of each
-// of them and volume. It is the modulus of the body on average, whatever the size of its clusters.
+// The stiffness of a solid of Young's modulus Y [Pa] and density rho [kg/m^3] is k = 3 Y / (rho b2), b2 the
+// mean of |b|^2 over the shares of all clusters [m^2]: what is strained by e in all directions alike then has
+// the energy Y e^2 / 2 of each of them and volume. It is the modulus of the body on average, whatever the
+// size of its clusters.
 //
-// The integrator "pbd" takes all clusters at once (solver/forces/substep.h): with x_free the places without what they have
-// done so far, x = x_free + alpha (mean of the goals of x_free - x_free). Where clusters do not overlap that is the step of
-// implicit Euler exactly. A matrix knows no rotations of whole clusters, so implicit integrators do not take this force.
+// The integrator "pbd" takes all clusters at once (solver/forces/substep.h): with x_free the places without
+// what they have done so far, x = x_free + alpha (mean of the goals of x_free - x_free). Where clusters do
+// not overlap that is the step of implicit Euler exactly. A matrix knows no rotations of whole clusters, so
+// implicit integrators do not take this force.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,6 @@
-// Elements in groups, the colours: no two of a colour touch the same particle, so that those of a colour can be taken at the
-// same time. The colours depend on the elements and their order only, never on the number of threads.
+// Elements in groups, the colours: no two of a colour touch the same particle, so that those of a colour can
+// be taken at the same time. The colours depend on the elements and their order only, never on the number of
+// threads.
 //                                                                              [greedy colouring; Matula & Beck 1983]
 #pragma once
 
@@ -12,8 +13,8 @@ namespace drape {
 
 class Colours {
  public:
-  // Colours the elements 0 .. count-1. each_particle(e, f) calls f(particle) for the particles of element e, which are
-  // below `particles`.
+  // Colours the elements 0 .. count-1. each_particle(e, f) calls f(particle) for the particles of element e,
+  // which are below `particles`.
   template <class EachParticle>
   void make(int count, int particles, const EachParticle& each_particle) {
     std::vector<std::uint64_t> taken(static_cast<std::size_t>(particles), 0);
@@ -32,12 +33,14 @@ class Colours {
     sort();
   }
 
-  // The elements, colour by colour; within each by their lowest particles, so that places next to each other are read together.
+  // The elements, colour by colour; within each by their lowest particles, so that places next to each other
+  // are read together.
   const std::vector<int>& order() const { return order_; }
   int colours() const { return static_cast<int>(start_.size()) - 1; }
 
-  // Takes the places of order() in ranges [begin, end): one colour after the other, those of a colour in any order. Of what
-  // apart(begin, end) is called for, no two touch the same particle; in_turn(begin, end) has to keep to the order.
+  // Takes the places of order() in ranges [begin, end): one colour after the other, those of a colour in any
+  // order. Of what apart(begin, end) is called for, no two touch the same particle; in_turn(begin, end) has
+  // to keep to the order.
   template <class Apart, class InTurn>
   void run(const Apart& apart, const InTurn& in_turn) const {
     constexpr int block = 512, parallel_from = 4 * block;
@@ -52,7 +55,8 @@ class Colours {
   }
 
  private:
-  // The last of the 64 is no colour: it has the elements for which there was none, and they are taken in turn.
+  // The last of the 64 is no colour: it has the elements for which there was none, and they are taken in
+  // turn.
   static constexpr int most = 63;
 
   void begin(int count);

@@ -19,8 +19,8 @@ enum class Bending {
 };
 
 // What the woven model (solver/forces/woven.h) knows besides. Unset: as of a fabric that is the same in all
-// directions. The stiffnesses of Fabric are then those along the warp. Models of springs take the means of warp and
-// weft, and nothing else of this.
+// directions. The stiffnesses of Fabric are then those along the warp. Models of springs take the means of
+// warp and weft, and nothing else of this.
 struct Weave {
   std::optional<double> stretch_weft = {}, shear = {};  // N/m, Y along the weft, and G
   double poisson = 0.3;                                 // geometric mean of the two Poisson's ratios
@@ -28,11 +28,12 @@ struct Weave {
   std::optional<double> bend_weft = {}, bend_bias = {};  // N m, B along the weft and at 45 degrees
   double bend_poisson = 0;
   Bending bending = Bending::plate;
-  // N, the moment of dry friction per width against bending along warp and weft (solver/forces/plate_friction.h):
-  // half of the width 2HB of the loop of KES-FB2. 0: there is none.
+  // N, the moment of dry friction per width against bending along warp and weft
+  // (solver/forces/plate_friction.h): half of the width 2HB of the loop of KES-FB2. 0: there is none.
   double bend_friction = 0;
   std::optional<double> bend_friction_weft = {};
-  // 1/m, the change of curvature within which that moment sets in. KES-FB2 reads B from 50 1/m on, where it has.
+  // 1/m, the change of curvature within which that moment sets in. KES-FB2 reads B from 50 1/m on, where it
+  // has.
   double bend_friction_onset = 50;
   double stretch_time = 0, shear_time = 0, bend_time = 0;  // s, viscosity over stiffness
   // The share of the curvature of the mesh, as the cloth starts, with which it rests: 0 is flat, 1 the mesh.
@@ -61,8 +62,8 @@ double mean_bend(const Fabric& fabric);     // N m
 void check(const Fabric& fabric);
 
 // The masses [kg] of vertices with these areas [m^2]. A vertex whose faces have no area gets a thousandth of
-// the mean mass, so that it can move; a vertex without faces gets 0 and does not move. Throws InputError unless
-// area_density [kg/m^2] is greater than zero.
+// the mean mass, so that it can move; a vertex without faces gets 0 and does not move. Throws InputError
+// unless area_density [kg/m^2] is greater than zero.
 std::vector<double> mass_of_areas(std::vector<double> areas, const TriangleMesh& mesh, double area_density);
 
 // The masses of the vertices [kg]: every triangle gives a third of its mass to each of its vertices.

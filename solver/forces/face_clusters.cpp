@@ -75,7 +75,8 @@ double FaceClusterForce::energy(const VecX& x) const {
   return sum;
 }
 
-// Viscosity acts on the rate of F^T F, which no rigid motion changes: so it has no moment, whatever the strain.
+// Viscosity acts on the rate of F^T F, which no rigid motion changes: so it has no moment, whatever the
+// strain.
 void FaceClusterForce::add_force(const VecX& x, const VecX& v, VecX& f) const {
   for (const FaceCluster& face : faces_) {
     const Axes F = gradient(face, x);

@@ -31,8 +31,8 @@ struct FaceLaw {
     const Vec3& n = contact->normal;
     const bool acts = stiffness == Stiffness::tangent ? g < 0 : contact->active;
     const double push = acts ? contact->stiffness * (g + n.dot(shift())) : 0;
-    // No majorant: the stiffness of a spring that does not act would brake the cloth without an impulse on the body, and
-    // momentum would be lost.
+    // No majorant: the stiffness of a spring that does not act would brake the cloth without an impulse on
+    // the body, and momentum would be lost.
     const double k = acts ? contact->stiffness : 0;
     const Mat3 along = n * n.transpose();
     return {.impulse = c * (push * n + d * contact->slip_of(velocity())),

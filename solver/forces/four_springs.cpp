@@ -1,5 +1,5 @@
-// Springs in the first iteration of a substep, four at a time (relax_pair of solver/forces/pair_projection.h, written out for
-// vectors of four numbers).
+// Springs in the first iteration of a substep, four at a time (relax_pair of solver/forces/pair_projection.h,
+// written out for vectors of four numbers).
 #include "solver/forces/buckling_series.h"
 #include "solver/forces/buckling_spring.h"
 #include "solver/forces/linear_spring.h"

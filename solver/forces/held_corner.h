@@ -1,5 +1,5 @@
-// A triangle without area: its corners are on one line at rest, or at one place. It stores no strain, and without more
-// the cloth would open there. Its middle corner is held where it is on the edge across from it.
+// A triangle without area: its corners are on one line at rest, or at one place. It stores no strain, and
+// without more the cloth would open there. Its middle corner is held where it is on the edge across from it.
 //   E = k/2 |p|^2,   p = x_m - (1 - s) x_a - s x_b
 // k [N/m] is the stiffness of the membrane, s where m stands on the edge from a to b at rest.
 #pragma once

@@ -18,8 +18,8 @@ struct HingeLaw {
   static constexpr int particles = 4;
   struct Rest {
     double k, angle;  // N m; theta_0
-    // m^4. A triangle whose squared double area is less than this is taken to have this one, so that the force stays
-    // bounded; it is then no longer the slope of the energy.
+    // m^4. A triangle whose squared double area is less than this is taken to have this one, so that the
+    // force stays bounded; it is then no longer the slope of the energy.
     double least_c, least_d;
   };
   struct Common {

@@ -1,6 +1,7 @@
-// Particles that move within their clusters, where that takes them into a body that reacts (constraints/reacting_body.h): each is
-// pushed out with its own mass m_i, and the body gets the opposite impulse, all of them found together (solver/forces/impulses.h).
-// The body moves here as the impulses of all clusters have made it.
+// Particles that move within their clusters, where that takes them into a body that reacts
+// (constraints/reacting_body.h): each is pushed out with its own mass m_i, and the body gets the opposite
+// impulse, all of them found together (solver/forces/impulses.h). The body moves here as the impulses of all
+// clusters have made it.
 //   u = v_i - V - W x r,   K = 1/m_i + 1/M - [r] I^-1 [r]
 //   velocity      n.u >= -gap/h, with friction
 //   restitution   n.u >= 0 with friction, for those that would end the step inside: the rebound is that of the clusters
@@ -19,8 +20,8 @@ class InnerContacts {
  public:
   void reserve(std::size_t bodies, std::size_t points);
   void begin(const CarriedMotion& motion);
-  // Contacts of one particle come after one another. gap [m] and mu as they count in the step; motion of the body with the
-  // impulses of the clusters.
+  // Contacts of one particle come after one another. gap [m] and mu as they count in the step; motion of the
+  // body with the impulses of the clusters.
   void add(CarriedContact& contact, double gap, double mu, const ClusterMotion& body,
            const CarriedMotion& motion);
   // Moves the particles, and adds to the impulses of their contacts.

@@ -1,22 +1,25 @@
 // The membrane of a woven fabric: triangles of constant strain.                    [Baraff & Witkin 1998, 4.2]
 // A point of the rest shape has the coordinate u along the warp and v along the weft [m]. The triangle maps
-// both axes into space, to f_u = dx/du and f_v = dx/dv, which are linear in its three corners. The strains are
+// both axes into space, to f_u = dx/du and f_v = dx/dv, which are linear in its three corners. The strains
+// are
 //   e_u = |f_u| - 1,   e_v = |f_v| - 1,   gamma = f_u . f_v        (sine of the shear angle, at small strain)
 // and the energy per area is
 //   psi = s W(e) + (1 - s) R(e) + G gamma^2 / 2,     W(e) = e . C e / 2,    R(e) = min over w >= 0 of W(e + w)
 //   C = ((Y_u, nu sqrt(Y_u Y_v)), (nu sqrt(Y_u Y_v), Y_v)) / (1 - nu^2)
 // Y_u, Y_v [N/m] are the stiffnesses of warp and weft in a tensile test, nu the geometric mean of their two
 // Poisson's ratios, G [N/m] the shear stiffness. The share s says how much of the resistance to compression
-// stays: R is a fabric whose threads wrinkle below the size of the triangle, w being what the wrinkles take up.
-// Both W and R are convex, and psi has a continuous gradient.
+// stays: R is a fabric whose threads wrinkle below the size of the triangle, w being what the wrinkles take
+// up. Both W and R are convex, and psi has a continuous gradient.
 //
-// With the stresses sigma = dpsi/de, tau = G gamma and the tangent k = d sigma/de, the Hessian over (f_u, f_v) is
+// With the stresses sigma = dpsi/de, tau = G gamma and the tangent k = d sigma/de, the Hessian over (f_u,
+// f_v) is
 //   k_ab n_a n_b^T + G (f_v, f_u)(f_v, f_u)^T      the material: positive semidefinite as it stands
 //   sigma_u/|f_u| (I - n_u n_u^T), the same of v, and tau between f_u and f_v: the geometry
-// The geometry is made positive semidefinite in closed form: out of the plane of the triangle it is the matrix
-// ((sigma_u/|f_u|, tau), (tau, sigma_v/|f_v|)), which has two eigenvalues; in the plane each term is taken
-// alone. So the stiffness is exact where a taut membrane resists a push from the side, and never too small.
-// The viscosity is that of the strains: D = T_s k n n^T + T_g G (f_v, f_u)(f_v, f_u)^T with times T [s].
+// The geometry is made positive semidefinite in closed form: out of the plane of the triangle it is the
+// matrix ((sigma_u/|f_u|, tau), (tau, sigma_v/|f_v|)), which has two eigenvalues; in the plane each term is
+// taken alone. So the stiffness is exact where a taut membrane resists a push from the side, and never too
+// small. The viscosity is that of the strains: D = T_s k n n^T + T_g G (f_v, f_u)(f_v, f_u)^T with times T
+// [s].
 #pragma once
 
 #include <Eigen/Geometry>

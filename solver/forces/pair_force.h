@@ -99,9 +99,10 @@ struct AlongDistance {
     return response;
   }
 
-  // For a pair whose distance is l, and would be l_free without its own impulse: the impulse when it acts alone, along the
-  // way it would lie, is this times that way [kg/s]. The new distance is found by one step of Newton's method from l
-  // (solver/forces/substep.h), with the chord to the rest length where the pair pushes. drag: the speed at which l grows [m/s].
+  // For a pair whose distance is l, and would be l_free without its own impulse: the impulse when it acts
+  // alone, along the way it would lie, is this times that way [kg/s]. The new distance is found by one step
+  // of Newton's method from l (solver/forces/substep.h), with the chord to the rest length where the pair
+  // pushes. drag: the speed at which l grows [m/s].
   [[gnu::always_inline]] static double alone_along(double k_d, const Rest& r, double l, double l_free,
                                                    double drag, double W, double h) {
     Tension law = Spring::tension(r, l);

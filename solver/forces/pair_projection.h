@@ -1,11 +1,14 @@
-// Two particles along their distance, in a substep of the integrator "pbd": the equations are those of solver/forces/substep.h.
-// Most elements of a cloth are of this kind, so it is written out, and where it can be four of them are taken at once.
+// Two particles along their distance, in a substep of the integrator "pbd": the equations are those of
+// solver/forces/substep.h. Most elements of a cloth are of this kind, so it is written out, and where it can
+// be four of them are taken at once.
 //   A law gives
 //     static double damper(const Common&, const Rest&);                              // k_d [N s/m]
-//     static double alone_along(double k_d, const Rest&, double l, double l_free, double drag, double W, double h);
+//     static double alone_along(double k_d, const Rest&, double l, double l_free, double drag, double W,
+//     double h);
 //   as solver/forces/pair_force.h explains; where it is a link of a length
 //     static double too_long(const Rest&, double l2, bool squared);
-//   and to take many of them at once, which are to be undamped and to have no particle in common, in their first iteration,
+//   and to take many of them at once, which are to be undamped and to have no particle in common, in their
+//   first iteration,
 //     static void relax_apart(const StencilLink<2, Rest>* links, int count, Substep&, Vec3* impulses);
 //   with the same result as relax_pair to the last bit; impulses: `count` of them to write, or null.
 #pragma once

@@ -25,8 +25,8 @@ Eigen::Matrix3d matrix(const PlateStiffness& stiffness) {
   return D;
 }
 
-// A triangle of the plate: its energy is d . Z d / 2, where d is how far the inward slope of its linear function is
-// from that of each edge with a hinge.
+// A triangle of the plate: its energy is d . Z d / 2, where d is how far the inward slope of its linear
+// function is from that of each edge with a hinge.
 struct BendingTriangle {
   std::vector<int> vertices;  // ascending
   Eigen::MatrixXd rows;       // d over the vertices [1/m]
@@ -52,8 +52,8 @@ class MorleyPlate {
   }
 
  private:
-  // A constant curvature H has the moments m = P D H, where row k of P is l n n of edge k, and H = P^T d / A: so
-  // Z = P D P^T / A. The slope of an edge without a hinge is the one of least energy.
+  // A constant curvature H has the moments m = P D H, where row k of P is l n n of edge k, and H = P^T d / A:
+  // so Z = P D P^T / A. The slope of an edge without a hinge is the one of least energy.
   BendingTriangle bending(int t) const {
     Eigen::Matrix3d P;  // over (M_uu, M_vv, M_uv)
     std::array<int, 3> hinge_of = {-1, -1, -1};

@@ -69,9 +69,9 @@ void PlateForce::bind(const BlockLayout& layout) {
                           [&](int e) { return rows[static_cast<std::size_t>(e)]; });
 }
 
-// The terms of pairs far apart cancel those of pairs nearby where the cloth is flat. Cloth hardly stretches, so they stay
-// as large as in the mesh; the difference of two places has the round-off of the places. What the bent triangles add
-// cancels too, near the rest shape: energy() leaves it out there.
+// The terms of pairs far apart cancel those of pairs nearby where the cloth is flat. Cloth hardly stretches,
+// so they stay as large as in the mesh; the difference of two places has the round-off of the places. What
+// the bent triangles add cancels too, near the rest shape: energy() leaves it out there.
 double PlateForce::energy_noise(const VecX& x) const {
   constexpr double eps = 4 * std::numeric_limits<double>::epsilon();
   return eps * (size_ + 4 * pull_ * x.lpNorm<Eigen::Infinity>());
@@ -95,7 +95,8 @@ double PlateForce::energy(const VecX& x) const {
     for (const BentTriangle::Pull& pull : t.pulls)
       sum -= (frame.axes * pull.force).dot(x.segment<3>(3 * pull.vertex) - origin);
   }
-  // Near the rest shape the two parts cancel, and what is left is round-off: it is no energy that a step could lower.
+  // Near the rest shape the two parts cancel, and what is left is round-off: it is no energy that a step
+  // could lower.
   return std::abs(sum) > 1e-14 * flat ? sum : 0;
 }
 

@@ -1,13 +1,13 @@
 // The force of a plate (solver/forces/plate.h): the pairs, whose stiffness is constant, and what of its rest
 // shape is bent.
 //   E = 1/2 sum_pairs k |x_i - x_j|^2 + sum over bent triangles (E_0 - sum_v x_v . R c_v)
-// R are the axes of the triangle as it turns (solver/forces/triangle_frame.h); c_v [N], in these axes, is the force
-// on vertex v by which the triangle's rest curvature acts, and E_0 [J] its energy when laid flat. As the axes turn
-// with the cloth, E is the same wherever the cloth is moved to; it is zero in the rest shape.
+// R are the axes of the triangle as it turns (solver/forces/triangle_frame.h); c_v [N], in these axes, is the
+// force on vertex v by which the triangle's rest curvature acts, and E_0 [J] its energy when laid flat. As
+// the axes turn with the cloth, E is the same wherever the cloth is moved to; it is zero in the rest shape.
 //
-// K is that of the pairs, which is positive semidefinite: how the bent triangles' forces change with x is left out
-// of the matrix. On the right side it is not: their force is taken at x + y, where an undisturbed step ends, so that
-// bent cloth that spins is not slowed.
+// K is that of the pairs, which is positive semidefinite: how the bent triangles' forces change with x is
+// left out of the matrix. On the right side it is not: their force is taken at x + y, where an undisturbed
+// step ends, so that bent cloth that spins is not slowed.
 // The viscosity is D = T K of the pairs, with a time T [s].
 #pragma once
 

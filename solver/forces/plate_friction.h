@@ -1,20 +1,21 @@
-// Dry friction of the threads where a fabric is bent: a moment beside the elastic one of the plate (plate_force.h).
+// Dry friction of the threads where a fabric is bent: a moment beside the elastic one of the plate
+// (plate_force.h).
 //   M = B kappa + m,   |m| <= H = 2HB / 2                       [Kawabata 1980, the loop of KES-FB2 is 2HB wide]
-// In every triangle a spring acts on the curvatures kappa = (n . x_uu, n . x_vv, 2 n . x_uv), and slides where it is
-// strained beyond what friction holds. With e_k = H_k kappa_k - rest_k [N/m], per area,
+// In every triangle a spring acts on the curvatures kappa = (n . x_uu, n . x_vv, 2 n . x_uv), and slides
+// where it is strained beyond what friction holds. With e_k = H_k kappa_k - rest_k [N/m], per area,
 //   psi = |e|^2 / (2 e_0)  where |e| <= e_0: it sticks;   psi = |e| - e_0 / 2  beyond: it slides         [J/m^2]
 //   m_k = H_k e_k / max(e_0, |e|),   so that (m_uu / H_warp)^2 + (m_vv / H_weft)^2 + (m_uv / H_twist)^2 <= 1
-// H_twist^2 = H_warp H_weft / 2: a fabric of one H has it in every direction in which it is bent. Threads begin to slide
-// one after the other, so friction holds in full only after a change of curvature, the onset: e_0 = onset sqrt(H_warp
-// H_weft). A gentler bend is resisted as by a rigidity of B + H / onset. Where H differs along warp and weft, this is
-// the mean of the two: it is onset sqrt(H_weft / H_warp) along the warp, and the inverse share along the weft.
-// Where the spring rests, rest_k, stays during a step and follows the slide at its end. psi is convex in the
-// curvature, and psi of the spring that has followed is never more: so friction takes energy and makes none. n turns
-// with the triangle, and so does the moment.
+// H_twist^2 = H_warp H_weft / 2: a fabric of one H has it in every direction in which it is bent. Threads
+// begin to slide one after the other, so friction holds in full only after a change of curvature, the onset:
+// e_0 = onset sqrt(H_warp H_weft). A gentler bend is resisted as by a rigidity of B + H / onset. Where H
+// differs along warp and weft, this is the mean of the two: it is onset sqrt(H_weft / H_warp) along the warp,
+// and the inverse share along the weft. Where the spring rests, rest_k, stays during a step and follows the
+// slide at its end. psi is convex in the curvature, and psi of the spring that has followed is never more: so
+// friction takes energy and makes none. n turns with the triangle, and so does the moment.
 //
-// An implicit step takes the force at x + y, where an undisturbed step ends, and as stiffness the parabola that touches
-// psi there and lies above it; Stiffness::tangent is the second derivative of psi. Both are positive semidefinite. How n
-// turns is in the force and left out of the matrix.
+// An implicit step takes the force at x + y, where an undisturbed step ends, and as stiffness the parabola
+// that touches psi there and lies above it; Stiffness::tangent is the second derivative of psi. Both are
+// positive semidefinite. How n turns is in the force and left out of the matrix.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,6 @@
-// The parts of a plate's energy (solver/forces/plate.h) in a substep of the integrator "pbd": each is an element of up to
-// three vectors d = sum x_v w_v^T, taken as solver/forces/substep.h says, and exactly, because it is linear:
+// The parts of a plate's energy (solver/forces/plate.h) in a substep of the integrator "pbd": each is an
+// element of up to three vectors d = sum x_v w_v^T, taken as solver/forces/substep.h says, and exactly,
+// because it is linear:
 //   dlambda (1 + h (h + T) W Z) = -(lambda + h (d + T v_d) Z),   W = sum w_v w_v^T / m_v
 // lambda has a column for each of the vectors [N s m], T [s] is the viscosity over the stiffness Z.
 #pragma once

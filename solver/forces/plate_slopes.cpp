@@ -128,9 +128,9 @@ Functional PlateSlopes::slope(const Hinge& hinge) const {
   return between;
 }
 
-// The slope along y at the origin that is right for every quadratic function, from the two triangles' vertices
-// and as few others as will do: often none, never more than two unless they lie badly. Nothing where the
-// vertices do not determine it.
+// The slope along y at the origin that is right for every quadratic function, from the two triangles'
+// vertices and as few others as will do: often none, never more than two unless they lie badly. Nothing where
+// the vertices do not determine it.
 std::optional<Functional> PlateSlopes::quadratic_slope(const std::vector<Placed>& patch, double unit) const {
   std::vector<int> vertices;
   std::vector<Vec2> at;

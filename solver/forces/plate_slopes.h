@@ -1,5 +1,5 @@
-// The slopes of a plate across its edges (solver/forces/plate.h): at the middle of each edge between two triangles,
-// what a quadratic function through the vertices around the edge has there.
+// The slopes of a plate across its edges (solver/forces/plate.h): at the middle of each edge between two
+// triangles, what a quadratic function through the vertices around the edge has there.
 #pragma once
 
 #include <optional>

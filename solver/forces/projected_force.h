@@ -1,5 +1,6 @@
-// A force that has no matrix: its elements change positions, as the integrator "pbd" asks them to (solver/forces/substep.h), and
-// explicit integrators take what it pushes with. Implicit integrators do not take it.
+// A force that has no matrix: its elements change positions, as the integrator "pbd" asks them to
+// (solver/forces/substep.h), and explicit integrators take what it pushes with. Implicit integrators do not
+// take it.
 #pragma once
 
 #include "solver/forces/force.h"

@@ -49,8 +49,8 @@ struct RopeBendDamping {
   }
   static bool damped(const Common&) { return true; }
   static double square(double number) { return number * number; }
-  // With Q = dq/dX: C_b / d (q_0^2 Q^T Q + Q^T q q^T Q) / (|q|^2 + q_0^2). Less where a segment is pressed to less than half
-  // of its length: or D would grow without bounds, since what is short turns fast.
+  // With Q = dq/dX: C_b / d (q_0^2 Q^T Q + Q^T q q^T Q) / (|q|^2 + q_0^2). Less where a segment is pressed to
+  // less than half of its length: or D would grow without bounds, since what is short turns fast.
   static Blocks<3> damping(const Common&, const Rest& r, const Points<3>& X) {
     const Vec3 first = X.col(1) - X.col(0), second = X.col(2) - X.col(1);
     const double a = first.norm(), b = second.norm();

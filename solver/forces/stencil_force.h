@@ -22,8 +22,8 @@
 //                                    const auto& shift, double c, Stiffness);
 // Or it depends on two vectors, the slopes f_u = sum w_ku x_k and f_v = sum w_kv x_k (a SlopeLaw), and gives
 //   static const Eigen::Matrix<double, n, 2>& slope_weights(const Rest&);                          // w_ku, w_kv
-// and energy, gradient, hessian, damping and damped as above, over f = (f_u, f_v) in place of X: the gradient as
-// Slopes and the second derivatives as SlopeBlocks.
+// and energy, gradient, hessian, damping and damped as above, over f = (f_u, f_v) in place of X: the gradient
+// as Slopes and the second derivatives as SlopeBlocks.
 // A law may also say
 //   static bool goes_slack(const Rest&);                          // whether it resists nothing until it is taut
 // velocity() is sum w_k v_k and shift() is sum w_k y_k; they are functions because they are computed only

@@ -1,6 +1,8 @@
-// The elements of a StencilForce in a substep of the integrator "pbd": solver/forces/substep.h has the equations, for a law of
-// one vector. Of two vectors, or of all the points of an element, p and lambda have 6 or 3 n numbers and W is a matrix.
-//   A VectorLaw may give its new impulse itself, in closed form; free is what p would be without the impulse so far:
+// The elements of a StencilForce in a substep of the integrator "pbd": solver/forces/substep.h has the
+// equations, for a law of one vector. Of two vectors, or of all the points of an element, p and lambda have 6
+// or 3 n numbers and W is a matrix.
+//   A VectorLaw may give its new impulse itself, in closed form; free is what p would be without the impulse
+//   so far:
 //     static Vec3 alone(const Common&, const Rest&, const Vec3& p, const Vec3& free, double W, double h,
 //                       const auto& velocity);
 //   A law of two particles along their distance gives what solver/forces/pair_projection.h asks for.
@@ -25,7 +27,8 @@ class StencilProjection {
   using Common = typename Law::Common;
   using Rest = typename Law::Rest;
 
-  // Takes over the elements. Those that stand are coloured; others are taken in the order in which they were found.
+  // Takes over the elements. Those that stand are coloured; others are taken in the order in which they were
+  // found.
   template <class Elements>
   void take(const Elements& elements, int particles, bool stand) {
     if (stand) {

@@ -29,7 +29,8 @@ struct TriangleFrame {
     b = axes.col(1).dot(f.col(1));
   }
 
-  // The gradient over f of the angle by which the axes turn, times the torque: df . gradient = omega . torque.
+  // The gradient over f of the angle by which the axes turn, times the torque: df . gradient = omega .
+  // torque.
   Slopes turn(const Vec3& torque) const {
     const Vec3 of = axes.transpose() * torque;
     // A triangle that is squeezed to a line turns ever faster; it is kept from turning without bound.

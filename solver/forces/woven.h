@@ -1,13 +1,13 @@
-// A woven fabric: a membrane of triangles of constant strain (solver/forces/membrane.h) and a plate without a clamp
-// (solver/forces/plate.h). Y, G, B and Poisson's ratios come out as they are given on any mesh, along warp, weft and
-// between. B is that of a strip so wide that it does not curve across as well. With hinges in place of the plate
-// (Weave::bending, solver/forces/hinge.h) B depends on where the edges run.
+// A woven fabric: a membrane of triangles of constant strain (solver/forces/membrane.h) and a plate without a
+// clamp (solver/forces/plate.h). Y, G, B and Poisson's ratios come out as they are given on any mesh, along
+// warp, weft and between. B is that of a strip so wide that it does not curve across as well. With hinges in
+// place of the plate (Weave::bending, solver/forces/hinge.h) B depends on where the edges run.
 //
-// The warp runs along a direction of the rest shape, laid into the plane of every triangle. Where the law is the
-// same in all directions, none has to be given. The rest shape may be cut where
-// the cloth is sewn, as in solver/forces/noh_jung.h. The plate rests flat, whatever folds the rest shape has in space, or
-// with a share of the angles that the mesh itself has (Weave::rest_angle). Its threads may rub when they are bent
-// (Weave::bend_friction).
+// The warp runs along a direction of the rest shape, laid into the plane of every triangle. Where the law is
+// the same in all directions, none has to be given. The rest shape may be cut where
+// the cloth is sewn, as in solver/forces/noh_jung.h. The plate rests flat, whatever folds the rest shape has
+// in space, or with a share of the angles that the mesh itself has (Weave::rest_angle). Its threads may rub
+// when they are bent (Weave::bend_friction).
 #pragma once
 
 #include <memory>
@@ -37,14 +37,14 @@ struct GroupWarp {
   Vec3 direction;
 };
 
-// The corners of every triangle of the rest shape in its own plane, u along the warp [m]. `warp` has a direction for
-// every triangle, [0, 0, 0] where any will do; empty: any for all. Throws InputError when a triangle is square to its
-// direction.
+// The corners of every triangle of the rest shape in its own plane, u along the warp [m]. `warp` has a
+// direction for every triangle, [0, 0, 0] where any will do; empty: any for all. Throws InputError when a
+// triangle is square to its direction.
 std::vector<RestCorners> woven_corners(const TriangleMesh& rest, const std::vector<Vec3>& warp);
 
 // Vertex 0 is the particle `first_particle` of the system. Triangles without area only hold together
-// (solver/forces/held_corner.h). `memory` is that of friction against bending, of these triangles; null: a new one.
-// Throws InputError when the fabric has directions and `warp` is missing.
+// (solver/forces/held_corner.h). `memory` is that of friction against bending, of these triangles; null: a
+// new one. Throws InputError when the fabric has directions and `warp` is missing.
 std::vector<std::unique_ptr<Force>> woven(const TriangleMesh& mesh, const TriangleMesh& rest,
                                           const Fabric& fabric, const std::optional<Vec3>& warp = {},
                                           int first_particle = 0,

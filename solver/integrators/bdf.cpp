@@ -29,8 +29,9 @@ namespace {
 // How often a step is halved because its contacts do not settle. What remains is told by the report.
 constexpr int max_unsettled_halvings = 2;
 
-// What a step may make of energy: of "bdf2", whose motion nothing damps, so that it adds up; of "implicit-euler", whose next
-// steps take it out; and of that where edges go slack, for there the step after one that was refined overshoots.
+// What a step may make of energy: of "bdf2", whose motion nothing damps, so that it adds up; of
+// "implicit-euler", whose next steps take it out; and of that where edges go slack, for there the step after
+// one that was refined overshoots.
 constexpr EnergyAllowance of_order_2{.of_fall = 5e-4, .of_motion = 3e-4},
     of_order_1{.of_fall = 0.05, .of_motion = 0.05}, of_order_1_slack{.of_fall = 0.5, .of_motion = 0.5};
 
@@ -129,7 +130,8 @@ class Bdf::ContactSolve {
     const LinearReport& linear = bdf_.linear_;
     return linear.residual > 0 ? linear.residual_impulse / linear.residual : bdf_.merit_.weight_impulse();
   }
-  // The point stays where it was. So what the cloth adds is the same but for order 2, whose particles may start anew.
+  // The point stays where it was. So what the cloth adds is the same but for order 2, whose particles may
+  // start anew.
   void linearise() {
     if (bdf_.k().order_2()) return bdf_.linearise(state_, stiffness_, contacts_, report_, Assembly::all);
     bdf_.linearise(state_, stiffness_, contacts_, report_, kept_ ? Assembly::changing : Assembly::keep);
@@ -176,7 +178,8 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
   // report says so.
   if (!contacts.bodies_agree() && !piece.shortest)
     return fail(report, "the motion of a body that reacts and that of the cloth do not agree");
-  // What couples the contacts through the cloth goes with the square of the step, so they settle in a shorter one.
+  // What couples the contacts through the cloth goes with the square of the step, so they settle in a shorter
+  // one.
   if (piece.halvings < max_unsettled_halvings && !piece.shortest && imbalance_ > contact_tolerance(options_))
     return fail(report, "the contacts have not settled");
   finish(state, contacts, report);
@@ -249,8 +252,8 @@ bool Bdf::makes_energy(const State& start, const ContactStep& contacts, double h
   const EnergyAllowance& allowed = history_.order() == 2  ? of_order_2
                                    : system_.goes_slack() ? of_order_1_slack
                                                           : of_order_1;
-  // In a step of order 1 the frame that is at rest only says how much the motion may make. Most steps make none even where
-  // it may make nothing.
+  // In a step of order 1 the frame that is at rest only says how much the motion may make. Most steps make
+  // none even where it may make nothing.
   if (!k().order_2() && !merit_.makes_energy(k(), start, p_, start.v, given, allowed)) return false;
   contacts.filter(p_.v, filter_);
   rest_frame_.find(A_.matrix(), constraints_, contacts, filter_, p_, k(), system_.gravity_acceleration(),
@@ -292,9 +295,10 @@ bool Bdf::falls(ContactStep& contacts) {
   return merit_.falls(k(), friction(contacts), v_base_, end_.v);
 }
 
-// Sets the velocity towards which a step goes back when it is too long: the last one, or that of a cloth at rest. It meets
-// the constraints, as the step does: the energy that it takes to meet them must not count against the step. What only slides
-// is at rest with what it slides on or adrift, whichever has less to spend.
+// Sets the velocity towards which a step goes back when it is too long: the last one, or that of a cloth at
+// rest. It meets the constraints, as the step does: the energy that it takes to meet them must not count
+// against the step. What only slides is at rest with what it slides on or adrift, whichever has less to
+// spend.
 void Bdf::set_base(ContactStep& contacts, bool at_rest) {
   contacts.filter(p_.v, filter_);
   const auto from_frame = [&](bool adrift) {
@@ -317,8 +321,8 @@ void Bdf::set_base(ContactStep& contacts, bool at_rest) {
   }
 }
 
-// Dampers, friction and contacts count as they are now. So a motion that was below rest need not be so any more; then the step
-// is judged against rest once more, or several iterations could make energy.
+// Dampers, friction and contacts count as they are now. So a motion that was below rest need not be so any
+// more; then the step is judged against rest once more, or several iterations could make energy.
 StepTaken Bdf::descend(ContactStep& contacts, const NewtonLoop& newton) {
   set_base(contacts, true);
   if (!newton.from_rest()) {

@@ -7,11 +7,12 @@
 // x_bar + c times that velocity: from the last state, one solve with a K that is not the exact one would be
 // of first order only.
 // The iteration is Newton's for the minimum of the incremental potential; solver/integrators/merit.h keeps it
-// from ending above where it began. Contacts are settled within each of its solves (solver/integrators/contact_loop.h).
-// A step that made energy goes on with two more iterations at most: what one solve leaves of a motion that bends or turns far
-// in a step is energy that nothing brought. If one of order 2 still makes energy, it is taken again by order 1 (and counted
-// in rescues). Such a step goes on with Newton's iteration until it makes none: what order 1 still makes of its own motion
-// the scheme itself damps, but not what order 2 has kept alive.
+// from ending above where it began. Contacts are settled within each of its solves
+// (solver/integrators/contact_loop.h). A step that made energy goes on with two more iterations at most: what
+// one solve leaves of a motion that bends or turns far in a step is energy that nothing brought. If one of
+// order 2 still makes energy, it is taken again by order 1 (and counted in rescues). Such a step goes on with
+// Newton's iteration until it makes none: what order 1 still makes of its own motion the scheme itself damps,
+// but not what order 2 has kept alive.
 // x [m], v [m/s], M [kg], f [N], h [s].
 #pragma once
 
@@ -47,7 +48,8 @@ class Bdf final : public Integrator {
 
   bool attempt(State& state, const Piece& piece, StepReport& report);
   ContactStep begin(const State& state, const Piece& piece, StepReport& report);
-  // Assembles all at (x, v); the same, and keeps what lasts; or only what comes and goes, after it was kept there.
+  // Assembles all at (x, v); the same, and keeps what lasts; or only what comes and goes, after it was kept
+  // there.
   enum class Assembly { all, keep, changing };
   void linearise(const State& state, Stiffness stiffness, const ContactStep& contacts, StepReport& report,
                  Assembly assembly);
@@ -77,8 +79,8 @@ class Bdf final : public Integrator {
       false;  // whether what only slides is at rest with its centre of mass, and not with what it slides on
   Point p_;   // the current point of Newton's iteration
   VecX dv_;   // m/s: before a solve its guess, afterwards its solution
-  // What residuals are relative to at most [N s]. Where a step overshot that is what they were relative to before, not the
-  // large forces there.
+  // What residuals are relative to at most [N s]. Where a step overshot that is what they were relative to
+  // before, not the large forces there.
   double most_reference_ = 0;
   double contact_energy_ =
       0;                  // J, at the start of the step, while contacts and bodies were those of the last one

@@ -129,8 +129,9 @@ void HeldMotion::set_free(const VecX& v) {
 
 // A particle that was held and is let go, or comes loose, gets back the velocity that was taken from it at
 // the start, less friction; it moves from the next step on. It does not get h (I - S) M^-1 f, which is
-// explicit: where the cloth is stiff and h long, that is far more than the particle would gain. A body can only push: where it
-// led the particle away, as a lift does that goes down, the particle goes back by that way.
+// explicit: where the cloth is stiff and h long, that is far more than the particle would gain. A body can
+// only push: where it led the particle away, as a lift does that goes down, the particle goes back by that
+// way.
 void HeldMotion::let_go(const VecX& x, const VecX& v, double h) {
   for (const Contact& c : contacts_->touching()) {
     if (c.active() && c.grip == Grip::stick) continue;

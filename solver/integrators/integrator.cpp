@@ -100,7 +100,8 @@ void require_stiffness(std::string_view integrator, const System& system) {
   for (const auto& force : system.forces())
     if (force->only_projects())
       throw InputError("integrator \"" + std::string(integrator) + "\": the force '" +
-                       std::string(force->name()) + "' has no stiffness for a matrix; take \"pbd\"");
+                       std::string(force->name()) +
+                       "' has no stiffness for a matrix; take \"pbd\" or an explicit integrator");
 }
 
 }  // namespace

@@ -24,8 +24,8 @@ struct StepOptions {
   // failure. When a limit is given, the solve stops there, and the report says so.
   int max_linear_iterations = 0;
   std::optional<ContactMode> contact = {};  // unset: the mode that suits the integrator best
-  // The contacts have settled when the impulses that are wrong (see ContactStep::imbalance) come to at most this
-  // much, relative to h |m g| or to a larger impulse that acts. Unset: ten times `tolerance`.
+  // The contacts have settled when the impulses that are wrong (see ContactStep::imbalance) come to at most
+  // this much, relative to h |m g| or to a larger impulse that acts. Unset: ten times `tolerance`.
   std::optional<double> contact_tolerance = {};
   // How often a step may be solved again because a contact changed. The count starts again for every motion
   // that is tried for a body that reacts.
@@ -71,18 +71,19 @@ struct StepReport {
   int contacts = 0;  // particles in contact at the end
   int self_contacts = 0;  // pairs of cloth and cloth that push each other at the end
   int self_guarded = 0;   // particles that were pushed or stopped so that no cloth passes through cloth
-  // Particles of pieces that stood still, at the cost of their momentum, since nothing else kept cloth from passing
-  // through cloth.
+  // Particles of pieces that stood still, at the cost of their momentum, since nothing else kept cloth from
+  // passing through cloth.
   int stood_still = 0;
   int tangled = 0;  // particles where cloth passes through cloth, and is brought apart
-  // Particles that a body may pass, because it could not be kept off them, or that two bodies hold between them.
+  // Particles that a body may pass, because it could not be kept off them, or that two bodies hold between
+  // them.
   int pinched = 0;
   int body_contacts = 0;        // points at which bodies press on each other at the end
   double body_overlap = 0;      // m: how far bodies were inside each other at the start
   double contact_residual = 0;  // how far they were from settled in the worst of the pieces, see StepOptions
   int torn = 0;                 // edges of cloth that were cut at the end (solver/assembly/tear_rule.h)
-  // J: of the contacts in which the cloth gives way, at the end, before anything is cut or merged there and they begin
-  // anew. An Assembly notes it.
+  // J: of the contacts in which the cloth gives way, at the end, before anything is cut or merged there and
+  // they begin anew. An Assembly notes it.
   double contact_energy = 0;
   double penetration = 0;  // m: how far the deepest particle was inside a body at the start
   double assemble_ms = 0, solve_ms = 0, collide_ms = 0, step_ms = 0;
@@ -134,7 +135,8 @@ struct IntegratorInfo {
   std::string_view name, summary;
 };
 std::vector<IntegratorInfo> integrators();  // those of this build
-// Says that this build lacks the integrator of that name, and what to install for it; empty for any other name.
+// Says that this build lacks the integrator of that name, and what to install for it; empty for any other
+// name.
 std::string missing_integrator(std::string_view name);
 
 }  // namespace drape

@@ -4,10 +4,10 @@
 //   KINSOL looks along it for a smaller |F|.                    [Dennis & Schnabel 1996, algorithm A6.3.1]
 // |F| has false minima where edges go slack. Where the search ends in one, KINSOL goes on from there with
 // directions that are halved until they lower the incremental potential Phi(v), of which F is the gradient
-// with dampers as they are where a direction begins (solver/integrators/merit.h). (Searching by Phi from the start takes
-// longer, because kinks keep its steps short.) After that K is replaced by the majorant; if that fails as well, the step is halved.
-// When the contacts do not agree with the solution, they change and KINSOL begins again from it.
-// x [m], v [m/s], M [kg], f [N], h [s], F [N s].
+// with dampers as they are where a direction begins (solver/integrators/merit.h). (Searching by Phi from the
+// start takes longer, because kinks keep its steps short.) After that K is replaced by the majorant; if that
+// fails as well, the step is halved. When the contacts do not agree with the solution, they change and KINSOL
+// begins again from it. x [m], v [m/s], M [kg], f [N], h [s], F [N s].
 #include <kinsol/kinsol.h>
 #include <kinsol/kinsol_ls.h>
 

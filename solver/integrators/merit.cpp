@@ -66,8 +66,8 @@ void Merit::measure(const BlockMatrix& A, const Point& p, double c) {
   linearised_at_ = p.x;
 }
 
-// What friction takes is mu N |slip|, as Coulomb's law has it: its linearisation grows with the square of a slip that
-// comes out larger than the one at which it was made.
+// What friction takes is mu N |slip|, as Coulomb's law has it: its linearisation grows with the square of a
+// slip that comes out larger than the one at which it was made.
 double Merit::potential(const StepCoefficients& k, const std::vector<ContactFriction>& friction,
                         const VecX& v) {
   x_ = k.x_bar + k.c * v;
@@ -88,8 +88,8 @@ double Merit::potential(const StepCoefficients& k, const std::vector<ContactFric
          k.c * dissipation_of_forces(system_, linearised_at_, v) + rubbed;
 }
 
-// The largest Phi that counts as not above `start`. A tenth of the energy that the fall of one step brings may
-// come from a solve that ends at its tolerance.
+// The largest Phi that counts as not above `start`. A tenth of the energy that the fall of one step brings
+// may come from a solve that ends at its tolerance.
 double Merit::most(double start) const {
   return start + 1e-9 * std::abs(start) + 0.05 * fall_energy_ + noise_.energy(start);
 }
@@ -114,9 +114,9 @@ StepTaken Merit::descend(const StepCoefficients& k, const std::vector<ContactFri
   return StepTaken::cut;
 }
 
-// Energies are summed in the frame in which the cloth is at rest, which moves by u. There pins and bodies do less work, by
-// u . J, where J are the impulses of the step but gravity's. (A step of order 2 looks back, so J is not what the momentum
-// gains.)
+// Energies are summed in the frame in which the cloth is at rest, which moves by u. There pins and bodies do
+// less work, by u . J, where J are the impulses of the step but gravity's. (A step of order 2 looks back, so
+// J is not what the momentum gains.)
 bool Merit::makes_energy(const StepCoefficients& k, const State& before, const Point& after, const VecX& rest,
                          double given, const EnergyAllowance& allowed) {
   const Vec3& g = system_.gravity_acceleration();

@@ -39,8 +39,8 @@ void NewtonMatrix::assemble_changing(const Linearisation& at, VecX& b) {
   A_->leave_out_zeros();
 }
 
-// Adds the forces that differ between the solves of a step, which are those of contact and those whose stencils come and
-// go, or all others.
+// Adds the forces that differ between the solves of a step, which are those of contact and those whose
+// stencils come and go, or all others.
 void NewtonMatrix::add(const Linearisation& at, bool changing, VecX& b) {
   for (const auto& force : system_.forces())
     if ((force->changes() || force->from_contact()) == changing)

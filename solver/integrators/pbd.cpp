@@ -46,14 +46,16 @@ StepReport Pbd::advance(State& state, double h) {
   check_step(system_, state, h);
   system_.bind();
   StepReport report;
-  const Stopwatch watch(report.step_ms);
   before_ = state;
   system_.keep();
   constraints_.keep();
   const int substeps = options_.projection.substeps;
-  for (int k = 0; k < substeps && report.done; ++k) {
-    take(state, h / substeps, k + 1 == substeps, report);
-    state.time = before_.time + h * (k + 1) / substeps;
+  {
+    const Stopwatch watch(report.step_ms);
+    for (int k = 0; k < substeps && report.done; ++k) {
+      take(state, h / substeps, k + 1 == substeps, report);
+      state.time = before_.time + h * (k + 1) / substeps;
+    }
   }
   if (report.done) {
     state.time = before_.time + h;
@@ -153,7 +155,8 @@ void Pbd::project(const State& state, double h, int iteration, StepReport& repor
 // Whether anything answers the motion of the particles besides the elements.
 bool Pbd::responds() const { return contacts_->bodies() || clusters_.takes_pairs(); }
 
-// The elements have moved the pins by what the bodies there give way to: the impulse goes to the body, and the pin back to it.
+// The elements have moved the pins by what the bodies there give way to: the impulse goes to the body, and
+// the pin back to it.
 void Pbd::pull_bodies(double h) {
   auto place = carried_.begin();
   for (const MovingPin& pin : contacts_->moving_pins()) {
@@ -184,8 +187,8 @@ bool Pbd::is_carried(int particle) const {
                      [particle](const MovingPin& pin) { return pin.particle == particle; });
 }
 
-// What the elements and the bodies leave of the equation of the substep, relative to the weight, or where nothing weighs, to
-// the forces.
+// What the elements and the bodies leave of the equation of the substep, relative to the weight, or where
+// nothing weighs, to the forces.
 double Pbd::residual(const State& state, double h) {
   free_v_ = (x_ - state.x) / h;
   push_.setZero(x_.size());

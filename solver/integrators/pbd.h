@@ -3,18 +3,19 @@
 //   every element of every force in turn, some times over:      x changes as if that element were alone
 //   bodies                                                      x and v change as if only the contact were there
 //   v = (x - x_start) / h
-// solver/forces/substep.h has what an element does: with the stiffness of the fabric by default, so that N/m means what it
-// means to every other integrator, or as a link without stiffness. Elements of a force that share no particle are taken at the
-// same time (solver/forces/colours.h). With many iterations this is implicit Euler of h; with few of them the cloth stretches
-// more than its stiffness says, and the report's residual says how far that is: what is left of
+// solver/forces/substep.h has what an element does: with the stiffness of the fabric by default, so that N/m
+// means what it means to every other integrator, or as a link without stiffness. Elements of a force that
+// share no particle are taken at the same time (solver/forces/colours.h). With many iterations this is
+// implicit Euler of h; with few of them the cloth stretches more than its stiffness says, and the report's
+// residual says how far that is: what is left of
 //   M (v - v*) - h f(x, v) - impulses of contact,   relative to h |m g|
 // where friction of cloth on cloth is bounded by the push of the substep before.
 // Many substeps of one iteration do better than few of many.                  [Macklin et al. 2019, Small steps]
 //                                            [Muller et al. 2007; Macklin, Muller & Chentanez 2016; Bullet's soft bodies]
-// Contact is that of explicit methods: "velocity" or "restitution" (constraints/response.h). What it has moved a particle by is
-// taken off again before the next iteration's contact, so that the contact is another element that is taken in turn. Pins have
-// no mobility. One that a body with mass carries has a bound of the body's own where it is held, the trace of 1/m - [r] I^-1 [r]
-// less 2/m, and its impulse goes to the body.
+// Contact is that of explicit methods: "velocity" or "restitution" (constraints/response.h). What it has
+// moved a particle by is taken off again before the next iteration's contact, so that the contact is another
+// element that is taken in turn. Pins have no mobility. One that a body with mass carries has a bound of the
+// body's own where it is held, the trace of 1/m - [r] I^-1 [r] less 2/m, and its impulse goes to the body.
 // x [m], v [m/s], M [kg], f [N], h [s].
 #pragma once
 

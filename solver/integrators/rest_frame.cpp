@@ -49,8 +49,8 @@ void RestFrame::join_touching(const BlockMatrix& A) {
   for (int& next : next_) next = next_[next];  // what it names is lower, and is done already
 }
 
-// What holds a piece: pins and particles without mass, with the velocity that is prescribed; and bodies, with their own.
-// (A contact that arrives in this step prescribes how the particle comes to the body.)
+// What holds a piece: pins and particles without mass, with the velocity that is prescribed; and bodies, with
+// their own. (A contact that arrives in this step prescribes how the particle comes to the body.)
 void RestFrame::add_bodies(const Constraints& constraints, const ContactStep& contacts, const Filter& filter,
                            const Point& point, const StepCoefficients& k) {
   const std::vector<int>& pinned = constraints.pinned();

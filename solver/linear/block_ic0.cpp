@@ -1,15 +1,15 @@
-// Incomplete Cholesky on 3x3 blocks without fill: P^-1 = L D L^T, where L has the blocks of A, those of the overlay
-// among them, and is kept in float.
+// Incomplete Cholesky on 3x3 blocks without fill: P^-1 = L D L^T, where L has the blocks of A, those of the
+// overlay among them, and is kept in float.
 //   A_jk <- A_jk - A_ij^T D_i^-1 A_ik for every i < j <= k whose block (j, k) is in the pattern, D_i = A_ii;
 //   L_ji = A_ij^T D_i^-1.                                                    [Meijerink & van der Vorst 1977]
-// Rows are eliminated in chunks of which several go at the same time (elimination_order.h); the number of threads
-// does not change a bit.
-// Blocks of the overlay are stiff springs between far parts of the cloth, and what the factor leaves out of the fill
-// between them would make it indefinite. So the diagonal block of a row gets a tenth of |A_jk|, summed over the overlay's
-// blocks of the row. A contact gives a sign times a positive semidefinite block; where several contacts share a block, the
-// sign of its trace is taken, and what that misses is left to the shift. What is held does not count here.
-// Where a pivot is not positive all the same, the matrix is shifted to A + a diag(A), and a grows until the factor
-// exists [Manteuffel 1980]; the report says so.
+// Rows are eliminated in chunks of which several go at the same time (elimination_order.h); the number of
+// threads does not change a bit.
+// Blocks of the overlay are stiff springs between far parts of the cloth, and what the factor leaves out of
+// the fill between them would make it indefinite. So the diagonal block of a row gets a tenth of |A_jk|,
+// summed over the overlay's blocks of the row. A contact gives a sign times a positive semidefinite block;
+// where several contacts share a block, the sign of its trace is taken, and what that misses is left to the
+// shift. What is held does not count here. Where a pivot is not positive all the same, the matrix is shifted
+// to A + a diag(A), and a grows until the factor exists [Manteuffel 1980]; the report says so.
 #include <atomic>
 #include <vector>
 
@@ -50,8 +50,8 @@ class BlockIc0 final : public Preconditioner {
       ++report.analyses;
     }
     serial_ = A.serial();
-    // A new matrix may need less than those before, but to try that with each would make many factors for nothing.
-    // What is held or rubbed changes little.
+    // A new matrix may need less than those before, but to try that with each would make many factors for
+    // nothing. What is held or rubbed changes little.
     if (fill_ != A.fill() && ++shifted_ >= 8) lower_shift();
     fill_ = A.fill();
     return build(A, filter, report);
@@ -66,7 +66,10 @@ class BlockIc0 final : public Preconditioner {
 
   void apply(const VecX& r, VecX& s) override {
     const double size = r.cwiseAbs().maxCoeff();  // scales r so that floats neither vanish nor overflow
-    if (size == 0) return s.setZero(), void();
+    if (size == 0) {
+      s.setZero();
+      return;
+    }
     order_.for_chunks(false, [&](int begin, int end) {  // L y = r
       for (int j = begin; j < end; ++j) {
         const double* rj = r.data() + 3 * static_cast<std::ptrdiff_t>(order_.row(j));
@@ -201,8 +204,8 @@ class BlockIc0 final : public Preconditioner {
     for (int c = 0; c < 3; ++c) diagonal.column[c] += Four{sum(0, c), sum(1, c), sum(2, c), 0};
   }
 
-  // Keeps a factor in float. Its last column is not written four wide, because the next number may belong to a chunk that
-  // another thread is writing.
+  // Keeps a factor in float. Its last column is not written four wide, because the next number may belong to
+  // a chunk that another thread is writing.
   void store(int k) {
     float* to = lower_.data() + 9 * static_cast<std::ptrdiff_t>(k);
     for (int c = 0; c < 2; ++c) internal::store(internal::narrow(factors_[k].column[c]), to + 3 * c);

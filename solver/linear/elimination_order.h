@@ -1,10 +1,11 @@
-// The order in which an incomplete factorisation eliminates the rows of a matrix, and which blocks it multiplies,
-// listed once for its blocks, those of the overlay among them.
-//   Rows are cut into at most eight chunks, at least as long as the bandwidth of the base. Each chunk gets the first
-//   colour that no earlier chunk has to which a block couples it, and rows come in the order of their chunks' colours.
-//   Two chunks of one colour have no coupling, so they are eliminated at the same time. The base alone takes two
-//   colours at most, those of the even and of the odd chunks; where far parts of a cloth touch each other it may take more.
-//   (Every cut costs iterations: a hung sheet of 10 k vertices took 120 with one chunk, 125 with 8, 153 with 40.)
+// The order in which an incomplete factorisation eliminates the rows of a matrix, and which blocks it
+// multiplies, listed once for its blocks, those of the overlay among them.
+//   Rows are cut into at most eight chunks, at least as long as the bandwidth of the base. Each chunk gets
+//   the first colour that no earlier chunk has to which a block couples it, and rows come in the order of
+//   their chunks' colours. Two chunks of one colour have no coupling, so they are eliminated at the same
+//   time. The base alone takes two colours at most, those of the even and of the odd chunks; where far parts
+//   of a cloth touch each other it may take more. (Every cut costs iterations: a hung sheet of 10 k vertices
+//   took 120 with one chunk, 125 with 8, 153 with 40.)
 #pragma once
 
 #include <algorithm>
@@ -74,8 +75,8 @@ class EliminationOrder {
   std::vector<int> row_, start_, place_;  // place_: row of the matrix -> in the order of elimination
   std::vector<Block> block_;
   Mirror below_, far_, left_;  // left_: the blocks of the matrix below its diagonal
-  // Each heavy chunk of rows has a list of its own. update_start_ and update_count_ say where in it those of a place
-  // stand.
+  // Each heavy chunk of rows has a list of its own. update_start_ and update_count_ say where in it those of
+  // a place stand.
   std::vector<std::vector<Update>> update_;
   std::vector<int> update_start_, update_count_;
 };

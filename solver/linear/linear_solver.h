@@ -58,8 +58,9 @@ class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   virtual std::string_view name() const = 0;
-  // dv goes in as the guess and comes out as the solution. An iterative solver replaces the locked part of the guess by z, and
-  // starts from the multiple of the rest that is nearest to the solution in the norm of A.
+  // dv goes in as the guess and comes out as the solution. An iterative solver replaces the locked part of
+  // the guess by z, and starts from the multiple of the rest that is nearest to the solution in the norm of
+  // A.
   virtual LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter,
                              const LinearOptions& options, VecX& dv) = 0;
 };
@@ -71,7 +72,8 @@ struct LinearSolverInfo {
   std::string_view name, summary;
 };
 std::vector<LinearSolverInfo> linear_solvers();  // those of this build
-// Says that this build lacks the linear solver of that name, and what to install for it; empty for any other name.
+// Says that this build lacks the linear solver of that name, and what to install for it; empty for any other
+// name.
 std::string missing_linear_solver(std::string_view name);
 
 }  // namespace drape

@@ -4,12 +4,12 @@
 // A sweep is Gauss-Seidel's, down and up (smoother.h).
 // It is our own because it was faster than PETSc's GAMG on these matrices (tests/bench measures both): it has
 // blocks of whole vertices, kept in float, and threads that do not change a bit of the result. The finest
-// level is made for every system, because it contains what is held. The coarser levels are new for every matrix
-// that is assembled: a step makes a tenth of the couplings ten times stiffer or softer, and old levels took up to
-// twice the iterations. Among the systems of one matrix they are kept while they work well enough: that is while
-// a solve takes at most 4/3 n + 4 iterations, where n iterations gave the same number of decades of the residual
-// (at least one) when the levels were new. When they no longer do, even in the middle of a solve, they are built
-// anew.
+// level is made for every system, because it contains what is held. The coarser levels are new for every
+// matrix that is assembled: a step makes a tenth of the couplings ten times stiffer or softer, and old levels
+// took up to twice the iterations. Among the systems of one matrix they are kept while they work well enough:
+// that is while a solve takes at most 4/3 n + 4 iterations, where n iterations gave the same number of
+// decades of the residual (at least one) when the levels were new. When they no longer do, even in the middle
+// of a solve, they are built anew.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 // The preconditioned conjugate gradient within a filter, in two variants:
 //   mpcg  Baraff & Witkin's modified CG. The unknown is dv itself; residual and search directions are
-//         filtered. It starts from dv_0 = a S guess + z, a as in residual.h, and has the symmetric convergence test of Ascher &
-//         Boxerman.
+//         filtered. It starts from dv_0 = a S guess + z, a as in residual.h, and has the symmetric
+//         convergence test of Ascher & Boxerman.
 //                                              [Baraff & Witkin 1998, 5.3; Ascher & Boxerman 2003]
 //   ppcg  plain CG on the prefiltered system (S A S + I - S) y = S (b - A z), dv = y + z, y_0 = a S guess. It
 //         takes any preconditioner that was built for the projected matrix.

@@ -13,12 +13,12 @@ class Preconditioner {
  public:
   virtual ~Preconditioner() = default;
   virtual std::string_view name() const = 0;
-  // Makes it ready for this matrix and filter; the report's shift or note says what was unusual. False: A is not
-  // positive definite.
+  // Makes it ready for this matrix and filter; the report's shift or note says what was unusual. False: A is
+  // not positive definite.
   virtual bool prepare(const BlockMatrix& A, const Filter& filter, LinearReport& report) = 0;
   virtual void apply(const VecX& r, VecX& s) = 0;
-  // The same, and Bs = B s where that comes for less than a product: B is the base of the projected matrix, without its
-  // overlay, off by what float loses. False: Bs was not written.
+  // The same, and Bs = B s where that comes for less than a product: B is the base of the projected matrix,
+  // without its overlay, off by what float loses. False: Bs was not written.
   virtual bool apply_and_multiply(const VecX& r, VecX& s, VecX& /*Bs*/) {
     apply(r, s);
     return false;

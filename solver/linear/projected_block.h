@@ -71,8 +71,8 @@ class ProjectedRows {
   int rows() const { return pattern_.rows(); }
   int bandwidth() const { return pattern_.bandwidth(); }
 
-  // Calls f(column, block, turned), columns ascending. Where `turned` the entry of the matrix is the transpose of the
-  // block. One number behind the block can be read.
+  // Calls f(column, block, turned), columns ascending. Where `turned` the entry of the matrix is the
+  // transpose of the block. One number behind the block can be read.
   template <class F>
   void each(int row, const F& f) const {
     double held[10];

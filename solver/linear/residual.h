@@ -29,9 +29,10 @@ inline int iteration_limit(const LinearOptions& options, int rows) {
 }
 
 // The norm |S (b - A z)| [N s] of the right-hand side of the projected system, or options.scale where that is
-// larger, but at most options.most_scale; and no less than lets the tolerance be reached, since no residual comes below
-// the round-off of what the projection takes out. Fills z, and leaves S (b - A z) in r. Where all that acts is along what is
-// locked, the projection leaves its round-off, which no iteration can lessen: that counts as zero.
+// larger, but at most options.most_scale; and no less than lets the tolerance be reached, since no residual
+// comes below the round-off of what the projection takes out. Fills z, and leaves S (b - A z) in r. Where all
+// that acts is along what is locked, the projection leaves its round-off, which no iteration can lessen: that
+// counts as zero.
 inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filter& filter,
                                 const LinearOptions& options, VecX& z, VecX& r) {
   constexpr double round_off = 2e-15;
@@ -56,8 +57,9 @@ inline double reference_impulse(const BlockMatrix& A, const VecX& b, const Filte
   return std::max(std::min(std::max(acting, options.scale), options.most_scale), least);
 }
 
-// The multiple of the guess at which y . S A S y / 2 - y . r, with r = S (b - A z), is least along it. Free fall, say, is right
-// where nothing holds, and as wrong as can be where all lies still. Takes what is locked out of dv, and leaves S A dv in q.
+// The multiple of the guess at which y . S A S y / 2 - y . r, with r = S (b - A z), is least along it. Free
+// fall, say, is right where nothing holds, and as wrong as can be where all lies still. Takes what is locked
+// out of dv, and leaves S A dv in q.
 inline double best_multiple(const BlockMatrix& A, const Filter& filter, const VecX& r, VecX& dv, VecX& q) {
   constexpr double round_off = 1e-10;
   const double whole = dot(dv, dv);
@@ -70,8 +72,8 @@ inline double best_multiple(const BlockMatrix& A, const Filter& filter, const Ve
   return curvature > 0 && std::isfinite(multiple) ? multiple : 1;
 }
 
-// Completes the report of a solver that has no residual of its own. dv meets the constraints to the last bit, and is
-// z where no impulse acts.
+// Completes the report of a solver that has no residual of its own. dv meets the constraints to the last bit,
+// and is z where no impulse acts.
 inline void finish(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
                    double reference, VecX& dv, VecX& scratch, LinearReport& report) {
   scratch.resize(dv.size());

@@ -30,9 +30,9 @@ inline Four Smoother::solve_diagonal(int row, const Four& right) const {
   return load(d) * right[0] + load(d + 3) * right[1] + load(d + 6) * right[2];
 }
 
-// Even chunks come first in the order. So L of an even chunk, and U of an odd one, stay within the chunk; U of an
-// even chunk and L of an odd one reach into its neighbours, too. Hence an odd chunk can go up as soon as it went
-// down, and an even one can multiply by L as soon as it went up.
+// Even chunks come first in the order. So L of an even chunk, and U of an odd one, stay within the chunk; U
+// of an even chunk and L of an odd one reach into its neighbours, too. Hence an odd chunk can go up as soon
+// as it went down, and an even one can multiply by L as soon as it went up.
 template <bool from_zero, class F>
 void Smoother::down_and_up(const VecX& r, VecX& x, VecX& change, const F& f) const {
   const auto down = [&](int chunk, int begin, int end) {

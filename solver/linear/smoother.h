@@ -1,14 +1,16 @@
-// A matrix of a multigrid level in the three parts of Gauss-Seidel's method, A = L + D + U, and its symmetric sweeps by
+// A matrix of a multigrid level in the three parts of Gauss-Seidel's method, A = L + D + U, and its symmetric
+// sweeps by
 // blocks: one down, and one up after it.                              [Briggs, Henson & McCormick 2000]
 //   down:  (L + D) y = r - U x;      up:  (D + U) x_new = r - L y
-// The sweep up goes over U alone, because the sweep down has r - L y already [Conrad & Wallach 1979]. And what is left
+// The sweep up goes over U alone, because the sweep down has r - L y already [Conrad & Wallach 1979]. And
+// what is left
 // needs no whole product with A:   A x_new = r + L (x_new - y),  the residual is -L (x_new - y).  [Eisenstat 1981]
-// From x = 0, where U x is zero, the sweeps and the residual together read one and a half times the blocks of the matrix.
-// From another x the sweeps alone read as many, and with the product it is twice the blocks.
-// Rows are cut into chunks of a power of two rows, at least as many as the bandwidth. All even chunks come before all odd
-// ones, and that order says what is L and what is U. Two chunks of one kind have no coupling, so they are swept in
-// parallel, and the sweep up is the adjoint of the sweep down, so that both together are symmetric, whatever the number
-// of threads.
+// From x = 0, where U x is zero, the sweeps and the residual together read one and a half times the blocks of
+// the matrix. From another x the sweeps alone read as many, and with the product it is twice the blocks.
+// Rows are cut into chunks of a power of two rows, at least as many as the bandwidth. All even chunks come
+// before all odd ones, and that order says what is L and what is U. Two chunks of one kind have no coupling,
+// so they are swept in parallel, and the sweep up is the adjoint of the sweep down, so that both together are
+// symmetric, whatever the number of threads.
 // L and U are kept in float. What the rounding takes from the sum of a row is added to D, which is kept in
 // double: the mass of a vertex of a fine sheet is a millionth of its stiffness, and would be lost in float.
 // (This matters on the finest level only: coarser matrices come in float, and have more mass.)
@@ -26,8 +28,8 @@ namespace drape::internal {
 
 class Smoother {
  public:
-  // Rows has rows(), bandwidth() and each(row, f(column, block, turned)) with both halves. Where `turned` the entry of
-  // the matrix is the transpose of the block.
+  // Rows has rows(), bandwidth() and each(row, f(column, block, turned)) with both halves. Where `turned` the
+  // entry of the matrix is the transpose of the block.
   template <class Rows>
   void build(const Rows& A);
 
@@ -46,8 +48,8 @@ class Smoother {
     }
   }
 
-  // One sweep down and one up, from x = 0 (whatever x holds) or from x. Where asked they give r - A x or A x of the new
-  // x. `change` is scratch. No two of the vectors may be the same.
+  // One sweep down and one up, from x = 0 (whatever x holds) or from x. Where asked they give r - A x or A x
+  // of the new x. `change` is scratch. No two of the vectors may be the same.
   void sweep_from_zero(const VecX& r, VecX& x, VecX& change, VecX& residual) const;
   void sweep(const VecX& r, VecX& x, VecX& change) const;
   void sweep(const VecX& r, VecX& x, VecX& change, VecX& Ax) const;

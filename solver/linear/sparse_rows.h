@@ -18,8 +18,8 @@ class SparseRows {
  public:
   class Chunk {
    public:
-    // Adds an entry to the row that end_row() closes; the caller writes its numbers, and may write one more, which
-    // means nothing.
+    // Adds an entry to the row that end_row() closes; the caller writes its numbers, and may write one more,
+    // which means nothing.
     float* add(int column) { return add_if(true, column); }
     // The same, but the entry is forgotten again where it is not wanted. Nothing branches on that.
     float* add_if(bool wanted, int column) {
@@ -63,8 +63,8 @@ class SparseRows {
     }
   };
 
-  // Begins anew with this many rows, in chunks of at least so many. Each chunk is then opened and filled in order.
-  // Chunks that are not needed keep their memory for a larger matrix.
+  // Begins anew with this many rows, in chunks of at least so many. Each chunk is then opened and filled in
+  // order. Chunks that are not needed keep their memory for a larger matrix.
   void resize(int rows, int chunk_rows = 1) {
     rows_ = rows;
     chunk_rows_ =
@@ -108,9 +108,10 @@ class SparseRows {
 
 using BlockRows = SparseRows<9>;
 
-// A row of blocks times x; three of the four lanes count. Rows are taken upwards or downwards, and so are their
-// blocks: where columns ascend, what the row before has just written comes last and does not hold up the rest of the
-// sum. What comes `ahead` blocks later is fetched early, because the processor's own prefetch stops at every page.
+// A row of blocks times x; three of the four lanes count. Rows are taken upwards or downwards, and so are
+// their blocks: where columns ascend, what the row before has just written comes last and does not hold up
+// the rest of the sum. What comes `ahead` blocks later is fetched early, because the processor's own prefetch
+// stops at every page.
 template <bool upwards = false>
 Four times(const BlockRows::Row& row, const double* x) {
   constexpr std::ptrdiff_t step = upwards ? -1 : 1, ahead = 64 * step;

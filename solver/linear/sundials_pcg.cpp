@@ -71,7 +71,10 @@ class SundialsPcg final : public LinearSolver {
   void iterate(int rows, const LinearOptions& options, double reference, LinearReport& report) {
     broke_down_ = false;
     if (!right_.allFinite() || !y_.allFinite()) return;  // the residual will show it
-    if (reference == 0) return y_.setZero(), void();
+    if (reference == 0) {
+      y_.setZero();
+      return;
+    }
     SUNLinSol_PCGSetMaxl(pcg_, iteration_limit(options, rows));
     const sundials::View y(y_, context_), right(right_, context_);
     const int flag = SUNLinSolSolve(pcg_, nullptr, y, right, options.tolerance * reference);

@@ -44,20 +44,21 @@ class BlockMatrix {
 
   // Sets all to zero but the diagonal blocks, which become the mass of the row's particle times the identity.
   void set_to_mass(const std::vector<double>& mass);
-  // Keeps the base as it is now, before anything is in the overlay or added to the diagonal; and takes it back as it was
-  // kept, with an empty overlay, in place of a set_to_mass() and of what was assembled since.
+  // Keeps the base as it is now, before anything is in the overlay or added to the diagonal; and takes it
+  // back as it was kept, with an empty overlay, in place of a set_to_mass() and of what was assembled since.
   void keep();
   void take_kept();
   // Sets what is added to the assembled diagonal, in place of the additions of the last call: a contact that
   // rubs in another way needs no new assembly. A row may occur once at most.
   void set_diagonal_additions(std::span<const DiagonalBlock> additions);
 
-  // Differs between any two calls of set_to_mass() and take_kept() in a process. What was assembled after the same call
-  // differs by the additions to the diagonal alone.
+  // Differs between any two calls of set_to_mass() and take_kept() in a process. What was assembled after the
+  // same call differs by the additions to the diagonal alone.
   std::uint64_t fill() const { return fill_; }
 
-  // To be called when all has been assembled, and again after anything is added to the overlay: products leave out the blocks of the overlay that are zero, which half of
-  // them are, because what is near enough to meet mostly does not push.
+  // To be called when all has been assembled, and again after anything is added to the overlay: products
+  // leave out the blocks of the overlay that are zero, which half of them are, because what is near enough to
+  // meet mostly does not push.
   void leave_out_zeros();
 
   void multiply(const VecX& x, VecX& y) const;     // y = A x, in row order
@@ -72,8 +73,8 @@ class BlockMatrix {
   std::uint64_t fill_ = 0;
   std::vector<double> values_;  // 9 a block, and 3 more, so that the last column can be read four wide
   std::vector<double> kept_;    // the base
-  // Where the entries of each row of the overlay end that are not left out; they stand in `acting_` where the row begins
-  // in the overlay.
+  // Where the entries of each row of the overlay end that are not left out; they stand in `acting_` where the
+  // row begins in the overlay.
   std::vector<BlockOverlay::Entry> acting_;
   std::vector<int> acting_end_;
   std::uint64_t acting_serial_ = 0;  // of the overlay that these are of

@@ -71,6 +71,7 @@ struct Matrices {
     one.set_to_mass(none);
     two.set_to_mass(none);
     for (const auto& force : system.forces()) {
+      if (force->changes()) continue;  // the contacts of cloth with cloth: their blocks are in no such matrix
       force->add_linearised(state.x, still, still, 1, Stiffness::majorant, one, b);
       force->add_linearised(state.x, still, still, 2, Stiffness::majorant, two, b);
     }

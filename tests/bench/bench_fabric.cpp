@@ -1,7 +1,7 @@
-// What a fabric makes of the bending rigidity it was given, on every kind of mesh and at three sizes: cantilevers
-// against the elastica, by both models of a triangle mesh and by hinges; the rigidity in four directions; and strips
-// on edge below and above the weight of lateral buckling. Before it what a step costs: a sheet of 1 m hung by two
-// corners, from horizontal, one thread.
+// What a fabric makes of the bending rigidity it was given, on every kind of mesh and at three sizes:
+// cantilevers against the elastica, by both models of a triangle mesh and by hinges; the rigidity in four
+// directions; and strips on edge below and above the weight of lateral buckling. Before it what a step costs:
+// a sheet of 1 m hung by two corners, from horizontal, one thread.
 #include <algorithm>
 #include <array>
 #include <cmath>

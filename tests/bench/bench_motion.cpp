@@ -1,9 +1,10 @@
 // Whole runs in motion: what a simulated second costs, and where its time goes.
 //   hung      a sheet of 1 m that begins horizontal and swings down from two of its corners
 //   dropped   the same sheet, let go 1 cm (or --height, in m) above a ball of 0.3 m radius, friction 0.3
-// 0.2 kg/m^2, 1000 N/m, 10 uN.m, h = 10 ms, tolerance 1e-4. Iterations, solves and Newton iterations are those of a
-// step on average; the contact residual is the largest of the run. Arguments: SIDE ... (vertices along an edge; 32 and
-// 100 unless given), --steps N (100), --solver NAME (auto), --threads N, --model noh-jung|woven, --scene hung|dropped,
+// 0.2 kg/m^2, 1000 N/m, 10 uN.m, h = 10 ms, tolerance 1e-4. Iterations, solves and Newton iterations are
+// those of a step on average; the contact residual is the largest of the run. Arguments: SIDE ... (vertices
+// along an edge; 32 and 100 unless given), --steps N (100), --solver NAME (auto), --threads N, --model
+// noh-jung|woven, --scene hung|dropped,
 // --self-contact 1 (the sheet meets itself, thickness 1 mm), --alone 1 (tells what the last system of each step takes
 // alone, as if the contacts were known before). It ends with the times as a table in Markdown, for
 // docs/measured.md; each cell has a number for every number of threads.

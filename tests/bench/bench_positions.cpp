@@ -1,7 +1,8 @@
-// The integrator "pbd" on sheets of 1 m that swing down from two corners: 0.2 kg/m^2, 1000 N/m, 10 uN.m, springs; steps of
-// 10 ms in 30 substeps of one iteration. Beside it the same springs by a plain loop, in the order of the mesh and in one
-// thread, as one would write it first; the same sheet with faces that are clusters; and implicit Euler. Strain: the largest
-// of an edge at the end. Arguments: SIDE ... (vertices along an edge; 32, 100 and 200 unless given), --steps N (100).
+// The integrator "pbd" on sheets of 1 m that swing down from two corners: 0.2 kg/m^2, 1000 N/m, 10 uN.m,
+// springs; steps of 10 ms in 30 substeps of one iteration. Beside it the same springs by a plain loop, in the
+// order of the mesh and in one thread, as one would write it first; the same sheet with faces that are
+// clusters; and implicit Euler. Strain: the largest of an edge at the end. Arguments: SIDE ... (vertices
+// along an edge; 32, 100 and 200 unless given), --steps N (100).
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// One implicit step of a sheet in free fall above a ball, by the installed library, and forces of its own: three
-// particles, and four whose stencils change in every step. Exit code 0: all of it is as it should be.
+// One implicit step of a sheet in free fall above a ball, by the installed library, and forces of its own:
+// three particles, and four whose stencils change in every step. Exit code 0: all of it is as it should be.
 #include <drape/drape.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// From a scene to a simulation, a sewn one and its run, by the installed package. Arguments: the scene, its state
-// hash after `drape simulate`, a folder for the output. Exit code 0: the same bits came out.
+// From a scene to a simulation, a sewn one and its run, by the installed package. Arguments: the scene, its
+// state hash after `drape simulate`, a folder for the output. Exit code 0: the same bits came out.
 #include <drape/app.h>
 #include <drape/drape.h>
 
