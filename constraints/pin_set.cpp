@@ -7,9 +7,8 @@ namespace drape {
 namespace {
 
 std::vector<int> each_once(std::vector<int> particles) {
-  std::ranges::sort(particles);
-  const auto twice = std::ranges::unique(particles);
-  particles.erase(twice.begin(), twice.end());
+  std::sort(particles.begin(), particles.end());
+  particles.erase(std::unique(particles.begin(), particles.end()), particles.end());
   return particles;
 }
 
@@ -19,8 +18,7 @@ bool PinSet::has(int particle) const { return std::binary_search(pinned_.begin()
 
 void PinSet::pin(const std::vector<int>& particles) {
   pinned_.insert(pinned_.end(), particles.begin(), particles.end());
-  std::sort(pinned_.begin(), pinned_.end());
-  pinned_.erase(std::unique(pinned_.begin(), pinned_.end()), pinned_.end());
+  pinned_ = each_once(std::move(pinned_));
 }
 
 void PinSet::pin_to_body(const std::vector<int>& particles, const MovingBody& body, const VecX& x) {
