@@ -9,30 +9,27 @@
 //            x h) [BW98, 6]
 //   release  a contact ends where the constraint would pull: r.n < 0
 //   catch    a plane that was let go holds again where the motion would pass through it, and a particle that
-//            would pass through a body is held by it. The first begins to slide, without friction in the
-//            first solve: if it stuck, it might be let go again. The second begins as if its particle were
-//            alone.
+//            would pass through a body is held by it. The first begins to slide, without friction in the first
+//            solve: if it stuck, it might be let go again. The second begins as if its particle were alone.
 //   stick    where |r_T| <= mu_s r.n: the particle is locked in all directions
 //   slide    otherwise: the particle is locked along n, and mu_k r.n rubs against the slip s, its velocity along
 //            the surface as seen by the body. This is Coulomb's law, linearised at the slip s_0 of the solve
 //            before, t = s_0 / |s_0|: an impulse against t, and a damper across it,
 //                p = -mu_k (r.n) (t + (I - t t^T) s / |s_0|)
 //            After the solve it is linearised anew at p - w s, which would stop a particle that meets the
-//            inertia w: where that is at most mu_k r.n the particle sticks, otherwise s_0 points against it
-//            and
+//            inertia w: where that is at most mu_k r.n the particle sticks, otherwise s_0 points against it and
 //            |s_0| = (|p - w s| - mu_k r.n) / w.            [Hueber, Stadler & Wohlmuth 2008, section 3]
 //   brake    before the first solve of a step s_0 is not known, so friction is the damper mu_k (r.n) / |s_e| in all
-//            directions, with the slip s_e that is expected: it cannot turn the motion round. r.n is taken
-//            from the last step, with its arrival impulse replaced by that of this step: otherwise an impact
-//            would rub twice. A contact that has come loose too often ends as one that is braked. What begins
-//            to touch, and slips, is braked, too; so is what slid when the impulse turned its slip round,
-//            with a quarter of the slip.
+//            directions, with the slip s_e that is expected: it cannot turn the motion round. r.n is taken from
+//            the last step, with its arrival impulse replaced by that of this step: otherwise an impact would
+//            rub twice. A contact that has come loose too often ends as one that is braked. What begins to touch, and
+//            slips, is braked, too; so is what slid when the impulse turned its slip round, with a quarter of the slip.
 //   doubt    where a contact changed more than once, was let go and held again, or went up and down, r.n changes by a half
-//            to all of what a solve asks for, as the last two solves tell: friction may lift a particle off,
-//            or press it on, by more than it takes itself
+//            to all of what a solve asks for, as the last two solves tell: friction may lift a particle off, or press it on,
+//            by more than it takes itself
 //   clamp    where a body overlaps itself, as thighs do that are pressed into each other, or two bodies close on the cloth
-//            (constraints/nip.h), there is no way out that the cloth could take: the particle goes with the
-//            body, or with both, in all directions, whatever pulls, until it is free
+//            (constraints/nip.h), there is no way out that the cloth could take: the particle goes with the body, or with
+//            both, in all directions, whatever pulls, until it is free
 //   stop     where friction can stop all that slides on a body within a step, and it slows down, the step
 //            begins with it as sticking
 // r = A dv - b [N s] is the impulse of the constraint on the particle.
@@ -92,8 +89,7 @@ void let_go(Contact& contact, int plane);
 bool add_plane(Contact& contact, const ContactPlane& plane);
 // The same; but of two planes that are nearly one, the deeper holds.
 void add_deepest(Contact& contact, const ContactPlane& plane);
-// The same; but where they imply it in direction and not in place, it takes the place of the one whose
-// multiplier is
+// The same; but where they imply it in direction and not in place, it takes the place of the one whose multiplier is
 // zero first as the new plane pushes. r is their reaction.            [Goldfarb & Idnani 1983, step 2]
 bool add_or_exchange(Contact& contact, const Vec3& r, const ContactPlane& plane);
 // Lets a plane that was let go hold again, in the same way.

@@ -1,15 +1,14 @@
 // Which vertices and triangles, and which edges, of the cloth could meet in a step.
 //   A segment of a rope goes along with the triangles as {i, j, j}: it owns vertices and its one edge as they
-//   do, and is
-// met as they are, by the vertices that come near it and by its edge.
+//   do, and is met as they are, by the vertices that come near it and by its edge.
 //   Two triangles are looked at when their boxes come near each other at a common time, and the normal of one
 //   does not keep them apart. Each vertex and each edge is owned by one of its triangles, so that a pair of
 //   them comes up once. Triangles with a common vertex are always near: their pairs are listed once and for
-//   all. The others are listed for every two patches of up to 32
-//   triangles that come near each other. Such a list stands as long as the motions of its two patches have
-//   not come to differ by more from what they were when it was made, in either patch or from patch to patch,
-//   than it allows for: what moves wildly elsewhere, and what both do alike, leaves it as it is. In a dense
-//   pile all lists allow for less, because every pair of them costs something in every step.
+//   all. The others are listed for every two patches of up to 32 triangles that come near each other. Such a
+//   list stands as long as the motions of its two patches have not come to differ by more from what they were
+//   when it was made, in either patch or from patch to patch, than it allows for: what moves wildly
+//   elsewhere, and what both do alike, leaves it as it is. In a dense pile all lists allow for less, because
+//   every pair of them costs something in every step.
 //   What was found to be apart is not looked at again before it can have come near. No two points of two
 //   patches come nearer to each other in a step than the motions of their vertices differ at most, and no two
 //   of triangles that share the vertex c than by 2 e_c, where e_c is by how much the vertices next to c move

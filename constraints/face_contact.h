@@ -12,8 +12,8 @@
 //                                                    a triangle touches nothing where its vertices rest
 //   E = k/2 g^2 for g < 0,   f_k = -k g w_k n,   K_kl = k w_k w_l n n^T
 //   friction: the damper mu N / |u| acts on u, the part of sum w_k v_k - v_b along the surface; below
-//             `slow` [m/s] the triangle creeps instead of sticking. N = -k g and |u| are those of the step before (where the
-//             triangle touches anew, of the solve before). Where that comes to more than 1.05 mu N of the
+//             `slow` [m/s] the triangle creeps instead of sticking. N = -k g and |u| are those of the step
+//             before (where the triangle touches anew, of the solve before). Where that comes to more than 1.05 mu N of the
 //             solve, as where the triangle has just been let go, the damper is made less. It is not made more
 //             within a step.
 // A constraint would lock two or three particles to each other, which a filter of 3x3 blocks cannot express.

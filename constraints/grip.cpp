@@ -91,8 +91,8 @@ Vec3 given_friction(const Contact& contact, double mu, double mass, const Vec3& 
 }
 
 // By which share the normal impulse of a contact in doubt follows what a solve asks it to change by. Two
-// solves tell how what
-// is asked for depends on what was taken; the share is what this line asks for.  [Aitken's method; Irons & Tuck 1969]
+// solves tell how what is asked for depends on what was taken; the share is what this line asks for.
+//                                                                        [Aitken's method; Irons & Tuck 1969]
 double relaxation(const Contact& contact, double change) {
   const double fell = contact.last_change - change;
   if (fell * contact.last_change <= 0) return least_relaxed;

@@ -1,6 +1,5 @@
 // The convex hull of points, and where two of them are nearest to each other, by the collision library Bullet
-// in
-// double precision.            [Gilbert, Johnson & Keerthi 1988; van den Bergh 2001 where the hulls overlap]
+// in double precision.          [Gilbert, Johnson & Keerthi 1988; van den Bergh 2001 where the hulls overlap]
 // A build without Bullet has no such hulls: available() is then false, and the other functions are not to be
 // called. Internal to the library's constraints.
 #pragma once

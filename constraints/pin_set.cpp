@@ -1,6 +1,10 @@
 #include "constraints/pin_set.h"
 
 #include <algorithm>
+#include <string>
+#include <utility>
+
+#include "mesh/base/errors.h"
 
 namespace drape {
 
@@ -10,6 +14,13 @@ std::vector<int> each_once(std::vector<int> particles) {
   std::sort(particles.begin(), particles.end());
   particles.erase(std::unique(particles.begin(), particles.end()), particles.end());
   return particles;
+}
+
+void require(const std::vector<int>& particles, Eigen::Index count) {
+  for (const int i : particles)
+    if (i < 0 || i >= count)
+      throw InputError("pins: particle " + std::to_string(i) + " is pinned, but there are " +
+                       std::to_string(count) + " particles, counted from 0");
 }
 
 }  // namespace
@@ -22,12 +33,14 @@ void PinSet::pin(const std::vector<int>& particles) {
 }
 
 void PinSet::pin_to_body(const std::vector<int>& particles, const MovingBody& body, const VecX& x) {
+  require(particles, x.size() / 3);
   for (int i : each_once(particles))
     if (!has(i)) moving_.push_back({i, body.number(), -1, body.mark(x.segment<3>(3 * i))});
   pin(particles);
 }
 
 void PinSet::pin_along(const std::vector<int>& particles, const Motion& motion, const VecX& x, double t) {
+  require(particles, x.size() / 3);
   const int path = static_cast<int>(paths_.size());
   paths_.push_back(motion);
   const Pose start = motion.at(t);

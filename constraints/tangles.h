@@ -1,25 +1,23 @@
 // Cloth that starts through itself: where it may pass, and what brings it apart.
-//   A tangle is all vertices of the triangles that cross along a contour
-//   [mesh/distance/triangle_crossings.h], and of those around them; contours that share such a vertex make
-//   one tangle. Within a tangle nothing is kept apart, between all else everything is.
-//   The edges that cross something divide the cloth into regions. An edge between two regions moves against
-//   the triangle that it passes through, along the normal of that triangle, so that its end in the lighter
-//   region comes back:
+//   A tangle is all vertices of the triangles that cross along a contour [mesh/distance/triangle_crossings.h], and of
+//   those around them; contours that share such a vertex make one tangle. Within a tangle nothing is kept apart, between
+//   all else everything is.
+//   The edges that cross something divide the cloth into regions. An edge between two regions moves against the triangle
+//   that it passes through, along the normal of that triangle, so that its end in the lighter region comes back:
 //     +-N, of the side of the contour that has the lightest region
-//   Where layers are given, the order says which end is to come back: the higher layer passes to the side
-//   where the normal N of the lower one points, whichever of the two the edge is of.
-//   Where a contour divides no region off, as between two borders, it is made shorter. An edge E then moves
-//   along
+//   Where layers are given, the order says which end is to come back: the higher layer passes to the side where the normal N
+//   of the lower one points, whichever of the two the edge is of.
+//   Where a contour divides no region off, as between two borders, it is made shorter. An edge E then moves along
 //     G = sum_i (R_i - (R_i . E) / (E . N) N)                     [Volino & Magnenat-Thalmann 2006, section 3]
-//   R_i: the direction in which the contour goes on from the edge, one for each triangle at the edge that
-//   crosses; both sides move as wholes along the sum of G, besides.
+//   R_i: the direction in which the contour goes on from the edge, one for each triangle at the edge that crosses; both
+//   sides move as wholes along the sum of G, besides.
 //   These are displacements without velocity, which spread to two rings of triangles around, or to one when
-//   that has not helped for 1 s: narrow folds would move as wholes. Masses share them, so that no momentum is
-//   made. They are bounded by a speed, and by how much they stretch an edge in a step. A rope that passes
-//   through cloth is divided by it, and comes back as cloth does; it has no contour to make shorter. The
-//   number of pairs that cross goes up and down while a contour moves over triangles. It may exceed its least
-//   so far by a quarter and a few; where a step makes more, the tangles that grow move as wholes. When it has
-//   not become less for 2 s, the tangles are left as they are.
+//   that has not helped for 1 s: narrow folds would move as wholes. Masses share them, so that no
+//   momentum is made. They are bounded by a speed, and by how much they stretch an edge in a step.
+//   A rope that passes through cloth is divided by it, and comes back as cloth does; it has no contour to make shorter.
+//   The number of pairs that cross goes up and down while a contour moves over triangles. It may exceed its least so far
+//   by a quarter and a few; where a step makes more, the tangles that grow move as wholes. When it has not become less for
+//   2 s, the tangles are left as they are.
 // Internal to the library's constraints.
 #pragma once
 
@@ -33,9 +31,9 @@ namespace drape::internal {
 
 class Tangles {
  public:
-  // Looks where the triangles cross. pass: for each particle whether what is near it may cross; two triangles
-  // that both have such a one make no tangle. layers: of the triangles, see SelfFace. segments: so many of
-  // the last triangles are segments of ropes, see crossing_contours().
+  // Looks where the triangles cross. pass: for each particle whether what is near it may cross; two triangles that both
+  // have such a one make no tangle. layers: of the triangles, see SelfFace. segments: so many of the last triangles are
+  // segments of ropes, see crossing_contours().
   void begin(std::vector<Triangle> triangles, int segments, std::vector<std::optional<int>> layers,
              const std::vector<char>& pass, const VecX& x);
   void end_step(const VecX& x);  // the step has ended at x
@@ -81,8 +79,7 @@ class Tangles {
   // Regions: that of each particle, and the mass of each [kg], infinite where a particle is held.
   std::vector<int> region_;
   std::vector<double> region_mass_;
-  // Of the contour that is looked at: the triangles at it and around it, their side, 1 or -1, 0: unknown, and
-  // displacements.
+  // Of the contour that is looked at: the triangles at it and around it, their side, 1 or -1, 0: unknown, and displacements.
   std::vector<int> near_;
   std::vector<char> is_near_;
   std::vector<int> side_;

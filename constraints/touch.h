@@ -4,12 +4,10 @@
 //   sphere    its centre against the signed distance of the other body
 //   convex    Bullet's search for the nearest points, and for flat faces the polygon in which they lie on each other
 //             (constraints/hull.h); the two ends of a capsule count as spheres besides
-//   any other the corners of each body against the signed distance of the other; two edges that cross are not
-//   found
-// The first two and the last are exact for the corners that there are. A plate is taken as the polyhedron
-// that it is drawn as, a level set as points of its surface.
-// gap [m]: the distance between the two surfaces along the normal; negative where the bodies are inside each
-// other.
+//   any other the corners of each body against the signed distance of the other; two edges that cross are not found
+// The first two and the last are exact for the corners that there are. A plate is taken as the polyhedron that it is
+// drawn as, a level set as points of its surface.
+// gap [m]: the distance between the two surfaces along the normal; negative where the bodies are inside each other.
 #pragma once
 
 #include <vector>
@@ -53,9 +51,9 @@ class TouchForm {
 // Whether the pair is answered by Bullet, which a build may be without.
 bool needs_hulls(const TouchForm& a, const TouchForm& b);
 
-// Finds where the bodies, as they are at the start of the step under way, are nearer than `reach` [m] to each
-// other, at most a few dozen points that hold the bodies as well as all of them would. `found` is filled anew
-// and keeps its memory.
+// Finds where the bodies, as they are at the start of the step under way, are nearer than `reach` [m] to each other,
+// at most a few dozen points that hold the bodies as well as all of them would. `found` is filled anew and keeps its
+// memory.
 void find_touches(const MovingBody& a, const TouchForm& form_a, const MovingBody& b, const TouchForm& form_b,
                   double reach, std::vector<Touch>& found);
 

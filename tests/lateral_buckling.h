@@ -1,6 +1,5 @@
 // A woven strip that stands on edge, held at one end, topples sideways at the weight that theory says:
-// lateral
-// buckling of a beam under its own weight.                          [Timoshenko & Gere, Theory of Elastic Stability, 6.3]
+// lateral buckling of a beam under its own weight.      [Timoshenko & Gere, Theory of Elastic Stability, 6.3]
 //   area_density b g L^3 = 12.85 sqrt(B b C),  C = 4 D_66 b the torsional rigidity of a strip b wide
 // so that Gamma = area_density g L^3 / B = 12.85 sqrt(4 D_66 / B), which is 18.2 where Poisson's ratio is 0.
 // A clamp also keeps the strip from warping, which makes it stiffer by a few per cent where it is 16 times

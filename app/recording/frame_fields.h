@@ -1,8 +1,7 @@
 // What the vertices of a cloth have besides their positions, frame by frame, as arrays of NumPy:
 //   fields/NAME.velocity.npy   float32 (frames, n, 3)   m/s
 //   fields/NAME.strain.npy     float32 (frames, n)      what is stretched or compressed most at the vertex: of woven
-//                                                    cloth a principal strain of a triangle, else an edge's l
-//                                                    / L - 1
+//                                                    cloth a principal strain of a triangle, else an edge's l / L - 1
 //   fields/NAME.contact.npy    uint8   (frames, n)      0 free, 1 slides, 2 sticks on a body, 3 on cloth, 4 stopped
 // And, where the file has faces of more than three corners, how they are cut:
 //   fields/NAME.triangles.npy  int32   (m, 3)           numbers of vertices, from 0

@@ -2,8 +2,8 @@
 // the exports all start here.
 //   A run without frames has a single one, its last state. Frames count from 0; vertices have the order of
 //   the input file.
-//   Where a cloth tears, vertices part. All frames have the vertices of the end; before they part they are at
-//   one place. What is missing or damaged is reported as data (missing()), and the rest can still be shown.
+//   Where a cloth tears, vertices part. All frames have the vertices of the end; before they part they are at one place.
+//   What is missing or damaged is reported as data (missing()), and the rest can still be shown.
 #pragma once
 
 #include <filesystem>

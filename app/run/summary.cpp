@@ -93,15 +93,15 @@ std::string summary(const RunRecord& record, const Output& output) {
   text += "state: " + record.state() + ", largest speed " + rounded(record.max_speed, 2) +
           " m/s, largest edge strain " + rounded(100 * record.max_edge_strain, 2) + " %\n";
   text += "energy: " + rounded(record.energy.start, 3) + " J at the start, " + rounded(record.energy.end, 3) +
-          " J at the end, with a rise of at most " + rounded(record.energy.largest_rise, 2) +
-          " J on the way\n";
+          " J at the end; the most that it rose on the way, also by what moves the cloth: " +
+          rounded(record.energy.largest_rise, 2) + " J\n";
   if (record.self_contacts_max > 0 || record.self_guarded > 0)
     text += "cloth on cloth: " + counted(record.self_contacts, "pair") + " of places " +
             (record.self_contacts == 1 ? "pushes" : "push") + " each other at the end, " +
             std::to_string(record.self_contacts_max) + " at most; " +
-            (record.crossings_max == 0
-                 ? std::string("no triangles cross in any frame")
-                 : counted(record.crossings_max, "pair") + " of triangles at most cross in a frame") +
+            (record.crossings_max == 0 ? std::string("nothing crosses in any frame")
+                                       : counted(record.crossings_max, "pair") +
+                                             " of triangles or segments cross in a frame at most") +
             "\n";
   if (!record.cloths.empty())
     text += "area kept: " + rounded(100 * record.strains.area_kept, 3) + " %, strain of triangles from " +

@@ -1,6 +1,7 @@
 #include "app/simulation/unlikely.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "mesh/triangles/extent.h"
@@ -90,10 +91,11 @@ double volume(const TriangleMesh& mesh, const std::vector<Vec3>& x) {  // m^3, n
   return sum;
 }
 
-// The least way of a vertex between two frames [m].
-double common_way(const std::vector<Vec3>& before, const std::vector<Vec3>& after) {
+// The least way of a vertex of a triangle between two frames [m].
+double common_way(const TriangleMesh& mesh, const std::vector<Vec3>& before, const std::vector<Vec3>& after) {
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < before.size(); ++i) least = std::min(least, (after[i] - before[i]).norm());
+  for (const Triangle& t : mesh.triangles)
+    for (const int v : t) least = std::min(least, (after[v] - before[v]).norm());
   return least;
 }
 
@@ -102,38 +104,46 @@ std::string between(const MeshFrames& frames, int k) {
          rounded(frames.time(k), 4) + " and " + rounded(frames.time(k + 1), 4) + " s)";
 }
 
-// Half of the way between two frames, on which vertices go straight, a body that turns by a quarter has half of its volume.
-void warn_of_volume(const std::string& start, const TriangleMesh& mesh, const std::vector<Vec3>& before,
-                    const std::vector<Vec3>& after, const std::string& when, Names& messages) {
+// Half-way between two frames, since vertices go straight, a body that turns by a quarter has half of its volume.
+// rest: its volume in the first frame [m^3].
+void warn_of_volume(const std::string& start, const TriangleMesh& mesh, double rest,
+                    const std::vector<Vec3>& before, const std::vector<Vec3>& after, const std::string& when,
+                    Names& messages) {
   constexpr double least = 0.5;
   std::vector<Vec3> middle = before;
   for (std::size_t i = 0; i < middle.size(); ++i) middle[i] += 0.5 * (after[i] - before[i]);
-  const double first = volume(mesh, before), last = volume(mesh, after), kept = volume(mesh, middle) / first;
-  if (last * first < 0)
+  const double first = volume(mesh, before) / rest, last = volume(mesh, after) / rest,
+               kept = volume(mesh, middle) / rest;
+  if (last < -1e-9)
     messages.push_back(start + "is turned inside out " + when +
                        ": cloth ends inside of it; was it mirrored, or are its vertices in another order?");
-  else if (kept < least * std::min(1.0, last / first))
-    messages.push_back(start + "keeps " + rounded(100 * std::max(kept, 0.0), 2) +
+  else if (kept < least * std::min(first, last))
+    messages.push_back(start + "keeps " + rounded(100 * std::max(kept / first, 0.0), 2) +
                        " % of its volume half-way " + when +
                        ", since its vertices go straight: does it turn too far in one frame?");
 }
 
-void warn_of_frames(const std::string& name, const DeformingBody& body, Names& messages) {
+// All of the body jumps where it goes half of its size in a frame, and far less in the frame before.
+void warn_of_frames(const std::string& name, const DeformingBody& body, double end, Names& messages) {
   const MeshFrames& frames = *body.frames;
+  const TriangleMesh& mesh = body.surface->mesh();
   const std::string start = "warning: body " + name + " ";
   std::vector<Vec3> before, after;
   frames.positions_at(frames.time(0), before);
+  const double rest = volume(mesh, before), size = box_of(before, mesh.triangles).diagonal().norm();
+  const bool has_volume = body.surface->closed() && std::abs(rest) > 1e-9 * size * size * size;
   const std::size_t told = messages.size();
-  for (int k = 0; k + 1 < frames.frame_count() && messages.size() == told; ++k, before.swap(after)) {
+  double last_way = 0;
+  for (int k = 0; k + 1 < frames.frame_count() && frames.time(k) < end && messages.size() == told; ++k) {
     frames.positions_at(frames.time(k + 1), after);
-    const double size = box_of(before, body.surface->mesh().triangles).diagonal().norm(),
-                 way = common_way(before, after);
-    if (way > 0.5 * size)
+    const double way = common_way(mesh, before, after);
+    if (way > 0.5 * size && way > 4 * last_way)
       messages.push_back(start + "jumps by " + rounded(way, 3) + " m, " + rounded(way / size, 2) +
                          " times its size, " + between(frames, k) +
                          ": all that is on the way is hit; is there a cut in the film?");
-    if (body.surface->closed())
-      warn_of_volume(start, body.surface->mesh(), before, after, between(frames, k), messages);
+    if (has_volume) warn_of_volume(start, mesh, rest, before, after, between(frames, k), messages);
+    last_way = way;
+    before.swap(after);
   }
 }
 
@@ -142,7 +152,7 @@ void warn_of_frames(const std::string& name, const DeformingBody& body, Names& m
 void warn_of_unlikely_frames(const Scene& scene, const std::vector<MovingBody>& bodies, Names& messages) {
   for (std::size_t k = 0; k < scene.obstacles.size(); ++k)
     if (const DeformingBody* const body = deforming(bodies[k].obstacle().shape))
-      warn_of_frames(scene.obstacles[k].name, *body, messages);
+      warn_of_frames(scene.obstacles[k].name, *body, scene.simulation.duration, messages);
 }
 
 void tell_of_unlikely_values(const Scene& scene, double size, Names& messages) {

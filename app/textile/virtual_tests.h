@@ -53,8 +53,8 @@ Specimen draped_disc(const DrapeTest& test, double edge, int repeat);
 // The drape test: a disc of fabric hangs over a plate. It is let down slowly, as by a tester whose table
 // sinks: its weight grows from nothing to all of it while it is lowered. Every repeat has a mesh of its own;
 // it turns the warp on the mesh and pushes the vertices up or down by up to 0.1 mm at the start, by random
-// numbers of its own. At rest: the kinetic energy stays below 1e-6 of the energy that the fall
-// has set free, for 0.2 s. `each` is called with every shadow.
+// numbers of its own. At rest: the kinetic energy stays below 1e-6 of the energy that the fall has set free,
+// for 0.2 s. `each` is called with every shadow.
 Values drape_test(const Fabric& fabric, ClothModel model, double edge, const DrapeTest& test,
                   const std::function<void(int repeat, const Shadow&)>& each);
 

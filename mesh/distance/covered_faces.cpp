@@ -115,8 +115,7 @@ void CoveredFaces::fit_cluster(Cluster& cluster, const std::vector<Face>& faces,
 }
 
 // A connected surface whose normals all lie in one half-space does not pass through itself, but for what its
-// border
-// does.                                             [Volino & Magnenat-Thalmann 1994, section 3]
+// border does.                                                   [Volino & Magnenat-Thalmann 1994, section 3]
 bool CoveredFaces::cannot_meet(int cluster, int other) const {
   const Cluster &a = clusters_[cluster], &b = clusters_[other];
   if (!a.box.intersects(b.box)) return true;

@@ -5,8 +5,8 @@
 //   surrounds x
 //                        [Jacobson, Kavan & Sorkine-Hornung 2013, Robust inside-outside segmentation, eq. 5]
 // A triangle is covered when w is at least 1 on the side to which its normal points. Far groups of triangles
-// count as
-// one, w is rounded to a whole number.           [Barill et al. 2018, Fast winding numbers for soups and clouds]
+// count as one, w is rounded to a whole number.
+//                                             [Barill et al. 2018, Fast winding numbers for soups and clouds]
 // Where triangles pass through each other they are covered in part, up to the contour along which they meet.
 #pragma once
 

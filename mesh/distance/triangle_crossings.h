@@ -6,8 +6,7 @@
 // A segment of a rope, which has no area, is given as {i, j, j}. It crosses a triangle when it passes through
 // it. The signs are those of mesh/base/predicates.h, so that rounding neither hides a crossing nor makes one.
 // Crossings that are joined make a contour: the line along which two sheets pass through each other. It is
-// closed, or it ends
-// at a border or at a fold.                                       [Volino & Magnenat-Thalmann 2006]
+// closed, or it ends at a border or at a fold.                              [Volino & Magnenat-Thalmann 2006]
 #pragma once
 
 #include <vector>

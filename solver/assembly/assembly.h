@@ -1,5 +1,4 @@
-// Cloths, soft bodies, ropes, bodies and pins as one system that is stepped, while seams close and are
-// merged.
+// Cloths, soft bodies, ropes, bodies and pins as one system that is stepped, while seams close and are merged.
 //   Assembly all;                                  gravity and options of contact, the usual ones by default
 //   all.add(...)                                   every cloth, soft body and rope
 //   all.constraints->add(...), all.pin(...)        bodies and pins, in any order
@@ -8,10 +7,9 @@
 // Where two particles are merged their masses and momenta are added. Positions are averaged by mass, so that
 // the centre of mass stays; a pinned particle stays where its first pin holds it. Then the system and the
 // integrator are made anew.
-//   Where a cloth tears (solver/assembly/tear_rule.h), a particle parts: its copies have its place and its
-//   velocity, and
-// all of them together have its mass. Copies come after the particles of their cloth, so those of later parts
-// get higher numbers; the system and the integrator are made anew here, too.
+//   Where a cloth tears (solver/assembly/tear_rule.h), a particle parts: its copies have its place and its velocity, and
+// all of them together have its mass. Copies come after the particles of their cloth, so those of later parts get higher
+// numbers; the system and the integrator are made anew here, too.
 #pragma once
 
 #include <functional>
@@ -39,8 +37,7 @@ struct Assembly {
   std::unique_ptr<Constraints> constraints;
   std::unique_ptr<Integrator> integrator;  // refers to `system` and `constraints`
   State state;
-  // The states from before particles became one or parted; they are kept because arrays may still look at
-  // them.
+  // The states from before particles became one or parted; they are kept because arrays may still look at them.
   std::vector<State> outgrown;
   // false: none of them is kept, because nothing looks at them.
   bool keep_outgrown = true;
@@ -59,19 +56,18 @@ struct Assembly {
   // nothing.
   void pin(const PinRule& rule, std::size_t k = 0);
 
-  // How cloths[k] and cloths[l] rub on each other (k = l: one on itself), instead of by the friction of both.
-  // Throws InputError when it is negative or not finite.
+  // How cloths[k] and cloths[l] rub on each other (k = l: one on itself), instead of by the friction of both. Throws
+  // InputError when it is negative or not finite.
   void set_friction(std::size_t k, std::size_t l, double friction);
 
   // Makes the system at the first call, and steps with this integrator from then on. If there are bodies by
-  // the first call, their corners and rims are kept from coming through triangles. Vertices of
-  // Cloth::at_one_place become one particle then, and particles have other numbers: Cloth::embedding tells
-  // them.
+  // the first call, their corners and rims are kept from coming through triangles. Vertices of Cloth::at_one_place
+  // become one particle then, and particles have other numbers: Cloth::embedding tells them.
   void use(MakeIntegrator make);
   void use(const std::string& integrator, const std::string& linear_solver, const StepOptions& options = {});
 
-  // Takes one step of h [s]. Seams go on closing in it; those that have closed are merged after it, and what
-  // is strained too far is torn.
+  // Takes one step of h [s]. Seams go on closing in it; those that have closed are merged after it, and what is
+  // strained too far is torn.
   StepReport advance(double h);
 
   const Cloth& cloth_of(int particle) const;

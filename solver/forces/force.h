@@ -52,7 +52,7 @@ class Force {
   virtual bool goes_slack() const { return false; }
   // Lists the pairs of particles that act on each other as long as the force exists: its off-diagonal blocks.
   virtual void list_pairs(std::vector<ParticlePair>& pairs) const = 0;
-  // Whether the force has stencils that come and go: pairs beside those of list_pairs.
+  // Whether the force has stencils that come and go.
   virtual bool changes() const { return false; }
   // Finds those stencils for a step. Returns true when they differ from those of the last step.
   virtual bool begin_step(const StepStart&) { return false; }

@@ -1,5 +1,4 @@
-// Impulses between bodies at the points where they touch, all found together by sweeps over the points
-// (projected Gauss-Seidel),
+// Impulses between bodies at the points where they touch, all found together by sweeps over the points (projected Gauss-Seidel),
 // each of which goes on along the way of those before it, as conjugate gradients do.          [Silcowitz, Niebe & Erleben 2010]
 //   u = sum (s v + w x r) - u_0      relative velocity at a point, over the bodies that have a part in it
 //   K = sum (s^2/M 1 - [r] I^-1 [r]);   the impulse J there changes s J / M of a body's v and I^-1 (r x J) of its w
@@ -8,8 +7,8 @@
 //   impact     from the velocities with which the substep begins
 //   support    from those that the forces and the impact make
 //   recovery   without friction, for what lies too deep. It is a motion within the substep that leaves no velocity.
-// s [-]: the part of the body in the point, below 0 on the other side of it. r [m]: s times the way from its
-// centre. u, u_0, v [m/s], w [rad/s], J [N s], K [1/kg], M [kg], I [kg m^2].
+// s [-]: the part of the body in the point, below 0 on the other side of it. r [m]: s times the way from its centre.
+// u, u_0, v [m/s], w [rad/s], J [N s], K [1/kg], M [kg], I [kg m^2].
 #pragma once
 
 #include <array>
@@ -71,8 +70,8 @@ class Impulses {
 
   void begin(Phase phase);              // all impulses of the phase are zero
   Vec3 slip(const Point& point) const;  // u [m/s] in the phase under way
-  // Returns how much of the largest velocity of the phases so far the last sweep still changed; about 1e-9
-  // where the impulses have settled.
+  // Returns how much of the largest velocity of the phases so far the last sweep still changed; about 1e-9 where the impulses
+  // have settled.
   double settle(Phase phase);
 
  private:

@@ -4,10 +4,10 @@
 // place of the plate (Weave::bending, solver/forces/hinge.h) B depends on where the edges run.
 //
 // The warp runs along a direction of the rest shape, laid into the plane of every triangle. Where the law is
-// the same in all directions, none has to be given. The rest shape may be cut where
-// the cloth is sewn, as in solver/forces/noh_jung.h. The plate rests flat, whatever folds the rest shape has
-// in space, or with a share of the angles that the mesh itself has (Weave::rest_angle). Its threads may rub
-// when they are bent (Weave::bend_friction).
+// the same in all directions, none has to be given. The rest shape may be cut where the cloth is sewn, as in
+// solver/forces/noh_jung.h. The plate rests flat, whatever folds the rest shape has in space, or with a share
+// of the angles that the mesh itself has (Weave::rest_angle). Its threads may rub when they are bent
+// (Weave::bend_friction).
 #pragma once
 
 #include <memory>

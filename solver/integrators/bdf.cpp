@@ -29,11 +29,13 @@ namespace {
 // How often a step is halved because its contacts do not settle. What remains is told by the report.
 constexpr int max_unsettled_halvings = 2;
 
-// What a step may make of energy: of "bdf2", whose motion nothing damps, so that it adds up; of
-// "implicit-euler", whose next steps take it out; and of that where edges go slack, for there the step after
-// one that was refined overshoots.
-constexpr EnergyAllowance of_order_2{.of_fall = 5e-4, .of_motion = 3e-4},
-    of_order_1{.of_fall = 0.05, .of_motion = 0.05}, of_order_1_slack{.of_fall = 0.5, .of_motion = 0.5};
+// What a step may make of energy: of "bdf2", whose motion nothing damps, so that it adds up; of "implicit-euler",
+// whose next steps take it out; and of that where any edges go slack, for there the step after one that was
+// refined overshoots. The springs of contact are made anew for a step, whose bodies may move, and so say
+// nothing of where it began: what they store counts for "bdf2" alone, since it is what a bounce takes.
+constexpr EnergyAllowance of_order_2{.of_fall = 5e-4, .of_motion = 3e-4, .of_contacts = true},
+    of_order_1{.of_fall = 0.05, .of_motion = 0.05, .of_contacts = false},
+    of_order_1_slack{.of_fall = 0.5, .of_motion = 0.5, .of_contacts = false};
 
 }  // namespace
 
@@ -150,7 +152,7 @@ class Bdf::ContactSolve {
 
 bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
   ContactStep contacts = begin(state, piece, report);  // what touches; c = gamma h; the first (x, v) and dv
-  bool energy = false;                                 // whether the motion makes some, of "bdf2"
+  bool energy = false;                                 // whether the motion makes some
   for (NewtonLoop newton(options_, system_.goes_slack()); newton.next();) {
     if (newton.exhausted()) return fail(report, "no step lowers the energy");
     // A = M + c D + c^2 K,  b = M (v_bar - v) + c (f - K y)                            [BW98, eq. 6 and 18]
@@ -167,7 +169,8 @@ bool Bdf::attempt(State& state, const Piece& piece, StepReport& report) {
     if (!p_.x.allFinite()) return fail(report, "the new positions are not finite numbers");
     if (taken == StepTaken::overshot && linear_.residual > 0)
       most_reference_ = linear_.residual_impulse / linear_.residual;
-    energy = makes_energy(state, contacts, piece.h);
+    // The impulses of a step that was cut short are those of the whole one.
+    energy = taken == StepTaken::whole && makes_energy(state, contacts, piece.h);
     newton.took(taken, energy && falls_back(), energy && !falls_back(), report);
   }
   if (k().order_2() && energy) {
@@ -201,7 +204,6 @@ ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& repor
   most_reference_ = std::numeric_limits<double>::infinity();
   merit_.begin(piece.h);
   const Stopwatch watch(report.collide_ms);
-  if (!piece.order_1) contact_energy_ = system_.contact_energy(state.x);
   ContactStep contacts = constraints_.begin_step(state.x, state.v, system_.masses(), state.time, piece.h,
                                                  Foresight::ahead, {.h = piece.of_step()});
   system_.begin_step({state.time, piece.h, state.x, state.v, piece.h});
@@ -248,7 +250,7 @@ double Bdf::residual(ContactStep& contacts) {
 // The wind may give twice what its power at one end of the step comes to, because the power is not steady.
 bool Bdf::makes_energy(const State& start, const ContactStep& contacts, double h) {
   const double power = std::max(system_.given_power(start.x, start.v), system_.given_power(p_.x, p_.v));
-  const double given = contact_energy_ + contacts.work() + 2 * h * power;
+  const double given = contacts.work() + 2 * h * power;
   const EnergyAllowance& allowed = history_.order() == 2  ? of_order_2
                                    : system_.goes_slack() ? of_order_1_slack
                                                           : of_order_1;

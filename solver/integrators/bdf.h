@@ -82,8 +82,6 @@ class Bdf final : public Integrator {
   // What residuals are relative to at most [N s]. Where a step overshot that is what they were relative to
   // before, not the large forces there.
   double most_reference_ = 0;
-  double contact_energy_ =
-      0;                  // J, at the start of the step, while contacts and bodies were those of the last one
   double imbalance_ = 0;  // of the contacts after the last solve, relative
   LinearReport linear_;   // of the last solve
   State before_;          // the state to which a step that fails half-way returns

@@ -4,8 +4,7 @@
 //   A contact that would pull is let go, one that is pushed along the surface harder than it sticks slides,
 //   and a particle that would pass through a body is caught. Then bodies that react move as the impulses make
 //   them.
-// This is a primal-dual active set with inexact solves: every round decides all contacts, and is solved only
-// as
+// This is a primal-dual active set with inexact solves: every round decides all contacts, and is solved only as
 // accurately as the contacts are settled.                    [Hintermueller, Ito & Kunisch 2002]
 #pragma once
 
@@ -28,8 +27,8 @@ struct ContactTrial {
   double curvature = 0;  // d . A d of the way d from contacts.accepted_velocity() to v [J]
 };
 
-// How often a step is solved again because cloth would pass through cloth where no spring was. What passes in
-// spite of them is stopped by the guard.
+// How often a step is solved again because cloth would pass through cloth where no spring was. What passes in spite
+// of them is stopped by the guard.
 inline constexpr int max_meetings = 3;
 
 // An Attempt offers
@@ -44,8 +43,8 @@ inline constexpr int max_meetings = 3;
 //   void changed(ContactChange)      the contacts have changed: makes anew what depends on them
 //   void bodies_moved()              the same for bodies that react
 // The contacts have settled when the imbalance of impulses is at most contact_tolerance(options) of the
-// reference. At most max_contact_solves solves are answered by other contacts, for each motion that is tried
-// for a body that reacts.
+// reference. At most max_contact_solves solves are answered by other contacts, for each motion that is tried for
+// a body that reacts.
 // `imbalance` [-] is how far the contacts are from settled in the end.
 template <class Attempt>
 bool settle_contacts(ContactStep& contacts, const StepOptions& options, Attempt& attempt, StepReport& report,

@@ -63,9 +63,10 @@ struct StepReport {
   int linear_solves = 0;
   int linear_iterations = 0;
   int multigrid_solves = 0;  // the solves for which the linear solver "auto" took ppcg+multigrid
-  int rescues = 0;           // iterations or steps taken again, because the potential rose or energy was made
-  int guarded = 0;           // particles that were stopped at a surface outside the equations
-  double residual = 0;       // relative: the worst of the solves that the substeps ended with
+  int rescues =
+      0;  // iterations or steps taken again, because the potential rose, or of "bdf2" energy was made
+  int guarded = 0;      // particles that were stopped at a surface outside the equations
+  double residual = 0;  // relative: the worst of the solves that the substeps ended with
   bool converged =
       true;          // every solve reached its tolerance, the contacts have settled, and no piece stood still
   int contacts = 0;  // particles in contact at the end

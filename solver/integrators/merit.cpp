@@ -144,10 +144,12 @@ bool Merit::makes_energy(const StepCoefficients& k, const State& before, const P
     }
     return sum;
   });
-  const double stored = elastic_energy(after.x) + system_.contact_energy(after.x);
-  const double more = stored - elastic_energy(before.x);
+  const auto stored = [&](const VecX& x) {
+    return elastic_energy(x) + (allowed.of_contacts ? system_.contact_energy(x) : 0);
+  };
+  const double now = stored(after.x), more = now - stored(before.x);
   return sums.gained + more > given + allowed.of_fall * fall_energy_ + allowed.of_motion * sums.inner +
-                                  noise_.energy(stored + sums.kinetic);
+                                  noise_.energy(now + sums.kinetic);
 }
 
 }  // namespace drape

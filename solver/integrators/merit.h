@@ -1,19 +1,21 @@
 // What an implicit step minimises, and how far a Newton step may go.
 //   Phi(v) = 1/2 |v - v_bar - c g|^2_M + E(x_bar + c v) + c/2 v . D v + what friction of contacts takes in h
-// with D where the step was linearised last, as the matrix has it: it may turn with the motion. The first
-// Newton step is judged against a cloth at rest (solver/integrators/rest_frame.h; v = 0 where its pins and
-// bodies stand, and what is prescribed), each later one against the v before it, unless that has come to be
-// above rest. A full step that would raise Phi is cut short by halves: so a step of order 1 makes no energy,
-// however stiff the cloth.
-//                                                                [Nocedal & Wright 2006, section 3.1]
+// with D where the step was linearised last, as the matrix has it: it may turn with the motion.
+// The first Newton step is judged against a cloth at rest (solver/integrators/rest_frame.h; v = 0 where its
+// pins and bodies stand, and what is prescribed), each later one against the v before it, unless that has come
+// to be above rest. A full step that would raise Phi is cut short by halves.
+//                                                                  [Nocedal & Wright 2006, section 3.1]
+// So a step of order 1 does not raise Phi, however stiff the cloth. The energy that it makes all the same,
+// because one linear solve does not find the least Phi, is what makes_energy() is for.
 // Where edges go slack, the first Newton step may be taken whole although it raises Phi: the next one knows
-// which edges
-// have become taut, and is judged against a cloth at rest in its place.                    [the watchdog of Chamberlain et al. 1982]
-// Rounding of x and v, in sums of a few terms, disturbs v by e_i = 8 eps (|x_i|/c + |v_i|). With N = sum A_ii
-// e_i^2 it changes Phi, a sum of squares, by at most N + 2 sqrt(Phi N), and the gradient of Phi by |A_ii
-// e_i|. Forces whose energy is a sum of terms that cancel add what these may be off (Force::energy_noise).
-// Without gravity there is no other scale of what is small. A change that may be round-off
-// counts neither as a rise of Phi nor as a residual.
+// which edges have become taut, and is judged against a cloth at rest in its place.
+//                                                                  [the watchdog of Chamberlain et al. 1982]
+// Rounding of x and v, in sums of a few terms, disturbs v by e_i = 8 eps (|x_i|/c + |v_i|). With
+//   N = sum A_ii e_i^2
+// it changes Phi, a sum of squares, by at most N + 2 sqrt(Phi N), and the gradient of Phi by |A_ii e_i|. Forces
+// whose energy is a sum of terms that cancel add what these may be off (Force::energy_noise). Without gravity
+// there is no other scale of what is small. A change that may be round-off counts neither as a rise of Phi nor
+// as a residual.
 // x [m], v [m/s], A [kg], c, h [s].
 #pragma once
 
@@ -43,6 +45,7 @@ double dissipation_of_forces(const System& system, const VecX& damped_at, const 
 // of a step and of the kinetic energy of the motion.
 struct EnergyAllowance {
   double of_fall, of_motion;
+  bool of_contacts;  // whether what contacts store counts as energy of the cloth
 };
 
 // How far a Newton step was taken: whole, whole although Phi rose, or cut short.
@@ -69,11 +72,10 @@ class Merit {
   // v goes back towards v_base by halves until Phi is not above that value.
   StepTaken descend(const StepCoefficients& k, const std::vector<ContactFriction>& friction,
                     const VecX& v_base, const VecX& dv, bool may_overshoot, VecX& v);
-  // True when the motion has more energy than it was given (the energy of its contacts at the start, and what
-  // moving bodies, pins and the wind bring) and than is allowed: one of order 2 has then
-  // looked back across a contact or a slackening of stiff cloth, and one of order 1 has bent or turned
-  // further in a step than its linearisation knows. How fast it is counts against a cloth at rest, which
-  // moves by `rest` [m/s].
+  // True when the motion has more energy than moving bodies, pins and the wind gave it (`given`), and than is
+  // allowed: one of order 2 has then looked back across a contact or a slackening of stiff cloth, and one of
+  // order 1 has bent or turned further in a step than its linearisation knows. How fast it is counts against a
+  // cloth at rest, which moves by `rest` [m/s].
   bool makes_energy(const StepCoefficients& k, const State& before, const Point& after, const VecX& rest,
                     double given, const EnergyAllowance& allowed);
 

@@ -1,21 +1,20 @@
 // Takes incomplete Cholesky or multigrid, whichever costs less in the run as it goes.
-//   Costs are counted, never timed, so that the same input gives the same bits. Their unit is one iteration
-//   with
-// block-ic0; the prices were measured (docs/design.md) on sheets of 4 k and 10 k vertices and on a skirt of
-// 4.7 k, without contact of cloth with cloth: the overlay, and what block-ic0 lists anew for it, is not
-// counted. A factor that breaks down is counted once.
+//   Costs are counted, never timed, so that the same input gives the same bits. Their unit is one iteration with
+// block-ic0; the prices were measured (docs/design.md) on sheets of 4 k and 10 k vertices and on a skirt of 4.7 k, without
+// contact of cloth with cloth: the overlay, and what block-ic0 lists anew for it, is not counted. A factor that breaks
+// down is counted once.
 // What is compared is the cost of all systems of one assembled matrix, because contacts ask for several short
 // solves with it, for which the levels of multigrid do not pay.
 // A run begins with block-ic0. Multigrid has the next matrix on trial where a solve costs more than one with
-// multigrid usually does, and goes on when the matrix cost less than one costs with block-ic0 on average.
-// After a trial the other method waits for 8 matrices, and for twice as many after each that it loses, up to
-// 64. It waits for 2 only where a matrix now costs 1.25 times what it cost with the other method when that
-// was last used, as when cloth arrives at a body; and multigrid that was never tried does not wait where
-// block-ic0 costs twice what is usual. While block-ic0 is cheap, multigrid has no trial. Matrices whose
-// solves take no iteration, as in free fall, tell nothing of a method, and are not in its average.
-// Where a matrix costs 1.5 times what one did with multigrid, and four times what one usually does, block-ic0
-// is given up in the middle of a solve: on trial, where a matrix costs 1.25 times what one did with
-// multigrid. Multigrid solves that system anew, and those that follow.
+// multigrid usually does, and goes on when the matrix cost less than one costs with block-ic0 on average. After a
+// trial the other method waits for 8 matrices, and for twice as many after each that it loses, up to 64. It waits
+// for 2 only where a matrix now costs 1.25 times what it cost with the other method when that was last used, as
+// when cloth arrives at a body; and multigrid that was never tried does not wait where block-ic0 costs twice what
+// is usual. While block-ic0 is cheap, multigrid has no trial. Matrices whose solves take no iteration, as in free
+// fall, tell nothing of a method, and are not in its average.
+// Where a matrix costs 1.5 times what one did with multigrid, and four times what one usually does, block-ic0 is given
+// up in the middle of a solve: on trial, where a matrix costs 1.25 times what one did with multigrid. Multigrid solves
+// that system anew, and those that follow.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,8 +31,7 @@ struct Price {  // in iterations with block-ic0
 };
 constexpr Price ic0_price = {1, 8, 0};
 
-// The time of an iteration with block-ic0 grows with the number of blocks, that of one with multigrid grows
-// less.
+// The time of an iteration with block-ic0 grows with the number of blocks, that of one with multigrid grows less.
 Price multigrid_price(const BlockMatrix& A) {
   const double blocks_of_row = static_cast<double>(A.pattern().blocks()) / A.rows();
   return {1 + 14 / blocks_of_row, 6, 19};
@@ -158,8 +156,8 @@ class Auto final : public LinearSolver {
   Method now_ = ic0;
   bool on_trial_ = false;
   int wait_ = 0, waited_ = 0;  // matrices until the next trial, and since the last
-  // Costs in iterations with block-ic0: of the matrix so far, and of one on average, by method, when that was
-  // last used; 0: it was not used yet.
+  // Costs in iterations with block-ic0: of the matrix so far, and of one on average, by method, when that was last
+  // used; 0: it was not used yet.
   double cost_ = 0;
   std::array<double, 2> usual_ = {};
   VecX guess_;

@@ -1,10 +1,9 @@
 // A matrix of a multigrid level in the three parts of Gauss-Seidel's method, A = L + D + U, and its symmetric
-// sweeps by
-// blocks: one down, and one up after it.                              [Briggs, Henson & McCormick 2000]
+// sweeps by blocks: one down, and one up after it.                          [Briggs, Henson & McCormick 2000]
 //   down:  (L + D) y = r - U x;      up:  (D + U) x_new = r - L y
 // The sweep up goes over U alone, because the sweep down has r - L y already [Conrad & Wallach 1979]. And
-// what is left
-// needs no whole product with A:   A x_new = r + L (x_new - y),  the residual is -L (x_new - y).  [Eisenstat 1981]
+// what is left needs no whole product with A: A x_new = r + L (x_new - y), the residual is -L (x_new - y).
+//                                                                                            [Eisenstat 1981]
 // From x = 0, where U x is zero, the sweeps and the residual together read one and a half times the blocks of
 // the matrix. From another x the sweeps alone read as many, and with the product it is twice the blocks.
 // Rows are cut into chunks of a power of two rows, at least as many as the bandwidth. All even chunks come

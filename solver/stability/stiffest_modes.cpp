@@ -67,11 +67,10 @@ struct Matrices {
     const std::vector<double> none(system.masses().size(), 0.0);
     const VecX still = VecX::Zero(state.x.size());
     VecX b = still;
-    BlockMatrix one(system.bind()), two(system.bind());
+    BlockMatrix one = system.matrix(), two = one;
     one.set_to_mass(none);
     two.set_to_mass(none);
     for (const auto& force : system.forces()) {
-      if (force->changes()) continue;  // the contacts of cloth with cloth: their blocks are in no such matrix
       force->add_linearised(state.x, still, still, 1, Stiffness::majorant, one, b);
       force->add_linearised(state.x, still, still, 2, Stiffness::majorant, two, b);
     }
