@@ -263,3 +263,21 @@ TEST_CASE("a rope drawn over a drum slips at the capstan's ratio of tensions", "
   CHECK(slipping == Approx(std::exp(mu * M_PI)).epsilon(0.03));
   CHECK(largest == Approx(std::exp(mu * M_PI)).epsilon(0.05));  // and holds no more than that before
 }
+
+TEST_CASE("a pin that is named twice is one pin, and one of no particle is refused", "[moving-bodies]") {
+  Constraints constraints;
+  constraints.add({.shape = Sphere{Vec3::Zero(), 0.1}});
+  const VecX x = VecX::Zero(3 * 4);
+  constraints.pin_to_body({3, 1, 3}, 0, x);
+  constraints.pin_along({2, 2, 3}, Motion::constant(Vec3::UnitX(), Vec3::Zero(), Vec3::Zero()), x, 0);
+  CHECK(constraints.moving_pins().size() == 3);
+  CHECK(constraints.pinned() == std::vector<int>{1, 2, 3});
+  for (const int none : {-1, 4}) {
+    CHECK_THROWS_WITH(constraints.pin_to_body({none}, 0, x), Catch::Contains("there are 4 particles"));
+    CHECK_THROWS_WITH(constraints.pin_along({none}, Motion(), x, 0),
+                      Catch::Contains("there are 4 particles"));
+  }
+  constraints.pin(9);
+  CHECK_THROWS_WITH(constraints.begin_step(x, x, std::vector<double>(4, 1.0), 0, 0.01, Foresight::ahead, {}),
+                    Catch::Contains("particle 9 is pinned, but there are 4 particles"));
+}

@@ -122,6 +122,16 @@ TEST_CASE("run.json stays valid with names that are not UTF-8 and numbers that a
   CHECK_THAT(text, Contains("\"max_speed\": null") && Contains("\\\"b\\\\\\n"));
 }
 
+TEST_CASE("the course of an energy knows its largest rise above what it had been", "[output]") {
+  RunRecord record;
+  record.energy.begin(2);
+  for (const double energy : {1.0, 1.5, 0.5, 0.75}) record.energy.add(energy);
+  CHECK(record.energy.start == 2);
+  CHECK(record.energy.end == 0.75);
+  CHECK(record.energy.largest_rise == 0.5);
+  CHECK_THAT(run_json(record), Contains("\"energy\"") && Contains("\"largest_rise\": 0.5"));
+}
+
 TEST_CASE("measures of a state", "[output]") {
   Cloth cloth;
   cloth.edges = {{1, 2, 0.5}, {2, 3, 2.0}};  // behind another cloth's particle

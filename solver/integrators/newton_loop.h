@@ -19,8 +19,6 @@ class NewtonLoop {
 
   bool next() {
     ++k_;
-    // Where a motion is refined that was good enough but for its energy, a step that is cut ends that.
-    if (refines_ && k_ > options_.newton_iterations && taken_ == StepTaken::cut) return false;
     return k_ < options_.newton_iterations || taken_ != StepTaken::whole || (makes_energy_ && k_ < most()) ||
            (refines_ && k_ < std::min(options_.newton_iterations + most_refined, most()));
   }
