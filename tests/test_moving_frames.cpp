@@ -188,6 +188,13 @@ TEST_CASE("only a mesh has frames", "[moving]") {
   CHECK_THROWS_WITH(read_scene(walk.path / "s.toml", {}), Contains("s.toml:5") && Contains("frames"));
 }
 
+TEST_CASE("keys of frames without frames are refused", "[moving]") {
+  const Walk walk;
+  for (const char* key : {"frame_rate", "frames_start"})
+    CHECK_THROWS_WITH(walk.body(key + std::string(" = 25\n")),
+                      Contains(key) && Contains("belongs to `frames`"));
+}
+
 TEST_CASE("frames whose vertices are in another order or unit are refused by name", "[moving]") {
   const Walk walk;
   TriangleMesh fine = box_mesh({0.4, 0.2, 0.3});
@@ -199,7 +206,8 @@ TEST_CASE("frames whose vertices are in another order or unit are refused by nam
   Places larger = fine.positions;
   for (Vec3& x : larger) x *= 100;
   write_frames(larger);
-  CHECK_THROWS_WITH(walk.body(keys), Contains("f2.obj") && Contains("100 times as long") && Contains("unit"));
+  CHECK_THROWS_WITH(walk.body(keys), Contains("s.toml:") && Contains("frames: ") && Contains("f2.obj") &&
+                                         Contains("100 times as long") && Contains("unit"));
   Places breath = fine.positions;
   for (Vec3& x : breath) x *= 1.2;
   write_frames(breath);

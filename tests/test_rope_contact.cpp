@@ -376,7 +376,7 @@ TEST_CASE("what follows along a rope does not push, and a knot that is drawn tig
       int met = 0;
       for (int n = 0; n < 100; ++n) {
         met = std::max(met, all.go(5e-3, 1).self_contacts);
-        REQUIRE(all.between(0, 0, 5 * radius) > 1.6 * radius);
+        REQUIRE(all.between(0, 0, 5 * radius) > 1.5 * radius);
       }
       CHECK(all.between(0, 0, 5 * radius) < 2.1 * radius);  // the knot is still there
       CHECK(met > 0);

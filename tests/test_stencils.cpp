@@ -227,6 +227,8 @@ TEST_CASE("what is found anew in every step has the same motion as what stands",
       State state{0, random_vector(3 * particles, 0.5, 3), VecX::Zero(3 * particles)};
       StepOptions options = precise();
       options.projection.iterations = 100;  // pbd takes them in another order
+      // Where a step is linearised first depends on what stands, where it ends does not.
+      options.newton_iterations = 30;
       auto stepper = make_integrator(name, system, constraints, make_linear_solver("cholmod"), options);
       for (int n = 0; n < 10; ++n) REQUIRE(stepper->advance(state, 0.01).done);
       ends[found] = state;

@@ -205,6 +205,18 @@ void Table::read_part(const std::string& key, std::string& value, const Names& p
 
 std::vector<Table> Table::tables(const std::string& key, const About& about) {
   note(key, "a table, or several", "", "none", about);
+  return asked_tables(key);
+}
+
+std::optional<Table> Table::one(const std::string& key, const About& about) {
+  note(key, "a table", "", "none", about);
+  std::vector<Table> found = asked_tables(key);
+  if (found.size() > 1) fail(key, "there may be only one");
+  if (found.empty()) return {};
+  return std::move(found.front());
+}
+
+std::vector<Table> Table::asked_tables(const std::string& key) {
   std::vector<Table> found;
   const Node* const node = ask(key);
   if (!node) return found;

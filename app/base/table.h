@@ -43,6 +43,8 @@ class Table {
 
   // The tables under a key: one, or each of an array of tables; none when the key is absent.
   std::vector<Table> tables(const std::string& key, const About& about);
+  // The only table under a key; none when the key is absent. Throws where there are several.
+  std::optional<Table> one(const std::string& key, const About& about);
   // The value of a key, of any kind; null when it is absent. `kind` says in words what may stand there.
   const Node* take(const std::string& key, const char* kind, const About& about);
   Table inner(const std::string& key) const;  // the table under a key that has been taken
@@ -63,6 +65,7 @@ class Table {
 
  private:
   const Node* ask(const std::string& key);  // null when absent
+  std::vector<Table> asked_tables(const std::string& key);
   template <class F>
   void with(const std::string& key, const F& f);
   void note(const std::string& key, const std::string& kind, std::string_view unit, const std::string& value,

@@ -78,6 +78,8 @@ std::vector<Part> force_parts() {
           {"choi-ko", "of a regular grid of quads: neighbours that pull, next but one that buckle, damping"},
           {"woven", "a membrane of triangles and a plate, along warp and weft, on any mesh"},
           {"soft", "springs of a lattice that resist both ways, damping along them"},
+          {"rope", "a chain that resists stretching and bending, damping of both"},
+          {"air", "drag and skin friction of the air, and its wind, on all triangles"},
           {"gravity", "mass times gravity"}};
 }
 

@@ -192,7 +192,12 @@ class PatternTable {
 }  // namespace
 
 Pattern parse_toml_pattern(std::string_view text, const std::string& name, KeyNotes* notes) {
-  return PatternTable(parse_toml(text, name), notes).read(name);
+  const Node root = parse_toml(text, name);
+  for (const char* key : {"simulation", "cloth", "obstacle"})
+    if (const auto of_scene = root.members.find(key); of_scene != root.members.end())
+      throw InputError(of_scene->second.where + ": '" + key +
+                       "' belongs to a scene, and here is a pattern expected; `drape simulate` runs a scene");
+  return PatternTable(root, notes).read(name);
 }
 
 }  // namespace drape::app

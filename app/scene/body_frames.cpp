@@ -135,7 +135,12 @@ FramesEntry read_frames(Table& table, const fs::path& folder) {
       "tells "
       "the faces; placed as `mesh` is");
   const Node* const node = table.take("frames", "a text, or a list of texts", about);
-  if (!node) return entry;
+  if (!node) {
+    for (const char* key : {"frame_rate", "frames_start"})
+      if (table.has(key))
+        table.fail(key, "belongs to `frames`, which is not there: " + std::string(expected_frames));
+    return entry;
+  }
   entry.where = node->where;
   Names texts;
   if (node->kind == Node::Kind::array) {
@@ -172,8 +177,10 @@ std::vector<fs::path> frame_files(const FramesEntry& entry) {
   return entry.files;
 }
 
-std::shared_ptr<const MeshFrames> load_frames(const ObstacleEntry& entry, const TriangleMesh& rest) {
-  const std::vector<fs::path> files = frame_files(entry.frames);
+namespace {
+
+std::shared_ptr<const MeshFrames> load(const std::vector<fs::path>& files, const ObstacleEntry& entry,
+                                       const TriangleMesh& rest) {
   const auto frames = std::make_shared<MeshFrames>();
   const auto time = [&](double frame) { return entry.frames.start + frame / entry.frames.rate; };
   std::vector<Vec3> positions;
@@ -193,6 +200,17 @@ std::shared_ptr<const MeshFrames> load_frames(const ObstacleEntry& entry, const 
     add(*frames, time(static_cast<double>(k)), positions, files[k], entry, rest, edge);
   }
   return frames;
+}
+
+}  // namespace
+
+std::shared_ptr<const MeshFrames> load_frames(const ObstacleEntry& entry, const TriangleMesh& rest) {
+  const std::vector<fs::path> files = frame_files(entry.frames);
+  try {
+    return load(files, entry, rest);
+  } catch (const InputError& error) {
+    throw InputError(entry.frames.where + ": frames: " + error.what());
+  }
 }
 
 }  // namespace drape::app

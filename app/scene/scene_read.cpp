@@ -288,9 +288,9 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path
   Scene scene;
   scene.label = std::move(label);
   scene.settings = settings;
-  const std::vector<Table> simulation = table.tables("simulation", "how long, how exactly, by which methods");
-  std::vector<Table> air = table.tables("air", {"the air that the cloth moves in, and its wind",
-                                                "none: nothing but what it touches slows the cloth"});
+  std::optional<Table> simulation = table.one("simulation", "how long, how exactly, by which methods"),
+                       air = table.one("air", {"the air that the cloth moves in, and its wind",
+                                               "none: nothing but what it touches slows the cloth"});
   std::vector<Table> cloths = table.tables("cloth", "each a cloth"),
                      softs = table.tables("soft", "each a soft body, a lattice of springs"),
                      ropes = table.tables("rope", "each a rope, a line of particles"),
@@ -299,9 +299,8 @@ Scene read_scene(Node root, const std::vector<Setting>& settings, const fs::path
                                                    "by what is said of both"});
   refuse_misplaced(table, "scene");
   table.finish();  // before anything is missed: it may be there with its name mistyped
-  if (simulation.size() > 1) table.fail("simulation", "there may be only one");
-  scene.simulation = read_simulation(simulation.empty() ? nullptr : simulation.data());
-  scene.simulation.air = read_air(std::move(air), table);
+  scene.simulation = read_simulation(simulation ? &*simulation : nullptr);
+  if (air) scene.simulation.air = read_air(*air);
   if (!table.has("soft") && !table.has("rope")) table.require("cloth");
   for (Table& cloth : cloths) scene.cloths.push_back(read_cloth(cloth, folder));
   for (Table& soft : softs) scene.softs.push_back(read_whole_soft(soft, folder));

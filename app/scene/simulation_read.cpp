@@ -160,11 +160,8 @@ SimulationOptions read_simulation(const Table* given) {
   return options;
 }
 
-std::optional<Air> read_air(std::vector<Table> given, const Table& scene) {
-  if (given.size() > 1) scene.fail("air", "there may be only one");
-  if (given.empty()) return {};
+Air read_air(Table& table) {
   Air air;
-  Table& table = given.front();
   table.read("wind", air.wind, dimension::speed, "the velocity of the air, the same everywhere and always");
   table.read("density", air.density, dimension::density, Range::not_negative, "of the air");
   table.read("drag", air.drag, dimension::number, Range::not_negative,

@@ -198,6 +198,7 @@ ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& repor
     friction_.reserve(2 * static_cast<std::size_t>(system_.particles()));  // two bodies may rub a particle
     history_.forget(system_);
     rest_frame_.follow(A_.matrix().pattern());
+    rigid_.follow(A_.matrix().pattern());
   }
   adrift_ = false;
   linear_ = {};
@@ -209,6 +210,10 @@ ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& repor
   system_.begin_step({state.time, piece.h, state.x, state.v, piece.h});
   history_.begin(state, piece, contacts);
   history_.first_point(state, p_);
+  if (!k().order_2()) {
+    find_held(contacts);
+    rigid_.go_on(system_.masses(), held_, piece.h, state.v, p_.x);
+  }
   // The first dv is free fall. So rigid motion is right from the first iterate, and a solve that is cut short
   // cannot lose gravity. The point of order 2 already includes the fall, except for particles that start
   // anew.
@@ -216,6 +221,14 @@ ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& repor
     dv_.segment<3>(3 * i) =
         history_.extrapolates(i) ? Vec3(Vec3::Zero()) : Vec3(piece.h * system_.gravity_acceleration());
   return contacts;
+}
+
+// What pins hold, and what sticks to bodies, as it seems before the first solve.
+void Bdf::find_held(const ContactStep& contacts) {
+  held_.assign(static_cast<std::size_t>(system_.particles()), 0);
+  for (int i : constraints_.pinned()) held_[i] = 1;
+  for (const Contact& c : contacts.touching())
+    if (c.active() && (c.clamped || c.grip == Grip::stick)) held_[c.particle] = 1;
 }
 
 void Bdf::linearise(const State& state, Stiffness stiffness, const ContactStep& contacts, StepReport& report,

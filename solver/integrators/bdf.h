@@ -3,7 +3,8 @@
 //   then v += dv, x = x_bar + c v.    K = -df/dx, D = -df/dv at the point of linearisation (x, v).
 // gamma, x_bar and v_bar, which may differ between particles, are explained in
 // solver/integrators/step_history.h.
-// Order 1 linearises at the last state. Order 2 linearises at the velocity v_n + w (v_n - v_{n-1}) and at
+// Order 1 linearises where the last state would come to if each piece went on as a rigid body
+// (solver/integrators/rigid_motion.h): what turns would else be braked. Order 2 linearises at the velocity v_n + w (v_n - v_{n-1}) and at
 // x_bar + c times that velocity: from the last state, one solve with a K that is not the exact one would be
 // of first order only.
 // The iteration is Newton's for the minimum of the incremental potential; solver/integrators/merit.h keeps it
@@ -20,6 +21,7 @@
 #include "solver/integrators/merit.h"
 #include "solver/integrators/newton_matrix.h"
 #include "solver/integrators/rest_frame.h"
+#include "solver/integrators/rigid_motion.h"
 #include "solver/integrators/step_history.h"
 
 namespace drape {
@@ -56,6 +58,7 @@ class Bdf final : public Integrator {
   double residual(ContactStep& contacts);  // N s
   double residual_wanted() const;          // N s
   bool makes_energy(const State& start, const ContactStep& contacts, double h);
+  void find_held(const ContactStep& contacts);
   bool falls(ContactStep& contacts);  // whether the first solve of a step lowers Phi
   void set_base(ContactStep& contacts, bool at_rest);
   StepTaken descend(ContactStep& contacts, const internal::NewtonLoop& newton);
@@ -75,6 +78,8 @@ class Bdf final : public Integrator {
   NewtonMatrix A_;
   Merit merit_;
   RestFrame rest_frame_;
+  RigidMotion rigid_;
+  std::vector<char> held_;  // scratch: per particle, whether it is
   bool adrift_ =
       false;  // whether what only slides is at rest with its centre of mass, and not with what it slides on
   Point p_;   // the current point of Newton's iteration

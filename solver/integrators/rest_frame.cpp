@@ -6,27 +6,8 @@
 namespace drape {
 
 void RestFrame::follow(const BlockPattern& pattern) {
-  std::vector<int> first(
-      static_cast<std::size_t>(pattern.rows()));  // by row: one that it hangs together with
-  std::iota(first.begin(), first.end(), 0);
-  const auto least = [&](int row) {
-    while (first[row] != row) row = first[row] = first[first[row]];
-    return row;
-  };
-  for (int row = 0; row < pattern.rows(); ++row)
-    for (int k = pattern.row_start()[row]; k < pattern.row_start()[row + 1]; ++k) {
-      const int a = least(row), b = least(pattern.column()[k]);
-      first[std::max(a, b)] = std::min(a, b);
-    }
-  std::vector<int> number(first.size(), -1);  // of the piece, by its first row
-  piece_.resize(first.size());
-  int pieces = 0;
-  for (std::size_t particle = 0; particle < piece_.size(); ++particle) {
-    int& piece = number[least(pattern.row_of()[particle])];
-    if (piece < 0) piece = pieces++;
-    piece_[particle] = piece;
-  }
-  next_.resize(static_cast<std::size_t>(pieces));
+  piece_ = connected_pieces(pattern);
+  next_.resize(piece_.empty() ? 0 : *std::max_element(piece_.begin(), piece_.end()) + std::size_t{1});
   groups_.resize(next_.size());
 }
 

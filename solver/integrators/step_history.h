@@ -49,7 +49,7 @@ class StepHistory {
   // Makes the coefficients of a step whose contacts have just been looked for.
   void begin(const State& state, const Piece& piece, const ContactStep& contacts);
   const StepCoefficients& coefficients() const { return k_; }
-  // The point at which the step is linearised first: the last state, or one ahead of it with order 2.
+  // The last state, or with order 2 the point ahead of it at which the step is linearised first.
   void first_point(const State& state, Point& point) const;
   // Whether the velocity of this particle in first_point() is ahead of the last state.
   bool extrapolates(int particle) const { return k_.order_2() && !restarts(particle); }

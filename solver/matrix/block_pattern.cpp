@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 #include <stdexcept>
 
 namespace drape {
@@ -128,6 +129,29 @@ int BlockPattern::slot(int row, int column) const {
 std::uint64_t next_pattern_serial() {
   static std::atomic<std::uint64_t> count{0};
   return ++count;
+}
+
+std::vector<int> connected_pieces(const BlockPattern& pattern) {
+  std::vector<int> first(
+      static_cast<std::size_t>(pattern.rows()));  // by row: one that it hangs together with
+  std::iota(first.begin(), first.end(), 0);
+  const auto least = [&](int row) {
+    while (first[row] != row) row = first[row] = first[first[row]];
+    return row;
+  };
+  for (int row = 0; row < pattern.rows(); ++row)
+    for (int k = pattern.row_start()[row]; k < pattern.row_start()[row + 1]; ++k) {
+      const int a = least(row), b = least(pattern.column()[k]);
+      first[std::max(a, b)] = std::min(a, b);
+    }
+  std::vector<int> number(first.size(), -1), piece(first.size());  // number: of the piece, by its first row
+  int pieces = 0;
+  for (std::size_t particle = 0; particle < piece.size(); ++particle) {
+    int& own = number[least(pattern.row_of()[particle])];
+    if (own < 0) own = pieces++;
+    piece[particle] = own;
+  }
+  return piece;
 }
 
 void to_rows(const BlockPattern& pattern, const VecX& by_particle, VecX& by_row) {

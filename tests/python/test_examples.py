@@ -14,7 +14,7 @@ EXAMPLES = SOURCE / "app/python/examples"
 QUICK = {
     "single_step.py": [],
     "drape_and_plot.py": ["--duration", "0.3", "--side", "15"],
-    "bending_sweep.py": ["--duration", "0.5", "--values", "3"],
+    "bending_sweep.py": ["--duration", "2", "--values", "3"],
     "residual_history.py": [str(SOURCE / "data/scenes/sheet-on-ball.toml"), "--at", "5"],
 }
 

@@ -205,6 +205,16 @@ class Callbacks(Runs):
             with self.assertRaisesRegex(ValueError, "time of the state"):
                 simulation.run()
 
+    def test_what_would_change_nothing_is_refused(self):
+        simulation = self.simulation()
+        with self.assertRaisesRegex(AttributeError, "simulation.gravity"):
+            simulation.gravity = (0, 0, 0)
+        with self.assertRaisesRegex(ValueError, "out: expected the name of a folder"):
+            simulation.run(out="")
+        with self.assertRaisesRegex(TypeError, "callback: expected a function"):
+            simulation.run(callback=3)
+        self.assertEqual(simulation.time, 0)
+
     def test_a_step_that_fails(self):
         simulation = self.simulation()
 

@@ -50,6 +50,15 @@ class Simulation(_drape.Simulation):
         self._own_folders: Set[Path] = set()
         self._forget_scratch: Optional[Callable[[], Any]] = None
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        """AttributeError for a name that a Simulation does not have: to set it would change nothing of the run."""
+        if not name.startswith("_") and not hasattr(type(self), name):
+            raise AttributeError(
+                f"a Simulation has no '{name}' that could be set; make a new one with other settings, "
+                f"as Simulation(scene, {{'simulation.{name}': ...}})"
+            )
+        super().__setattr__(name, value)
+
     def advance(self, h: Optional[float] = None) -> _drape.RunStep:
         """One step of just h [s], by default the scene's time_step. StepError when it fails; the state is then as it was.
 
@@ -86,6 +95,10 @@ class Simulation(_drape.Simulation):
         Ctrl-C, an exception in the callback and a step that fails (StepError) end the run as Ctrl-C ends the
         program: what was written is complete up to the last frame, run.json says so, and the exception goes on.
         """
+        if callback is not None and not callable(callback):
+            raise TypeError(f"callback: expected a function that takes a RunStep, not {callback!r}")
+        if out is not None and not os.fspath(out):
+            raise ValueError("out: expected the name of a folder, and it is empty; '.' is the current one")
         begun = self._begin(None if out is None else Path(out), frames, duration)
         run = begun[0]
         try:
