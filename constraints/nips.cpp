@@ -27,18 +27,25 @@ constexpr double widest_held = 1.2;
 // touching_range().
 constexpr double share_of_touch = 0.1;
 
-// How two bodies that do not react stand to a place that goes with both of them, by the mean of their ways,
-// at the end of the step.
+// How two bodies that do not react stand to a place that goes with both of them at the end of the step: across
+// their surfaces by the mean of their ways, along them with the one that leads, or by the mean.
 struct Squeeze {
   SurfacePoint at_a, at_b;  // there, with normals out of the bodies
-  Vec3 way;                 // m/s, the mean
+  Vec3 way;                 // m/s
   bool closes;              // the bodies come nearer to each other
   bool holds;               // the friction of both keeps what is there from slipping out
 };
 
-// x [m]: the place when the step begins.
-Squeeze squeeze(const MovingBody& a, const MovingBody& b, const Vec3& x) {
-  const Vec3 v_a = a.velocity(x), v_b = b.velocity(x), way = 0.5 * (v_a + v_b);
+// x [m]: the place when the step begins. leader: a, b, or null.
+Squeeze squeeze(const MovingBody& a, const MovingBody& b, const MovingBody* leader, const Vec3& x) {
+  const Vec3 v_a = a.velocity(x), v_b = b.velocity(x), mean = 0.5 * (v_a + v_b);
+  Vec3 way = mean;
+  if (leader && v_a != v_b) {
+    const Vec3 place = x + a.step() * mean;
+    const Vec3 n = (a.near_end(place).normal - b.near_end(place).normal).normalized();
+    const Vec3 beside_mean = leader->velocity(x) - mean;
+    if (n.allFinite()) way += beside_mean - n.dot(beside_mean) * n;
+  }
   const SurfacePoint at_a = a.near_end(x + a.step() * way), at_b = b.near_end(x + a.step() * way);
   const double held =
       std::atan(a.obstacle().friction.kinetic) + std::atan(b.obstacle().friction.kinetic);  // rad
@@ -131,6 +138,17 @@ void ParticleContacts::add_nip(const Bodies& bodies, const StepMotion& step, con
        .touch = nearest_pair(bodies[a], bodies[b], x - at_a.distance * at_a.normal, beside, offsets)});
 }
 
+// With which of two bodies goes what they clamp: the rougher one, of the greater kinetic coefficient. Of two that
+// are as rough as each other it is the one that holds less of the cloth otherwise: a finger that presses cloth on
+// a table takes it along. -1: neither.
+int ParticleContacts::leader_of(const Bodies& bodies, int a, int b) const {
+  const auto differ = [](auto of_a, auto of_b) { return of_a > of_b ? 1 : of_a < of_b ? -1 : 0; };
+  const auto roughness = [&bodies](int o) { return bodies[o].obstacle().friction.kinetic; };
+  int leads = differ(roughness(a), roughness(b));
+  if (leads == 0) leads = differ(held_by_[b], held_by_[a]);
+  return leads == 0 ? -1 : leads > 0 ? a : b;
+}
+
 // Makes the contact a clamp where two bodies close on its particle, or have closed on it.
 void ParticleContacts::clamp_between(const Bodies& bodies, const StepMotion& step, const Contact* before,
                                      Contact& contact) const {
@@ -149,7 +167,9 @@ void ParticleContacts::clamp_between(const Bodies& bodies, const StepMotion& ste
     const double spare_a = spare(a);
     for (int b = a + 1; b < count; ++b) {
       if (bodies[b].reacting() || spare_a + spare(b) > 0) continue;
-      const auto [at_a, at_b, way, closes, holds] = squeeze(bodies[a], bodies[b], x);
+      const int leader = leader_of(bodies, a, b);
+      const auto [at_a, at_b, way, closes, holds] =
+          squeeze(bodies[a], bodies[b], leader < 0 ? nullptr : &bodies[leader], x);
       if (!holds && !clamped) continue;
       // What began inside one of them comes out first; what began between them, within their margins, is
       // clamped there.

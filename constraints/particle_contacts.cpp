@@ -83,6 +83,7 @@ void ParticleContacts::prepare(int particles, std::size_t bodies) {
   clearance_.assign(n * bodies, 0.0);  // nothing is known yet, so the first step looks at every particle
   trial_.clear();
   committed_.clear();
+  held_by_.assign(bodies, 0);
   if (bodies == 0) return;  // pins need no more memory than this
   committed_of_.assign(n, -1);
   contact_of_.assign(n, -1);
@@ -301,8 +302,10 @@ void ParticleContacts::guard(int particle, const Bodies& bodies, const StepMotio
 void ParticleContacts::commit() {
   for (const Contact& c : committed_) committed_of_[c.particle] = -1;
   committed_.clear();
+  std::fill(held_by_.begin(), held_by_.end(), 0);
   for (const Contact& c : trial_) {
     if (!c.active()) continue;
+    if (c.planes == 1 && !c.clamped) ++held_by_[c.plane[0].obstacle];
     committed_of_[c.particle] = static_cast<int>(committed_.size());
     committed_.push_back(c);
     committed_.back().known = c.planes;

@@ -141,6 +141,7 @@ class ParticleContacts {
   double sticking(const Contact& contact, const Friction& mu) const;
   const Nip* nip_of(int particle) const;
   void add_nip(const Bodies& bodies, const StepMotion& step, const Contact& contact, int first, int second);
+  int leader_of(const Bodies& bodies, int a, int b) const;
   void clamp_between(const Bodies& bodies, const StepMotion& step, const Contact* before,
                      Contact& contact) const;
   void rub_in_nips(const Bodies& bodies, const StepMotion& step);
@@ -175,6 +176,7 @@ class ParticleContacts {
   std::size_t particles_ = 0;
   std::vector<Contact> trial_, committed_;      // contacts of the step under way; of the last completed one
   std::vector<Contact> first_, all_;            // scratch of respond_again
+  std::vector<int> held_by_;                    // by body: particles that it alone holds, of the last step
   std::vector<int> contact_of_, committed_of_;  // particle -> its place in those; -1: none
   std::vector<Nip> nips_;
   std::vector<int> nip_of_;  // particle -> its place in nips_; -1: none

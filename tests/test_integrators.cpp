@@ -209,6 +209,14 @@ TEST_CASE("a time step that is none and the state of another system are refused"
       CHECK_THROWS_WITH(stepper->advance(nowhere, 0.01), Catch::Contains("the position of particle 1"));
       CHECK_THROWS_WITH(stepper->advance(away, 0.01), Catch::Contains("the velocity of particle 1"));
     }
+    State never = m.start, nothing;
+    never.time = std::nan("");
+    CHECK_THROWS_WITH(stepper->advance(never, 0.01), Catch::Contains("its time"));
+    Constraints none;
+    System empty({});
+    CHECK_THROWS_WITH(
+        make_integrator(name, empty, none, make_linear_solver("eigen-ldlt"))->advance(nothing, 0.01),
+        Catch::Contains("no particles"));
     CHECK(state.x == m.start.x);
     CHECK(state.time == 0);
   }

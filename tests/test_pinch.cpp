@@ -343,3 +343,49 @@ TEST_CASE("cloth that bodies hold between them has the same bits on any number o
     return press.state;
   });
 }
+
+TEST_CASE("what a finger presses on a table goes with the rougher of both, and is not torn", "[nips]") {
+  // The finger comes down on the middle of a sheet, so that there is 0.5 mm less room than both margins, and goes
+  // 2 cm along.
+  struct Case {
+    double of_finger, of_table, goes;  // friction; the share of the finger's way that the sheet makes
+  };
+  constexpr double down = 0.02 + 0.5e-3, along = 0.02;  // m
+  const auto with = [&](const Jaw& finger, const Case& c, int n, Kind kind) {
+    Assembly all({0, -9.81, 0});
+    all.add({.mesh = bent(n, kind, 0.2, [](double, double) { return margin; }),
+             .fabric = {.area_density = 0.12, .stretch = 500, .bend = 8e-6},
+             .model = ClothModel::woven,
+             .imperfection = 0});
+    all.constraints->add(Obstacle{.shape = Plane{Vec3::Zero(), Vec3::UnitY()}, .friction = c.of_table});
+    const std::vector<Keyframe> keys = {{.time = 0},
+                                        {.time = 0.1, .translate = {0, -down, 0}},
+                                        {.time = 0.15, .translate = {0, -down, 0}},
+                                        {.time = 0.4, .translate = {along, -down, 0}}};
+    all.constraints->add(Obstacle{.shape = finger.shape,
+                                  .friction = c.of_finger,
+                                  .margin = margin,
+                                  .motion = Motion::keyframes(keys, Vec3::Zero())});
+    all.use("implicit-euler", "auto");
+    double before = 0, after = 0, strain = 0;
+    const int count = all.state.particles();
+    for (int i = 0; i < count; ++i) before += all.state.x[3 * i] / count;
+    while (all.state.time < 0.5 - 1e-9) REQUIRE(all.advance(0.005).done);
+    for (int i = 0; i < count; ++i) after += all.state.x[3 * i] / count;
+    for (const RestEdge& e : all.cloths[0].edges)
+      strain = std::max(
+          strain,
+          std::abs((all.state.x.segment<3>(3 * e.j) - all.state.x.segment<3>(3 * e.i)).norm() / e.L - 1));
+    CHECK(after - before == Approx(c.goes * along).margin(0.05 * along));
+    CHECK(strain < 0.05);
+  };
+  const double above = 2 * margin + 0.02;  // m, of its lowest point at first
+  const Jaw box{"box", Box{.centre = {0, above + 0.01, 0}, .size = {0.06, 0.02, 0.06}}};
+  for (const Kind kind : kinds)
+    for (const int n : {11, 17, 25})
+      for (const Case& c : {Case{1, 0, 1}, Case{0.6, 0.3, 1}, Case{0.3, 0.3, 1}, Case{0, 1, 0}}) {
+        INFO("mesh " << static_cast<int>(kind) << ", " << n << " vertices along an edge, friction "
+                     << c.of_finger << " and " << c.of_table);
+        with(box, c, n, kind);
+      }
+}

@@ -7,9 +7,11 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <cctype>
+#include <cmath>
 
 #include "app/base/words.h"
 #include "app/scene/shape_table.h"
+#include "mesh/base/errors.h"
 
 namespace drape::app::python {
 namespace {
@@ -102,6 +104,9 @@ void add_mesh_bodies(py::module_& m) {
       });
   py::class_<LevelSetSurface>(m, "LevelSetBody", "A closed mesh as a grid of distances: quicker to ask.")
       .def(py::init([](const TriangleMesh& mesh, double voxel) {
+             if (!(voxel >= 0) || std::isinf(voxel))
+               throw InputError("voxel = " + rounded(voxel, 4) +
+                                ": expected a length [m], or 0 to have it chosen");
              const Released released;
              return LevelSetSurface{
                  std::make_shared<const LevelSet>(LevelSet::from_mesh(mesh, {.voxel = voxel}))};

@@ -69,7 +69,7 @@ void add_systems(py::module_& m) {
             require_free(&system);
             system.add(gravity);
           },
-          py::arg("gravity"))
+          py::arg("gravity"), "Gravity takes the place of the one before.")
       .def_property_readonly("particles", &System::particles, "how many: n")
       .def_property_readonly(
           "masses",

@@ -338,8 +338,9 @@ void warn_if_long(const Cloth& cloth, Names& messages) {
                      "along; use a grid of squares, or model = \"noh-jung\"");
 }
 
-// Contact holds vertices: an edge as long as a body is wide lets it through. Cloth with self_contact meets
-// all of a body that is a mesh, or a convex shape that moves.
+// Contact holds vertices. What is between them is held by springs, which do not see a body that passes a
+// triangle within one step, as one may that is not as wide as an edge is long. Cloth with self_contact meets all of
+// a body that is a mesh, or a convex shape that moves.
 void warn_if_coarse(const Scene& scene, Simulation& simulation) {
   const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
   for (std::size_t part = 0; part < simulation.cloths.size(); ++part) {
@@ -348,12 +349,14 @@ void warn_if_coarse(const Scene& scene, Simulation& simulation) {
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       const double radius = longest_edge(bodies[k].obstacle().shape);
       if (cloth.report.median_edge <= radius || (meets && bodies[k].meets_triangles())) continue;
-      simulation.messages.push_back(
-          std::string("warning: ") + (cloth.rope ? "rope " : "cloth ") + cloth.name + " is too coarse for " +
-          body_name(bodies[k].obstacle(), scene.obstacles[k].name) + ": its edges (median " +
-          rounded(cloth.report.median_edge, 2) + " m) are longer than the body's radius (" +
-          rounded(radius, 2) +
-          " m), and contact is found at vertices only: the body may come through; subdivide the mesh");
+      simulation.messages.push_back(std::string("warning: ") + (cloth.rope ? "rope " : "cloth ") +
+                                    cloth.name + " is too coarse for " +
+                                    body_name(bodies[k].obstacle(), scene.obstacles[k].name) +
+                                    ": its edges (median " + rounded(cloth.report.median_edge, 2) +
+                                    " m) are longer than the body's radius (" + rounded(radius, 2) +
+                                    " m), and between its vertices only springs hold it off: met fast, a "
+                                    "thin body comes through; subdivide "
+                                    "the mesh");
     }
   }
 }

@@ -330,12 +330,13 @@ void Examiner::unit_question() {
     }
   };
   size_ > kLarge ? look(large_units) : look(small_units);
+  constexpr const char* of_given = " (times a scale that is given already)";
   if (!found) {
     what += "; give a scale if that is not so";
   } else if (*found->name) {
-    what += std::string(": are these ") + found->name + "? try scale = " + found->scale;
+    what += std::string(": are these ") + found->name + "? try scale = " + found->scale + of_given;
   } else {
-    what += std::string(": if it should be larger, try scale = ") + found->scale;
+    what += std::string(": if it should be larger, try scale = ") + found->scale + of_given;
   }
   add(Severity::warning, what);
 }

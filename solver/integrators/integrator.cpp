@@ -17,6 +17,8 @@ using namespace internal;
 void check_step(const System& system, const State& state, double h) {
   if (!(h > 0) || !std::isfinite(h))
     throw InputError("time step = " + std::to_string(h) + " s: a time step is greater than zero");
+  if (system.particles() == 0) throw InputError("system: it has no particles, so there is nothing to step");
+  if (!std::isfinite(state.time)) throw InputError("state: its time is not a finite number");
   if (state.particles() != system.particles() || state.v.size() != state.x.size())
     throw InputError("state: " + std::to_string(state.particles()) + " particles, but the system has " +
                      std::to_string(system.particles()));

@@ -50,7 +50,8 @@ void RigidMotion::go_on(const std::vector<double>& mass, const std::vector<char>
   const double most = of_held * (sum > 0 ? sum / static_cast<double>(mass.size()) : 1);
   for (std::size_t i = 0; i < piece_.size(); ++i) {
     const auto at = 3 * static_cast<Eigen::Index>(i);
-    motions_[piece_[i]].add(x.segment<3>(at), v.segment<3>(at), held[i] != 0 || mass[i] == 0 ? most : mass[i]);
+    motions_[piece_[i]].add(x.segment<3>(at), v.segment<3>(at),
+                            held[i] != 0 || mass[i] == 0 ? most : mass[i]);
   }
   for (Motion& motion : motions_) motion.find(h);
   for_chunks(static_cast<int>(piece_.size()), [&](int begin, int end) {

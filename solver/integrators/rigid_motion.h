@@ -22,7 +22,8 @@ class RigidMotion {
   void follow(const BlockPattern& pattern);  // finds the pieces
 
   // x becomes x*. held: not 0 for particles that are held; those without mass are, too. Allocates nothing.
-  void go_on(const std::vector<double>& mass, const std::vector<char>& held, double h, const VecX& v, VecX& x);
+  void go_on(const std::vector<double>& mass, const std::vector<char>& held, double h, const VecX& v,
+             VecX& x);
 
  private:
   struct Motion {

@@ -148,6 +148,8 @@ class Refusals(Workshop):
         hollow.positions[5] = np.nan
         for body in (drape.MeshBody, drape.LevelSetBody):
             self.refuses("vertex 5 of the surface has no finite position", body, hollow)
+        for voxel in (np.nan, -0.01, np.inf):
+            self.refuses("voxel = ", drape.LevelSetBody, drape.sphere(1, 0.1), voxel)
         self.refuses("nx: expected 2 or more, but got 1", drape.grid, 1, 3, 1, 1)
 
     def test_what_no_particle_is(self):

@@ -280,6 +280,20 @@ class Callbacks(Runs):
             simulation.advance(0)
         simulation.run()
 
+    def test_a_folder_stays_the_same_when_the_current_one_changes(self):
+        before = os.getcwd()
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir()
+        try:
+            os.chdir(self.folder)
+            simulation = self.simulation()
+            simulation.run(0.05, out="o", callback=lambda step: os.chdir(elsewhere))
+            self.assertEqual(self.complete("o"), self.complete(simulation.folder))
+            self.assertIn("<html", simulation.view().page)
+            self.assertEqual(list(elsewhere.iterdir()), [])
+        finally:
+            os.chdir(before)
+
     def test_without_out_the_frames_are_gone_with_the_simulation(self):
         simulation = self.simulation()
         simulation.run()

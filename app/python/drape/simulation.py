@@ -135,6 +135,7 @@ class Simulation(_drape.Simulation):
         Nothing of the run before is touched: this one may be refused.
         """
         if out is not None:
+            out = Path(os.path.abspath(out))  # so that it is the same one after a change of the current folder
             if out.resolve() in self._own_folders:
                 raise ValueError(
                     f"{out}: has the frames of this simulation's run so far, which this one would replace; "
