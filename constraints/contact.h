@@ -29,7 +29,7 @@
 //            by more than it takes itself
 //   clamp    where a body overlaps itself, as thighs do that are pressed into each other, or two bodies close on the cloth
 //            (constraints/nip.h), there is no way out that the cloth could take: the particle goes with the body, or with
-//            both, in all directions, whatever pulls, until it is free
+//            both (nips.cpp), in all directions, whatever pulls, until it is free
 //   stop     where friction can stop all that slides on a body within a step, and it slows down, the step
 //            begins with it as sticking
 // r = A dv - b [N s] is the impulse of the constraint on the particle.
@@ -59,6 +59,7 @@ struct Contact {
   std::array<ContactPlane, 3> plane;  // of those that hold, the deepest first
   Grip grip = Grip::stick;
   bool clamped = false;       // it sticks whatever pulls
+  int leader = -1;            // the body with which it goes then along both surfaces; -1: the mean of both
   bool comes_out = false;     // it began inside the body, and is being brought out
   int changes = 0;            // how often the grip has changed within this step
   int catches = 0;            // how often a plane that was let go in this step has held it again

@@ -41,10 +41,9 @@ Squeeze squeeze(const MovingBody& a, const MovingBody& b, const MovingBody* lead
   const Vec3 v_a = a.velocity(x), v_b = b.velocity(x), mean = 0.5 * (v_a + v_b);
   Vec3 way = mean;
   if (leader && v_a != v_b) {
-    const Vec3 place = x + a.step() * mean;
-    const Vec3 n = (a.near_end(place).normal - b.near_end(place).normal).normalized();
-    const Vec3 beside_mean = leader->velocity(x) - mean;
-    if (n.allFinite()) way += beside_mean - n.dot(beside_mean) * n;
+    const Vec3 place = x + a.step() * leader->velocity(x), beside_mean = leader->velocity(x) - mean;
+    const Vec3 apart = a.near_end(place).normal - b.near_end(place).normal;
+    if (apart.squaredNorm() > 0) way += beside_mean - apart.dot(beside_mean) / apart.squaredNorm() * apart;
   }
   const SurfacePoint at_a = a.near_end(x + a.step() * way), at_b = b.near_end(x + a.step() * way);
   const double held =
@@ -139,14 +138,13 @@ void ParticleContacts::add_nip(const Bodies& bodies, const StepMotion& step, con
 }
 
 // With which of two bodies goes what they clamp: the rougher one, of the greater kinetic coefficient. Of two that
-// are as rough as each other it is the one that holds less of the cloth otherwise: a finger that presses cloth on
-// a table takes it along. -1: neither.
-int ParticleContacts::leader_of(const Bodies& bodies, int a, int b) const {
-  const auto differ = [](auto of_a, auto of_b) { return of_a > of_b ? 1 : of_a < of_b ? -1 : 0; };
-  const auto roughness = [&bodies](int o) { return bodies[o].obstacle().friction.kinetic; };
-  int leads = differ(roughness(a), roughness(b));
-  if (leads == 0) leads = differ(held_by_[b], held_by_[a]);
-  return leads == 0 ? -1 : leads > 0 ? a : b;
+// are as rough as each other it is, as long as the clamp lasts, the one that held less than half as much of the
+// cloth otherwise when it began: a finger that presses cloth on a table takes it along. -1: neither.
+int ParticleContacts::leader_of(const Bodies& bodies, int a, int b, const Contact* before) const {
+  const double of_a = bodies[a].obstacle().friction.kinetic, of_b = bodies[b].obstacle().friction.kinetic;
+  if (of_a != of_b) return of_a > of_b ? a : b;
+  if (before && before->clamped && (before->leader == a || before->leader == b)) return before->leader;
+  return 2 * held_by_[a] < held_by_[b] ? a : 2 * held_by_[b] < held_by_[a] ? b : -1;
 }
 
 // Makes the contact a clamp where two bodies close on its particle, or have closed on it.
@@ -167,7 +165,7 @@ void ParticleContacts::clamp_between(const Bodies& bodies, const StepMotion& ste
     const double spare_a = spare(a);
     for (int b = a + 1; b < count; ++b) {
       if (bodies[b].reacting() || spare_a + spare(b) > 0) continue;
-      const int leader = leader_of(bodies, a, b);
+      const int leader = leader_of(bodies, a, b, before);
       const auto [at_a, at_b, way, closes, holds] =
           squeeze(bodies[a], bodies[b], leader < 0 ? nullptr : &bodies[leader], x);
       if (!holds && !clamped) continue;
@@ -181,7 +179,8 @@ void ParticleContacts::clamp_between(const Bodies& bodies, const StepMotion& ste
                                : std::max(gap_a, gap_b) < (clamped ? -closed : -share_of_touch * least);
       if (!no_room) continue;
       const bool in_a = gap_a < gap_b;
-      contact = {.particle = particle, .planes = 1, .known = 1, .plane = {}, .clamped = true};
+      contact = {
+          .particle = particle, .planes = 1, .known = 1, .plane = {}, .clamped = true, .leader = leader};
       contact.plane[0] =
           in_a ? ContactPlane{a, at_a.normal, gap_a, way} : ContactPlane{b, at_b.normal, gap_b, way};
       if (!clamped) {  // it begins in the middle

@@ -141,7 +141,7 @@ class ParticleContacts {
   double sticking(const Contact& contact, const Friction& mu) const;
   const Nip* nip_of(int particle) const;
   void add_nip(const Bodies& bodies, const StepMotion& step, const Contact& contact, int first, int second);
-  int leader_of(const Bodies& bodies, int a, int b) const;
+  int leader_of(const Bodies& bodies, int a, int b, const Contact* before) const;
   void clamp_between(const Bodies& bodies, const StepMotion& step, const Contact* before,
                      Contact& contact) const;
   void rub_in_nips(const Bodies& bodies, const StepMotion& step);

@@ -92,7 +92,7 @@ TEST_CASE("bad input: one line, exit code 2, nothing written", "[cli]") {
       {"drop nan.obj", "nan.obj:2"},
       {"drop flat.obj", "no triangle has an area"},
       {"drop locked", "is a directory"},
-      {"drop s.toml", "belongs to a scene, and here is a pattern expected; `drape simulate` runs a scene"},
+      {"drop s.toml", "belongs to a scene, but a pattern is expected here; `drape simulate` runs a scene"},
       {"drop sheet.obj --onto none.obj", "none.obj: no such file"},
       {"drop sheet.obj --onto cube:1", "shapes are: plane, sphere"},
       {"drop sheet.obj --onto sphere", "such as sphere:0.3"},

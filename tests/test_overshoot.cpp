@@ -55,13 +55,14 @@ TEST_CASE("a step that overshoots is put right by the next, and does not make th
       const Drop d = dropped(n, kind, 0.0002);
       INFO(n << " x " << n << " of kind " << static_cast<int>(kind) << ": " << d.rescued << " of " << d.steps
              << " steps overshot, " << d.newton << " iterations");
+      CHECK(d.newton < 2.25 * d.steps);  // by chance up to 1.9 times
       CHECK(d.most_above <= 0);
       overshot += d.rescued;
       newton += d.newton;
       steps += d.steps;
     }
   CHECK(overshot > 20);
-  CHECK(newton < 1.25 * steps);  // in single runs by chance up to 1.9
+  CHECK(newton < 1.25 * steps);
 }
 
 TEST_CASE(

@@ -196,7 +196,7 @@ Pattern parse_toml_pattern(std::string_view text, const std::string& name, KeyNo
   for (const char* key : {"simulation", "cloth", "obstacle"})
     if (const auto of_scene = root.members.find(key); of_scene != root.members.end())
       throw InputError(of_scene->second.where + ": '" + key +
-                       "' belongs to a scene, and here is a pattern expected; `drape simulate` runs a scene");
+                       "' belongs to a scene, but a pattern is expected here; `drape simulate` runs a scene");
   return PatternTable(root, notes).read(name);
 }
 

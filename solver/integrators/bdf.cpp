@@ -211,10 +211,10 @@ ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& repor
   history_.begin(state, piece, contacts);
   history_.first_point(state, p_);
   if (!k().order_2()) {
-    find_held(contacts);
-    rigid_.go_on(system_.masses(), held_, piece.h, state.v, p_.x);
+    find_held(state, contacts);
+    rigid_.go_on(system_.masses(), held_, piece.h, v_base_, p_.x);
   }
-  // The first dv is free fall. So rigid motion is right from the first iterate, and a solve that is cut short
+  // The first dv is free fall. So what flies is right from the first iterate, and a solve that is cut short
   // cannot lose gravity. The point of order 2 already includes the fall, except for particles that start
   // anew.
   for (int i = 0; i < system_.particles(); ++i)
@@ -223,12 +223,20 @@ ContactStep Bdf::begin(const State& state, const Piece& piece, StepReport& repor
   return contacts;
 }
 
-// What pins hold, and what sticks to bodies, as it seems before the first solve.
-void Bdf::find_held(const ContactStep& contacts) {
+// What pins hold, and what sticks to bodies, as it seems before the first solve; and in v_base_ how fast what
+// holds it goes there, of the others how fast they go.
+void Bdf::find_held(const State& state, const ContactStep& contacts) {
   held_.assign(static_cast<std::size_t>(system_.particles()), 0);
+  v_base_ = state.v;
   for (int i : constraints_.pinned()) held_[i] = 1;
+  contacts.filter(state.v, filter_);
+  for (const FilterEntry& e : filter_.entries())
+    if (held_[e.particle] != 0) v_base_.segment<3>(3 * e.particle) += e.z;
   for (const Contact& c : contacts.touching())
-    if (c.active() && (c.clamped || c.grip == Grip::stick)) held_[c.particle] = 1;
+    if (c.active() && held_[c.particle] == 0 && (c.clamped || c.grip == Grip::stick)) {
+      held_[c.particle] = 1;
+      v_base_.segment<3>(3 * c.particle) = c.body_velocity();
+    }
 }
 
 void Bdf::linearise(const State& state, Stiffness stiffness, const ContactStep& contacts, StepReport& report,

@@ -58,7 +58,7 @@ class Bdf final : public Integrator {
   double residual(ContactStep& contacts);  // N s
   double residual_wanted() const;          // N s
   bool makes_energy(const State& start, const ContactStep& contacts, double h);
-  void find_held(const ContactStep& contacts);
+  void find_held(const State& state, const ContactStep& contacts);
   bool falls(ContactStep& contacts);  // whether the first solve of a step lowers Phi
   void set_base(ContactStep& contacts, bool at_rest);
   StepTaken descend(ContactStep& contacts, const internal::NewtonLoop& newton);

@@ -51,7 +51,7 @@ void RestFrame::add_bodies(const Constraints& constraints, const ContactStep& co
     for (std::size_t corner = 0; corner < 4; ++corner)
       if (c.weights[corner] != 0) {
         const int i = c.particles[corner];
-        group_of(i).slides.add(constraints.bodies()[c.body].velocity(point.x.segment<3>(3 * i)), 1);
+        group_of(i).slides.add(constraints.bodies()[c.body].velocity(k.x_bar.segment<3>(3 * i)), 1);
       }
   }
 }

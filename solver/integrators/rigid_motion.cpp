@@ -1,65 +1,107 @@
 #include "solver/integrators/rigid_motion.h"
 
-#include <Eigen/LU>
-#include <numeric>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 
 #include "mesh/base/parallel.h"
 
 namespace drape {
+namespace {
+
+// The directions of a tensor of inertia with the eigenvalue 0, but for rounding, as a projection; and its inverse
+// in the others.
+struct Directions {
+  Mat3 without = Mat3::Zero(), inverse = Mat3::Zero();
+};
+Directions directions(const Mat3& inertia) {
+  constexpr double least = 1e-9;  // of the largest eigenvalue
+  Directions d;
+  Eigen::SelfAdjointEigenSolver<Mat3> eigen;
+  eigen.computeDirect(inertia);
+  const double largest = eigen.eigenvalues()[2];
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 a = eigen.eigenvectors().col(k);
+    if (eigen.eigenvalues()[k] > least * largest)
+      d.inverse += a * a.transpose() / eigen.eigenvalues()[k];
+    else
+      d.without += a * a.transpose();
+  }
+  return d;
+}
+
+}  // namespace
 
 void RigidMotion::follow(const BlockPattern& pattern) {
   piece_ = connected_pieces(pattern);
-  first_.clear();
-  for (int i = 0; i < static_cast<int>(piece_.size()); ++i)
-    if (piece_[i] == static_cast<int>(first_.size())) first_.push_back(i);
-  motions_.resize(first_.size());
+  motions_.resize(piece_.empty() ? 0 : *std::max_element(piece_.begin(), piece_.end()) + std::size_t{1});
 }
 
-void RigidMotion::Motion::add(const Vec3& x, const Vec3& v, double by) {
-  const Vec3 r = x - origin, momentum_of_it = by * v, weighted = by * r;
+void RigidMotion::Sums::add(const Vec3& at, const Vec3& goes, double by) {
   weight += by;
-  middle += weighted;
-  momentum += momentum_of_it;
-  angular += r.cross(momentum_of_it);
-  spread += weighted * r.transpose();
+  energy += by * goes.squaredNorm();
+  x += by * at;
+  v += by * goes;
+  angular += by * at.cross(goes);
+  spread += by * at * at.transpose();
 }
 
-// From sums over the piece to its motion in a step.
 void RigidMotion::Motion::find(double h) {
-  way = t = Vec3::Zero();
-  if (!(weight > 0)) return;
-  middle /= weight;
-  way = h / weight * momentum;
-  const Mat3 about_middle = spread - weight * middle * middle.transpose();
-  const double trace = about_middle.trace();
-  if (!(trace > 0)) return;
-  // What lies along a line does not say how it turns about that.
-  const Mat3 inertia = 1.000001 * trace * Mat3::Identity() - about_middle;
-  t = 0.5 * h * (inertia.inverse() * (angular - middle.cross(momentum)));
-  if (!t.allFinite()) t.setZero();
+  constexpr double explained = 0.5;  // of the energy beside the centre of mass
+  is_rigid = false;
+  if (!(free.weight > 0)) return;
+  Vec3 w = Vec3::Zero();
+  Mat3 open = Mat3::Identity();  // the directions of w of which what is held says nothing
+  if (held.weight > 0) {
+    const Directions of_held = directions(held.inertia());
+    w = of_held.inverse * held.angular;
+    open = of_held.without;
+  }
+  const Mat3 inertia = free.inertia();
+  w += directions(open * inertia * open).inverse * (open * (free.angular - inertia * w));
+  const double left = free.energy - 2 * w.dot(free.angular) + w.dot(inertia * w);
+  const double beside_middle = free.energy - free.v.squaredNorm() / free.weight;
+  t = 0.5 * h * w;
+  is_rigid = t.allFinite() && left < (1 - explained) * beside_middle;
+}
+
+template <class F>  // f(particle, its motion, whether it is held)
+void RigidMotion::each(const std::vector<double>& mass, const std::vector<char>& held, const F& f) {
+  for (std::size_t i = 0; i < piece_.size(); ++i)
+    f(static_cast<Eigen::Index>(i), motions_[piece_[i]], held[i] != 0 || mass[i] == 0);
 }
 
 void RigidMotion::go_on(const std::vector<double>& mass, const std::vector<char>& held, double h,
                         const VecX& v, VecX& x) {
-  constexpr double of_held = 1e6;  // times the mean mass
-  for (std::size_t p = 0; p < motions_.size(); ++p) {
-    motions_[p] = {};
-    motions_[p].origin = x.segment<3>(3 * first_[p]);
+  std::fill(motions_.begin(), motions_.end(), Motion());
+  each(mass, held, [&](Eigen::Index i, Motion& motion, bool is_held) {
+    const Vec3 at = x.segment<3>(3 * i), goes = v.segment<3>(3 * i);
+    if (is_held)
+      motion.held.add(at, goes, 1);
+    else
+      motion.free.add(at, goes, mass[static_cast<std::size_t>(i)]);
+  });
+  for (Motion& motion : motions_) {
+    const Sums& of = motion.held.weight > 0 ? motion.held : motion.free;
+    if (!(of.weight > 0)) continue;
+    motion.pivot = of.x / of.weight;
+    motion.velocity = of.v / of.weight;
+    motion.held = motion.free = {};
   }
-  const double sum = std::accumulate(mass.begin(), mass.end(), 0.0);
-  const double most = of_held * (sum > 0 ? sum / static_cast<double>(mass.size()) : 1);
-  for (std::size_t i = 0; i < piece_.size(); ++i) {
-    const auto at = 3 * static_cast<Eigen::Index>(i);
-    motions_[piece_[i]].add(x.segment<3>(at), v.segment<3>(at),
-                            held[i] != 0 || mass[i] == 0 ? most : mass[i]);
-  }
+  each(mass, held, [&](Eigen::Index i, Motion& motion, bool is_held) {
+    const Vec3 at = x.segment<3>(3 * i) - motion.pivot, goes = v.segment<3>(3 * i) - motion.velocity;
+    if (is_held)
+      motion.held.add(at, goes, 1);
+    else
+      motion.free.add(at, goes, mass[static_cast<std::size_t>(i)]);
+  });
   for (Motion& motion : motions_) motion.find(h);
   for_chunks(static_cast<int>(piece_.size()), [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const Motion& motion = motions_[piece_[i]];
-      const Vec3 r = x.segment<3>(3 * i) - motion.origin - motion.middle, across = motion.t.cross(r);
+      if (!motion.is_rigid) continue;
+      const Vec3 across = motion.t.cross(x.segment<3>(3 * i) - motion.pivot);
       x.segment<3>(3 * i) +=
-          motion.way + 2 / (1 + motion.t.squaredNorm()) * (across + motion.t.cross(across));
+          h * motion.velocity + 2 / (1 + motion.t.squaredNorm()) * (across + motion.t.cross(across));
     }
   });
 }

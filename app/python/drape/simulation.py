@@ -52,10 +52,10 @@ class Simulation(_drape.Simulation):
 
     def __setattr__(self, name: str, value: Any) -> None:
         """AttributeError for a name that a Simulation does not have: to set it would change nothing of the run."""
-        if not name.startswith("_") and not hasattr(type(self), name):
+        if type(self) is Simulation and not name.startswith("_") and not hasattr(type(self), name):
             raise AttributeError(
-                f"a Simulation has no '{name}' that could be set; make a new one with other settings, "
-                f"as Simulation(scene, {{'simulation.{name}': ...}})"
+                f"a Simulation has no '{name}' that could be set; make a new one with other settings, such as "
+                "Simulation(scene, {'simulation.gravity': [0, 0, 0]})"
             )
         super().__setattr__(name, value)
 
@@ -135,7 +135,7 @@ class Simulation(_drape.Simulation):
         Nothing of the run before is touched: this one may be refused.
         """
         if out is not None:
-            out = Path(os.path.abspath(out))  # so that it is the same one after a change of the current folder
+            out = out.absolute()  # so that it is the same one after a change of the current folder
             if out.resolve() in self._own_folders:
                 raise ValueError(
                     f"{out}: has the frames of this simulation's run so far, which this one would replace; "
