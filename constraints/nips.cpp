@@ -27,8 +27,8 @@ constexpr double widest_held = 1.2;
 // touching_range().
 constexpr double share_of_touch = 0.1;
 
-// How two bodies that do not react stand to a place that goes with both of them at the end of the step: across
-// their surfaces by the mean of their ways, along them with the one that leads, or by the mean.
+// How two bodies that do not react stand to a place that goes with both of them at the end of the step:
+// across their surfaces by the mean of their ways, along them with the one that leads, or by the mean.
 struct Squeeze {
   SurfacePoint at_a, at_b;  // there, with normals out of the bodies
   Vec3 way;                 // m/s
@@ -137,9 +137,9 @@ void ParticleContacts::add_nip(const Bodies& bodies, const StepMotion& step, con
        .touch = nearest_pair(bodies[a], bodies[b], x - at_a.distance * at_a.normal, beside, offsets)});
 }
 
-// With which of two bodies goes what they clamp: the rougher one, of the greater kinetic coefficient. Of two that
-// are as rough as each other it is, as long as the clamp lasts, the one that held less than half as much of the
-// cloth otherwise when it began: a finger that presses cloth on a table takes it along. -1: neither.
+// With which of two bodies goes what they clamp: the rougher one, of the greater kinetic coefficient. Of two
+// that are as rough as each other it is, as long as the clamp lasts, the one that held less than half as much
+// of the cloth otherwise when it began: a finger that presses cloth on a table takes it along. -1: neither.
 int ParticleContacts::leader_of(const Bodies& bodies, int a, int b, const Contact* before) const {
   const double of_a = bodies[a].obstacle().friction.kinetic, of_b = bodies[b].obstacle().friction.kinetic;
   if (of_a != of_b) return of_a > of_b ? a : b;

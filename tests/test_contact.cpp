@@ -368,7 +368,7 @@ TEST_CASE("a cloth draped over any shape never goes in, and comes to rest", "[co
     cloth.constraints.add(Obstacle{.shape = shape, .friction = 0.5});
     cloth.constraints.add(Obstacle{.shape = Plane{{0, -0.3, 0}, {0, 1, 0}}, .friction = 0.5});
     double deepest = 0;
-    for (int k = 0; k < 300; ++k) {
+    for (int k = 0; k < 400; ++k) {
       const StepReport report = cloth.stepper.advance(cloth.state, 0.01);
       REQUIRE(report.done);
       deepest = std::max(deepest, cloth.deepest());

@@ -345,8 +345,8 @@ TEST_CASE("cloth that bodies hold between them has the same bits on any number o
 }
 
 TEST_CASE("what a finger presses on a table goes with the rougher of both, and is not torn", "[nips]") {
-  // The finger comes down on the middle of a sheet, so that there is 0.5 mm less room than both margins, and goes
-  // 2 cm along.
+  // The finger comes down on the middle of a sheet, so that there is 0.5 mm less room than both margins, and
+  // goes 2 cm along.
   struct Case {
     double of_finger, of_table, goes;  // friction; the share of the finger's way that the sheet makes
   };

@@ -120,7 +120,8 @@ TEST_CASE("a piece that turns as a rigid body goes on as one", "[integrators]") 
 
 namespace {
 
-// A sheet of rows x columns vertices, `edge` apart along x and y, that turns about z or about x by `rate` [rad/s].
+// A sheet of rows x columns vertices, `edge` apart along x and y, that turns about z or about x by `rate`
+// [rad/s].
 struct Turning {
   Turning(int rows, int columns, double edge, const Vec3& rate) : x(3 * rows * columns), v(x.size()) {
     std::vector<ParticlePair> pairs;

@@ -338,9 +338,9 @@ void warn_if_long(const Cloth& cloth, Names& messages) {
                      "along; use a grid of squares, or model = \"noh-jung\"");
 }
 
-// Contact holds vertices. What is between them is held by springs. A body that is narrower than an edge may pass
-// a triangle within one step, and then they do not see it. Cloth with self_contact meets all of a body that is a
-// mesh, or a convex shape that moves.
+// Contact holds vertices. What is between them is held by springs. A body that is narrower than an edge may
+// pass a triangle within one step, and then they do not see it. Cloth with self_contact meets all of a body
+// that is a mesh, or a convex shape that moves.
 void warn_if_coarse(const Scene& scene, Simulation& simulation) {
   const std::vector<MovingBody>& bodies = simulation.constraints->bodies();
   for (std::size_t part = 0; part < simulation.cloths.size(); ++part) {

@@ -4,9 +4,9 @@
 // gamma, x_bar and v_bar, which may differ between particles, are explained in
 // solver/integrators/step_history.h.
 // Order 1 linearises where the last state would come to if each piece went on as a rigid body
-// (solver/integrators/rigid_motion.h): what turns would else be braked. Order 2 linearises at the velocity v_n + w (v_n - v_{n-1}) and at
-// x_bar + c times that velocity: from the last state, one solve with a K that is not the exact one would be
-// of first order only.
+// (solver/integrators/rigid_motion.h): what turns would else be braked. Order 2 linearises at the velocity
+// v_n + w (v_n - v_{n-1}) and at x_bar + c times that velocity: from the last state, one solve with a K that
+// is not the exact one would be of first order only.
 // The iteration is Newton's for the minimum of the incremental potential; solver/integrators/merit.h keeps it
 // from ending above where it began. Contacts are settled within each of its solves
 // (solver/integrators/contact_loop.h). A step that made energy goes on with two more iterations at most: what

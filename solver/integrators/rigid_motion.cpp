@@ -8,8 +8,8 @@
 namespace drape {
 namespace {
 
-// The directions of a tensor of inertia with the eigenvalue 0, but for rounding, as a projection; and its inverse
-// in the others.
+// The directions of a tensor of inertia with the eigenvalue 0, but for rounding, as a projection; and its
+// inverse in the others.
 struct Directions {
   Mat3 without = Mat3::Zero(), inverse = Mat3::Zero();
 };

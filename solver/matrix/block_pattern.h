@@ -51,8 +51,8 @@ class BlockPattern {
 // A number for a new pattern or overlay: no two in a process have the same.
 std::uint64_t next_pattern_serial();
 
-// The number of the piece that each particle belongs to: what blocks join, directly or through others. Pieces are
-// numbered in the order in which their first particles come.
+// The number of the piece that each particle belongs to: what blocks join, directly or through others. Pieces
+// are numbered in the order in which their first particles come.
 std::vector<int> connected_pieces(const BlockPattern& pattern);
 
 // Convert between particle order and row order, with three numbers for each particle.
