@@ -8,14 +8,14 @@
 namespace drape {
 namespace {
 
-// The directions of a tensor of inertia with the eigenvalue 0, but for rounding, as a projection; and its
-// inverse in the others.
-struct Directions {
-  Mat3 without = Mat3::Zero(), inverse = Mat3::Zero();
+// The inverse of a tensor of inertia in the directions that have an eigenvalue above 0, but for rounding; and
+// the projection on the others.
+struct Inverse {
+  Mat3 inverse = Mat3::Zero(), without = Mat3::Zero();
 };
-Directions directions(const Mat3& inertia) {
+Inverse invert(const Mat3& inertia) {
   constexpr double least = 1e-9;  // of the largest eigenvalue
-  Directions d;
+  Inverse d;
   Eigen::SelfAdjointEigenSolver<Mat3> eigen;
   eigen.computeDirect(inertia);
   const double largest = eigen.eigenvalues()[2];
@@ -52,12 +52,12 @@ void RigidMotion::Motion::find(double h) {
   Vec3 w = Vec3::Zero();
   Mat3 open = Mat3::Identity();  // the directions of w of which what is held says nothing
   if (held.weight > 0) {
-    const Directions of_held = directions(held.inertia());
+    const Inverse of_held = invert(held.inertia());
     w = of_held.inverse * held.angular;
     open = of_held.without;
   }
   const Mat3 inertia = free.inertia();
-  w += directions(open * inertia * open).inverse * (open * (free.angular - inertia * w));
+  w += invert(open * inertia * open).inverse * (open * (free.angular - inertia * w));
   const double left = free.energy - 2 * w.dot(free.angular) + w.dot(inertia * w);
   const double beside_middle = free.energy - free.v.squaredNorm() / free.weight;
   t = 0.5 * h * w;
