@@ -100,6 +100,8 @@ void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<s
   spread(x, start_);
   end_ = start_;
   boxes_.emplace(faces_, start_, 1, of_cloth_);
+  unfolded_.reset();
+  if (of_cloth_ == 0) unfolded_.emplace(faces_, *boxes_, start_);
   patch_start_.assign(1, 0);
   patch_.clear();
   for (const MovingBoxes::Patch& p : boxes_->patches()) {
@@ -244,6 +246,7 @@ bool Encounters::follow(const VecX& x, const VecX& x_new, double gap) {
   start_off_ += largest_difference(of_start_);
   end_off_ += largest_difference(of_end_);
   if (room_ <= 0) room_ = most_room * mean_edge_;
+  if (unfolded_) unfolded_->look(start_, end_, gap);
   const bool again = gap > gap_ || std::max(start_off_, end_off_) > grouped_room_;
   if (again) boxes_->refit(faces_, start_, end_);
   const bool listed = (!again || group_patches(gap)) && make_lists(gap, again);
@@ -283,6 +286,7 @@ bool Encounters::group_patches(double gap) {
     Group& g = groups_.back();
     g.first = pair.first, g.second = pair.second;
     g.gap = -1, g.room = 0;
+    g.region = unfolded_ ? unfolded_->region_of(g.first, g.second) : -1;
     g.pairs.list.clear();
   }
   std::move(old, old_.end(), std::back_inserter(spare_));
@@ -299,7 +303,9 @@ bool Encounters::make_lists(double gap, bool fitted) {
   std::size_t kept = 0;
   stale_.clear();
   for (std::size_t k = 0; k < groups_.size(); ++k) {
-    const Group& g = groups_[k];
+    Group& g = groups_[k];
+    g.is_apart = unfolded_ && unfolded_->is_apart(g.region);
+    if (g.is_apart) continue;
     if (g.gap < gap || std::max(g.start_off, g.end_off) > g.room)
       stale_.push_back(static_cast<int>(k));
     else

@@ -9,6 +9,8 @@
 //   when it was made, in either patch or from patch to patch, than it allows for: what moves wildly
 //   elsewhere, and what both do alike, leaves it as it is. In a dense pile all lists allow for less, because
 //   every pair of them costs something in every step.
+//   Patches side by side, and the triangles of a vertex, that surely do not meet, since the cloth is hardly
+//   folded there, need no list (unfolded.h).
 //   What was found to be apart is not looked at again before it can have come near. No two points of two
 //   patches come nearer to each other in a step than the motions of their vertices differ at most, and no two
 //   of triangles that share the vertex c than by 2 e_c, where e_c is by how much the vertices next to c move
@@ -22,6 +24,7 @@
 #include <optional>
 #include <vector>
 
+#include "constraints/unfolded.h"
 #include "mesh/base/parallel.h"
 #include "mesh/distance/approach.h"
 #include "mesh/distance/moving_boxes.h"
@@ -97,6 +100,8 @@ class Encounters {
     double wanted = 0;  // when the first pair of edges can be nearer than the limits of its particles
     double start_off = 0, end_off = 0;  // by how much the two ends of the motion differ by now at most [m]
     double gap = -1, room = 0;          // m
+    int region = -1;                    // of unfolded_
+    bool is_apart = false;              // in the motion that was followed last, by unfolded_
     Pairs pairs;
     int edges_from = 0;  // where the second part of the list begins
   };
@@ -131,6 +136,7 @@ class Encounters {
   std::vector<unsigned char>
       owned_;  // of each face: bits 0 to 2 its vertices, bits 3 to 5 its edges k to k + 1
   std::optional<MovingBoxes> boxes_;
+  std::optional<Unfolded> unfolded_;      // of cloth with cloth
   std::vector<int> next_start_, next_;    // the vertices next to each one
   std::vector<int> patch_start_, patch_;  // the vertices of each patch
   // The pairs that have the common vertex c are the numbers beside_start_[c] to beside_start_[c + 1] of
@@ -194,11 +200,13 @@ std::vector<Meeting>& Encounters::select(Kind kind, const VecX& x, const VecX& x
   };
   select_chunks(static_cast<int>(groups_.size()), groups_in_a_chunk, [&](int k, std::vector<Meeting>& found) {
     Group& g = groups_[k];
+    if (g.is_apart) return;
     select_list(g.pairs, {0, g.edges_from, static_cast<int>(g.pairs.list.size())}, g.clock, g.due,
                 limits ? &g.wanted : nullptr, found);
   });
   const int count = static_cast<int>(clock_.size());
   select_chunks(count, heavy_chunk_size(count), [&](int c, std::vector<Meeting>& found) {
+    if (unfolded_ && unfolded_->is_apart(unfolded_->region_of_vertex(c))) return;
     select_list(beside_, {beside_start_[c], beside_edges_[c], beside_start_[c + 1]}, clock_[c],
                 beside_due_[c], nullptr, found);
   });

@@ -1,0 +1,250 @@
+#include "constraints/unfolded.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "constraints/shadow_hull.h"
+#include "mesh/base/parallel.h"
+
+namespace drape::internal {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double rounding = 1e-6;
+constexpr int most_in_a_patch = 32;
+constexpr double small = 0.3;  // an e that nobody need know better
+constexpr int rest = 8;        // looks that what is folded is spared
+
+const double half = std::sqrt(0.5);
+
+// The rotation of the plane that is nearest to what takes its two directions to a and b.
+std::array<Vec3, 2> orthonormal(const Vec3& a, const Vec3& b) {
+  const Vec3 first = a.normalized(), second = b.normalized();
+  const Vec3 both = (first + second).normalized(), between = (first - second).normalized();
+  return {half * (both + between), half * (both - between)};
+}
+
+double norm(double a, double b) { return std::sqrt(a * a + b * b); }
+
+// Of a 2 x 2 matrix with these squares of its columns and their product.
+double largest_square(double p, double q, double product) {
+  return 0.5 * (p + q) + std::sqrt(0.25 * (p - q) * (p - q) + product * product);
+}
+
+}  // namespace
+
+// Finds the regions.
+class Unfolded::Builder {
+ public:
+  Builder(Unfolded& unfolded, const std::vector<Face>& faces, const MovingBoxes& boxes,
+          const std::vector<Vec3>& places)
+      : unfolded_(unfolded),
+        hull_(faces, places),
+        patch_of_(faces.size()),
+        faces_of_(boxes.patches().size()) {
+    for (std::size_t p = 0; p < faces_of_.size(); ++p) {
+      const MovingBoxes::Patch& patch = boxes.patches()[p];
+      for (int k = patch.first; k < patch.first + patch.count; ++k) {
+        patch_of_[boxes.face(k)] = static_cast<int>(p);
+        faces_of_[p].push_back(boxes.face(k));
+      }
+    }
+  }
+
+  // The region about these faces; -1: none.
+  int about(const std::vector<int>& faces) {
+    patches_of(faces, by_);
+    Vec3 normal = Vec3::Zero();
+    for (int p : by_) normal += unfolded_.normals_[p];
+    normal.normalize();
+    if (!hull_.covers(faces, normal)) return -1;
+    patches_of(hull_.found(), all_);
+    const auto [at, is_new] = numbers_.try_emplace({by_, all_}, static_cast<int>(numbers_.size()));
+    if (is_new) unfolded_.patches_.push_back({.all = all_, .normal = normal, .plane = plane_across(normal)});
+    Patches& patches = unfolded_.patches_[at->second];
+    patches.slope = std::max(patches.slope, hull_.slope());
+    patches.height = std::max(patches.height, hull_.height());
+    unfolded_.regions_.push_back({at->second, hull_.height()});
+    return static_cast<int>(unfolded_.regions_.size()) - 1;
+  }
+
+  void add_pair(int face, int other) {
+    const auto pair = std::pair(patch_of_[face], patch_of_[other]);
+    if (pair.first > pair.second || unfolded_.pairs_.contains(pair)) return;
+    std::vector<int> together = faces_of_[pair.first];
+    if (pair.second != pair.first)
+      together.insert(together.end(), faces_of_[pair.second].begin(), faces_of_[pair.second].end());
+    unfolded_.pairs_.emplace(pair, about(together));
+  }
+
+ private:
+  void patches_of(const std::vector<int>& faces, std::vector<int>& patches) const {
+    patches.clear();
+    for (int f : faces) patches.push_back(patch_of_[f]);
+    std::sort(patches.begin(), patches.end());
+    patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
+  }
+
+  Unfolded& unfolded_;
+  ShadowHull hull_;
+  std::vector<int> patch_of_;
+  std::vector<std::vector<int>> faces_of_;
+  std::map<std::pair<std::vector<int>, std::vector<int>>, int> numbers_;  // of Patches
+  std::vector<int> by_, all_;
+};
+
+Unfolded::Unfolded(const std::vector<Face>& faces, const MovingBoxes& boxes, const std::vector<Vec3>& places)
+    : shapes_from_(1, 0), of_vertex_(places.size(), -1), ends_(boxes.patches().size()) {
+  for (const MovingBoxes::Patch& patch : boxes.patches()) {
+    Vec3 normal = Vec3::Zero();
+    for (int k = patch.first; k < patch.first + patch.count; ++k) {
+      const Triangle& v = faces[boxes.face(k)].v;
+      normal += (places[v[1]] - places[v[0]]).cross(places[v[2]] - places[v[0]]);
+      add_shape(v, places);
+    }
+    shapes_from_.push_back(static_cast<int>(shapes_.size()));
+    normals_.push_back(normal.normalized());
+    planes_.push_back(plane_across(normals_.back()));
+  }
+  std::vector<std::vector<int>> around(places.size());
+  for (int f = 0; f < static_cast<int>(faces.size()); ++f)
+    for (int v : faces[f].v)
+      if (around[v].empty() || around[v].back() != f) around[v].push_back(f);
+  Builder regions(*this, faces, boxes, places);
+  for (std::size_t v = 0; v < around.size(); ++v) {
+    if (around[v].empty()) continue;
+    of_vertex_[v] = regions.about(around[v]);
+    for (int f : around[v])
+      for (int g : around[v]) regions.add_pair(f, g);
+  }
+  apart_.assign(regions_.size(), 0);
+}
+
+void Unfolded::add_shape(const Triangle& v, const std::vector<Vec3>& places) {
+  const Vec3 a = places[v[1]] - places[v[0]], b = places[v[2]] - places[v[0]];
+  const Vec3 t = a.normalized(), across = b - t.dot(b) * t;
+  shapes_.push_back({v, {t, across.normalized()}, 1 / a.norm(), t.dot(b) / a.norm(), 1 / across.norm()});
+}
+
+int Unfolded::region_of(int first, int second) const {
+  const auto at = pairs_.find({first, second});
+  return at == pairs_.end() ? -1 : at->second;
+}
+
+void Unfolded::look(const std::vector<Vec3>& start, const std::vector<Vec3>& end, double gap) {
+  const bool same = start == start_, goes_on = !same && start == end_;
+  start_ = start;
+  end_ = end;
+  ++looks_;
+  for (const Patches& patches : patches_)
+    if (patches.rests == 0)
+      for (int p : patches.all) ends_[p].wanted = true;
+  for_chunks<Work::heavy>(static_cast<int>(ends_.size()), [&](int begin, int after) {
+    for (int p = begin; p < after; ++p) {
+      Ends& ends = ends_[p];
+      if (!ends.wanted) continue;
+      const bool known = ends.looked == looks_ - 1;
+      if (known && goes_on) ends.turn[0] = ends.turn[1];
+      if (!known || !(same || goes_on)) ends.turn[0] = turn_of(p, start);
+      ends.turn[1] = turn_of(p, end);
+      ends.looked = looks_;
+      ends.wanted = false;
+    }
+  });
+  for_chunks<Work::heavy>(static_cast<int>(patches_.size()), [&](int begin, int after) {
+    for (int k = begin; k < after; ++k) {
+      Patches& patches = patches_[k];
+      patches.off = patches.rests > 0 ? infinity : off_of(patches) + rounding;
+      if (patches.rests > 0)
+        --patches.rests;
+      else if (!((1 - patches.off) * patches.height > gap))
+        patches.rests = rest;
+    }
+  });
+  for (std::size_t k = 0; k < regions_.size(); ++k)
+    apart_[k] = (1 - patches_[regions_[k].patches].off) * regions_[k].height > gap;
+}
+
+Unfolded::Turn Unfolded::turn_of(int patch, const std::vector<Vec3>& x) const {
+  const int from = shapes_from_[patch], to = shapes_from_[patch + 1];
+  const auto& [u, v] = planes_[patch];
+  std::array<Plane, most_in_a_patch> F;  // along t_0 and t_1
+  Vec3 of_u = Vec3::Zero(), of_v = Vec3::Zero();
+  for (int k = from; k < to; ++k) {
+    const Shape& s = shapes_[k];
+    const Vec3 a = x[s.v[1]] - x[s.v[0]], b = x[s.v[2]] - x[s.v[0]];
+    Plane& f = F[static_cast<std::size_t>(k - from)];
+    f = {a * s.inverse_length, (b - s.along * a) * s.inverse_height};
+    of_u += s.t[0].dot(u) * f[0] + s.t[1].dot(u) * f[1];
+    of_v += s.t[0].dot(v) * f[0] + s.t[1].dot(v) * f[1];
+  }
+  const Plane now = orthonormal(of_u, of_v);
+  const Vec3 n = now[0].cross(now[1]);
+  Turn turn;
+  turn.G = now[0] * u.transpose() + now[1] * v.transpose() + n * normals_[patch].transpose();
+  turn.q = Eigen::Quaterniond(turn.G).coeffs();
+  double along = turn.G.determinant() > 0.5 ? 0 : infinity, across = 0;  // squares; or it is drawn to a line
+  for (int k = from; k < to; ++k) {
+    const Shape& s = shapes_[k];
+    const Plane& f = F[static_cast<std::size_t>(k - from)];
+    Vec3 a = f[0] - turn.G * s.t[0], b = f[1] - turn.G * s.t[1];
+    const double over_a = n.dot(a), over_b = n.dot(b);
+    a -= over_a * n;
+    b -= over_b * n;
+    const double here = largest_square(a.squaredNorm(), b.squaredNorm(), a.dot(b));
+    along = here <= along ? along : std::isnan(here) ? infinity : here;
+    across = std::max(across, over_a * over_a + over_b * over_b);
+  }
+  turn.along = std::sqrt(along);
+  turn.across = std::sqrt(across);
+  return turn;
+}
+
+// e for the mean of how the patches have turned at the start.
+double Unfolded::off_of(const Patches& patches) const {
+  const double least = off_by_angles(patches);
+  if (least <= small) return least;
+  const auto& [u, v] = patches.plane;
+  Vec3 of_u = Vec3::Zero(), of_v = Vec3::Zero();
+  for (int p : patches.all) {
+    of_u += ends_[p].turn[0].G * u;
+    of_v += ends_[p].turn[0].G * v;
+  }
+  const Plane R = orthonormal(of_u, of_v);
+  const double longest = std::sqrt(1 + patches.slope * patches.slope);
+  double off = 0;
+  for (int p : patches.all)
+    for (const Turn& turn : ends_[p].turn) {
+      const Vec3 a = turn.G * u, b = turn.G * v, c = turn.G * patches.normal, n = turn.G * normals_[p];
+      const double aa = R[0].dot(a), bb = R[1].dot(b), shear = 0.5 * (R[0].dot(b) + R[1].dot(a));
+      const double turned = 0.5 * (aa + bb) - std::sqrt(0.25 * (aa - bb) * (aa - bb) + shear * shear);
+      const double tilted = norm(R[0].dot(c), R[1].dot(c)), bent = norm(R[0].dot(n), R[1].dot(n));
+      const double here = 1 - turned + patches.slope * tilted + longest * (turn.along + bent * turn.across);
+      off = here <= off ? off : std::isnan(here) ? infinity : here;
+    }
+  return std::min(least, off);
+}
+
+// An upper bound of e that costs little: by the largest angle between a patch and their mean.
+double Unfolded::off_by_angles(const Patches& patches) const {
+  Eigen::Vector4d mean = Eigen::Vector4d::Zero();
+  for (int p : patches.all) {
+    const Eigen::Vector4d& q = ends_[p].turn[0].q;
+    mean += q.dot(mean) < 0 ? -q : q;
+  }
+  mean.normalize();
+  double cosine = 1, along = 0, across = 0;  // of half the angle
+  for (int p : patches.all)
+    for (const Turn& turn : ends_[p].turn) {
+      cosine = std::min(cosine, std::abs(turn.q.dot(mean)));
+      along = std::max(along, turn.along);
+      across = std::max(across, turn.across);
+    }
+  const double longest = std::sqrt(1 + patches.slope * patches.slope);
+  return longest * (norm(along, across) + 2 * std::sqrt(1 - cosine * cosine));
+}
+
+}  // namespace drape::internal
