@@ -199,6 +199,18 @@ TEST_CASE("auto gives block-ic0 up in a solve that takes too long, and solves as
   }
 }
 
+TEST_CASE("auto begins with multigrid on a large sheet", "[solvers]") {
+  for (const auto& [side, large] : {std::pair(100, false), std::pair(142, true)}) {
+    MovingSheet sheet(side, false, false);
+    Cost cost;
+    ImplicitEuler stepper(sheet.system, sheet.constraints, std::make_unique<CountingSolver>("auto", cost),
+                          {.tolerance = 1e-4});
+    REQUIRE(stepper.advance(sheet.state, 0.01).done);
+    CHECK(cost.solves > 0);
+    CHECK(cost.by_multigrid == (large ? cost.solves : 0));
+  }
+}
+
 TEST_CASE("auto takes the same methods on any number of threads", "[solvers]") {
   const ThreadsRestored restored;
   set_threads(1);

@@ -5,9 +5,10 @@
 // down is counted once.
 // What is compared is the cost of all systems of one assembled matrix, because contacts ask for several short
 // solves with it, for which the levels of multigrid do not pay.
-// A run begins with block-ic0. Multigrid has the next matrix on trial where a solve costs more than one with
+// A run begins with block-ic0, or with multigrid where there are 20 000 rows. Multigrid has the next matrix on trial where a solve costs more than one with
 // multigrid usually does, and goes on when the matrix cost less than one costs with block-ic0 on average. After a
-// trial the other method waits for 8 matrices, and for twice as many after each that it loses, up to 64. It waits
+// trial the other method waits for 8 matrices, and for twice as many after each that it loses, up to 64; block-ic0
+// for four times as many, up to 256, where it was given up. It waits
 // for 2 only where a matrix now costs 1.25 times what it cost with the other method when that was last used, as
 // when cloth arrives at a body; and multigrid that was never tried does not wait where block-ic0 costs twice what
 // is usual. While block-ic0 is cheap, multigrid has no trial. Matrices whose solves take no iteration, as in free
@@ -43,6 +44,7 @@ class Auto final : public LinearSolver {
 
   LinearReport solve(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
                      VecX& dv) override {
+    if (fill_ == 0) begin_run(A.rows());
     if (fill_ != A.fill()) begin_matrix();
     fill_ = A.fill();
     multigrid_price_ = multigrid_price(A);
@@ -60,7 +62,7 @@ class Auto final : public LinearSolver {
 
  private:
   enum Method { ic0, multigrid };
-  static constexpr int shortest_wait = 8, longest_wait = 64, fewest_iterations = 40;
+  static constexpr int shortest_wait = 8, longest_wait = 64, fewest_iterations = 40, large = 20000;
 
   LinearReport solve_by(Method method, const BlockMatrix& A, const VecX& b, const Filter& filter,
                         const LinearOptions& options, VecX& dv) {
@@ -100,12 +102,18 @@ class Auto final : public LinearSolver {
   // Multigrid goes on where block-ic0 took more than its budget.
   void give_up() {
     usual_[ic0] = std::max(usual_[ic0], 2 * cost_);  // it would have cost more; nobody knows how much
-    wait_ = on_trial_ ? std::clamp(2 * wait_, shortest_wait, longest_wait) : shortest_wait;
+    wait_ = on_trial_ ? std::clamp(4 * wait_, shortest_wait, 4 * longest_wait) : shortest_wait;
     waited_ = 0;
     on_trial_ = false;
     now_ = multigrid;
     cost_ = 0;
     solves_ = 0;
+  }
+
+  void begin_run(int rows) {
+    if (rows < large) return;
+    now_ = multigrid;
+    wait_ = shortest_wait;
   }
 
   void begin_matrix() {

@@ -178,15 +178,29 @@ int main(int count, char** arguments) {
       sides.push_back(std::atoi(arguments[k]));
       continue;
     }
-    if (++k == count) return std::fprintf(stderr, "error: %s needs a value\n", name.c_str()), 2;
-    if (name == "--steps") steps = std::atoi(arguments[k]);
-    if (name == "--solver") solver = arguments[k];
-    if (name == "--threads") thread_counts = {std::atoi(arguments[k])};
-    if (name == "--model") models = {arguments[k]};
-    if (name == "--scene") scenes = {arguments[k]};
-    if (name == "--height") height = std::atof(arguments[k]);
-    if (name == "--alone") alone = std::atoi(arguments[k]) != 0;
-    if (name == "--self-contact") self_contact = std::atoi(arguments[k]) != 0;
+    const char* const value = k + 1 < count ? arguments[++k] : nullptr;
+    if (value && name == "--steps")
+      steps = std::atoi(value);
+    else if (value && name == "--solver")
+      solver = value;
+    else if (value && name == "--threads")
+      thread_counts = {std::atoi(value)};
+    else if (value && name == "--model")
+      models = {value};
+    else if (value && name == "--scene")
+      scenes = {value};
+    else if (value && name == "--height")
+      height = std::atof(value);
+    else if (value && name == "--alone")
+      alone = std::atoi(value) != 0;
+    else if (value && name == "--self-contact")
+      self_contact = std::atoi(value) != 0;
+    else
+      return std::fprintf(stderr,
+                          "usage: drape_bench_motion [SIDE ...] [--steps N] [--solver NAME] [--threads N] "
+                          "[--model NAME] "
+                          "[--scene hung|dropped] [--height METRES] [--alone 0|1] [--self-contact 0|1]\n"),
+             2;
   }
   if (sides.empty()) sides = {32, 100};
   std::printf("%s, %d steps\n", solver.c_str(), steps);
