@@ -20,19 +20,15 @@ constexpr double never = -std::numeric_limits<double>::infinity();
 
 bool is_of_vertex(const Encounter& e) { return !e.edges; }
 
-Vec3 place(const VecX& x, std::size_t particle) {
-  return x.segment<3>(3 * static_cast<Eigen::Index>(particle));
-}
-
 }  // namespace
 
 void Encounters::spread(const VecX& x, std::vector<Vec3>& places) const {
-  places.resize(static_cast<std::size_t>(particles_));
-  for (std::size_t i = 0; i < places.size(); ++i) places[i] = place(x, i);
+  for (int i : moving_) places[i] = x.segment<3>(3 * i);
 }
 
 void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<std::array<int, 2>>& segments,
-                     int particle_count, std::size_t of_cloth, const VecX& x) {
+                     int particle_count, std::size_t of_cloth, const VecX& x,
+                     const std::vector<char>& still) {
   faces_.clear();
   room_ = 0;
   of_cloth_ = 0;
@@ -97,13 +93,20 @@ void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<s
   beside_.normal.assign(beside_.list.size(), Vec3::Zero());
   clock_.assign(particles, {});
   limits_.assign(particles, 0);
-  spread(x, start_);
+  start_.clear();
+  moving_.clear();
+  const auto moves = [&](int i) { return still.empty() || still[i] == 0; };
+  for (int i = 0; i < particle_count; ++i) {
+    start_.emplace_back(x.segment<3>(3 * i));
+    if (moves(i)) moving_.push_back(i);
+  }
   end_ = start_;
-  boxes_.emplace(faces_, start_, 1, of_cloth_);
+  boxes_.emplace(faces_, start_, 1, of_cloth_, still);
   unfolded_.reset();
   if (of_cloth_ == 0) unfolded_.emplace(faces_, *boxes_, start_);
   patch_start_.assign(1, 0);
   patch_.clear();
+  patch_moves_.clear();
   for (const MovingBoxes::Patch& p : boxes_->patches()) {
     const auto first = patch_.size();
     for (int k = p.first; k < p.first + p.count; ++k)
@@ -111,6 +114,7 @@ void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<s
     const auto begin = patch_.begin() + static_cast<std::ptrdiff_t>(first);
     std::sort(begin, patch_.end());
     patch_.erase(std::unique(begin, patch_.end()), patch_.end());
+    patch_moves_.push_back(std::any_of(begin, patch_.end(), moves));
     patch_start_.push_back(static_cast<int>(patch_.size()));
   }
 }
@@ -221,6 +225,10 @@ void Encounters::measure(const Change& change, Ranges& ranges) const {
                [&](int chunk) {
                  for (int p = chunk * patches_at_once; p < std::min(patches, (chunk + 1) * patches_at_once);
                       ++p) {
+                   if (!patch_moves_[p]) {
+                     ranges[p].lower = ranges[p].upper = Eigen::Array3d::Zero();
+                     continue;
+                   }
                    Range range;
                    for (int k = patch_start_[p]; k < patch_start_[p + 1]; ++k) {
                      const Eigen::Array3d value = change(patch_[k]);

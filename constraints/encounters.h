@@ -48,9 +48,10 @@ class Encounters {
   // Triangles between the first so many particles, each once; a triangle that names a particle twice does not
   // count. of_cloth: so many of the triangles are of cloth, and only their pairs with the others are looked
   // for, without those of a vertex of cloth; all are of cloth: the pairs between all are, and those of the
-  // segments with all.
+  // segments with all. still: of each particle, whether it is at the same place in all steps; none is where
+  // nothing is given.
   void set(const std::vector<Triangle>& triangles, const std::vector<std::array<int, 2>>& segments,
-           int particles, std::size_t of_cloth, const VecX& x);
+           int particles, std::size_t of_cloth, const VecX& x, const std::vector<char>& still = {});
 
   // Prepares for select() with this motion x -> x_new and gaps up to this one [m]. Searches only where what
   // is known does not cover the motion. False: a place is no number, or so much comes near so much else that
@@ -106,7 +107,7 @@ class Encounters {
     int edges_from = 0;  // where the second part of the list begins
   };
   void list(int first, int second, std::vector<Encounter>& found) const;
-  void spread(const VecX& x, std::vector<Vec3>& places) const;
+  void spread(const VecX& x, std::vector<Vec3>& places) const;  // those that move
   Box box_about(const Encounter& e, std::size_t from, std::size_t to) const;
   bool touch(const Box& a, const Box& b, double reach) const;
   bool apart_along_normal(int first, int second, double reach) const;
@@ -139,6 +140,8 @@ class Encounters {
   std::optional<Unfolded> unfolded_;      // of cloth with cloth
   std::vector<int> next_start_, next_;    // the vertices next to each one
   std::vector<int> patch_start_, patch_;  // the vertices of each patch
+  std::vector<int> moving_;               // particles that are not still
+  std::vector<char> patch_moves_;         // whether any of its vertices does
   // The pairs that have the common vertex c are the numbers beside_start_[c] to beside_start_[c + 1] of
   // beside_; those of edges begin at beside_edges_[c], and none is due before beside_due_[c].
   Pairs beside_;

@@ -45,13 +45,18 @@ void Surfaces::set(const std::vector<MovingBody>& bodies) {
   surfaces_.clear();
   faces_.clear();
   body_.clear();
+  still_.clear();
+  placed_ = false;
   thickest_ = 0;
   for (const MovingBody& body : bodies) {
     if (!body.meets_triangles()) continue;
     const TriangleMesh* const skin = body.skin();
     const int first = cloth_ + static_cast<int>(body_.size());
-    surfaces_.emplace_back(body.number(), first);
+    const Obstacle& obstacle = body.obstacle();
+    const bool still = !obstacle.motion.moves() && !obstacle.rigid && !deforming(obstacle.shape);
+    surfaces_.push_back({body.number(), first, still});
     body_.resize(body_.size() + skin->positions.size(), body.number());
+    still_.resize(body_.size(), still);
     const double thickness = share_of_margin * body.obstacle().margin;
     thickest_ = std::max(thickest_, thickness);
     for (const Triangle& t : skin->triangles)
@@ -65,7 +70,8 @@ void Surfaces::set(const std::vector<MovingBody>& bodies) {
 }
 
 void Surfaces::place(const std::vector<MovingBody>& bodies, bool start) {
-  for (const auto& [number, first] : surfaces_) {
+  for (const auto& [number, first, still] : surfaces_) {
+    if (still && placed_) continue;
     const MovingBody& body = bodies[number];
     const int count = body.skin()->vertex_count(), at = first;
     for_chunks(count, [&](int begin, int end) {
@@ -83,6 +89,7 @@ void Surfaces::follow(const std::vector<MovingBody>& bodies) {
   const auto size = 3 * static_cast<Eigen::Index>(body_.size());
   ends_.resize(size);
   place(bodies, false);
+  placed_ = true;
   step_.v.tail(size) = (ends_ - step_.x.tail(size)) / step_.h;
 }
 
@@ -114,7 +121,7 @@ void Surfaces::look_again(const std::vector<MovingBody>& bodies, const std::vect
   std::vector<char> in(places.size(), 0);
   for_chunks<Work::heavy>(cloth_, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
-      for (const auto& [number, first] : surfaces_)
+      for (const auto& [number, first, still] : surfaces_)
         if (pinched_[i] != 0 && bodies[number].inside_skin(places[i], inside)) in[i] = 1;
   });
   std::vector<Triangle> triangles;

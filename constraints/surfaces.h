@@ -32,7 +32,9 @@ class Surfaces {
   bool any() const { return !faces_.empty(); }
   const std::vector<SelfFace>& faces() const { return faces_; }
   int body_of(int particle) const { return body_[particle - cloth_]; }
-  double thickest() const { return thickest_; }     // of the faces [m]
+  double thickest() const { return thickest_; }  // of the faces [m]
+  // Whether the particle is of a body that never moves.
+  bool is_still(int particle) const { return particle >= cloth_ && still_[particle - cloth_] != 0; }
   const StepMotion& step() const { return step_; }  // of all particles
   // The places of all particles at the end of a step that takes the cloth to x_new [m]. Good until the next
   // call.
@@ -52,9 +54,15 @@ class Surfaces {
   void place(const std::vector<MovingBody>& bodies, bool start);
 
   int cloth_ = -1, bodies_ = 0;
-  std::vector<std::pair<int, int>> surfaces_;  // body, and its first particle
+  struct Surface {
+    int body, first;  // its first particle
+    bool still;
+  };
+  std::vector<Surface> surfaces_;
   std::vector<SelfFace> faces_;
-  std::vector<int> body_;  // by particle of the surfaces
+  std::vector<int> body_;    // by particle of the surfaces
+  std::vector<char> still_;  // likewise
+  bool placed_ = false;      // what is still
   double thickest_ = 0;
   StepMotion step_;
   VecX x_new_, ends_;          // m; ends_: of the surfaces

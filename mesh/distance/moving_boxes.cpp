@@ -8,6 +8,8 @@
 namespace drape::internal {
 namespace {
 
+constexpr double farthest_origin = 0.2;  // from the middle, in sizes
+
 struct Extent {
   Eigen::AlignedBox3d box;
   Extent& operator+=(const Extent& other) {
@@ -19,7 +21,7 @@ struct Extent {
 }  // namespace
 
 MovingBoxes::MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places, int most_faces,
-                         int first_kind)
+                         int first_kind, const std::vector<char>& still)
     : most_faces_(most_faces) {
   std::vector<std::pair<Vec3, int>> middles;
   middles.reserve(faces.size());
@@ -30,11 +32,21 @@ MovingBoxes::MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>
   for (const auto& [middle, face] : middles) order_.push_back(face);
   int below = 0;
   for (int child = 0; child < 4; ++child) below += make_patches(0, child, below);
-  mark_kinds(first_kind);
+  std::vector<char> face_moves(faces.size(), 1);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const Triangle& v = faces[f].v;
+    if (!still.empty()) face_moves[f] = !(still[v[0]] && still[v[1]] && still[v[2]]);
+    if (face_moves[f]) moving_faces_.push_back(static_cast<int>(f));
+    if (!face_moves[f])
+      for (int corner : v) box_of_still_.extend(places[corner]);
+  }
+  mark_kinds(first_kind, face_moves);
 }
 
-void MovingBoxes::mark_kinds(int first_kind) {
-  const auto kind = [&](int face) { return first_kind == 0 ? 3u : face < first_kind ? 1u : 2u; };
+void MovingBoxes::mark_kinds(int first_kind, const std::vector<char>& face_moves) {
+  const auto kind = [&](int face) {
+    return (first_kind == 0 ? 3u : face < first_kind ? 1u : 2u) | (face_moves[face] ? moving : 0u);
+  };
   for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node)
     for (int child = 0; child < 4; ++child) {
       unsigned kinds = 0;
@@ -128,24 +140,34 @@ void MovingBoxes::fit_node(Node& node, int child) const {
 
 void MovingBoxes::refit(const std::vector<Face>& faces, const std::vector<Vec3>& start,
                         const std::vector<Vec3>& end) {
-  const Eigen::AlignedBox3d box =
-      sum_chunks<Work::heavy>(static_cast<int>(faces.size()), [&](int begin, int after) {
+  Eigen::AlignedBox3d box =
+      sum_chunks<Work::heavy>(static_cast<int>(moving_faces_.size()), [&](int begin, int after) {
         Extent extent;
-        for (int f = begin; f < after; ++f)
-          for (int v : faces[f].v) extent.box.extend(start[v]).extend(end[v]);
+        for (int k = begin; k < after; ++k)
+          for (int v : faces[moving_faces_[k]].v) extent.box.extend(start[v]).extend(end[v]);
         return extent;
       }).box;
-  origin_ = box.center();
+  box.extend(box_of_still_);
+  const double size = box.diagonal().norm();
+  // All boxes are relative to this place, to which it has to be near, for the sake of rounding.
+  const bool all =
+      !fitted_ || box_of_still_.isEmpty() || (box.center() - origin_).norm() > farthest_origin * size;
+  fitted_ = true;
+  if (all) origin_ = box.center();
   still_ = &start == &end;
-  slack_ = static_cast<float>(1e-6 * box.diagonal().norm()) + std::numeric_limits<float>::min();
+  slack_ = static_cast<float>(1e-6 * size) + std::numeric_limits<float>::min();
+  const auto is_fitted_anew = [&](const Node& node, int child) {
+    return all || (node.kinds[child] & moving) != 0;
+  };
   for_chunks<Work::heavy>(static_cast<int>(nodes_.size()), [&](int begin, int after) {
     for (int n = begin; n < after; ++n)
       for (int child = 0; child < 4; ++child)
-        if (nodes_[n].count[child] > 0) fit_leaf(nodes_[n], child, faces, start, end);
+        if (nodes_[n].count[child] > 0 && is_fitted_anew(nodes_[n], child))
+          fit_leaf(nodes_[n], child, faces, start, end);
   });
   for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node)  // a node stands before those below it
     for (int child = 0; child < 4; ++child)
-      if (node->count[child] < 0) fit_node(*node, child);
+      if (node->count[child] < 0 && is_fitted_anew(*node, child)) fit_node(*node, child);
 }
 
 // Which children of a node come within the margin of a child of another along all axes at a common s.

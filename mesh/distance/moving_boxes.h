@@ -8,7 +8,7 @@
 // left out, and further triangles that a search proposes do not change any answer.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,11 +22,13 @@ namespace drape::internal {
 class MovingBoxes {
  public:
   // Groups the faces by where they are when the vertices are at these places, up to `most_faces` in a box.
-  // Pairs are asked for between the first `first_kind` faces and the others alone; 0: between all.
+  // Pairs are asked for between the first `first_kind` faces and the others alone; 0: between all. still:
+  // of each vertex, whether it is at the same place in all steps; none is where nothing is given.
   MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>& places, int most_faces = 4,
-              int first_kind = 0);
+              int first_kind = 0, const std::vector<char>& still = {});
 
-  // Fits the boxes to a step. Allocates nothing.
+  // Fits the boxes to a step: those of what moves, and all where the surface as a whole has gone far.
+  // Allocates nothing.
   void refit(const std::vector<Face>& faces, const std::vector<Vec3>& start, const std::vector<Vec3>& end);
 
   // Calls ask(face) for every face whose box at s is within the distance of interest from x, nearer boxes
@@ -64,7 +66,7 @@ class MovingBoxes {
   struct Node {
     std::array<std::array<Four, 3>, 2> lower{}, upper{};  // at s = 0 and at s = 1; x, y and z
     std::array<int, 4> first{}, count{};                  // range of faces in order_; count -1: a node
-    std::array<unsigned char, 4> kinds{};                 // bits of the kinds of faces below
+    std::array<unsigned char, 4> kinds{};                 // bits of the kinds of faces below, and `moving`
     std::array<int, 4> patch{-1, -1, -1, -1};             // which patch a child is; -1: none
   };
   struct Waiting {
@@ -91,7 +93,8 @@ class MovingBoxes {
   static unsigned after(int child) { return ~(2u * (1u << child) - 1u); }
   unsigned near_children(int node, int child, int other, float margin) const;
   int make_patches(int node, int child, int first);
-  void mark_kinds(int first_kind);
+  static constexpr unsigned char moving = 4;
+  void mark_kinds(int first_kind, const std::vector<char>& face_moves);
   // Whether faces of different kinds are below both.
   static bool differ(unsigned char a, unsigned char b) {
     return (a & b >> 1 & 1u) != 0 || (a >> 1 & b & 1u) != 0;
@@ -109,6 +112,9 @@ class MovingBoxes {
   Vec3 origin_ = Vec3::Zero();
   float slack_ = 0;     // m
   bool still_ = false;  // whether start and end are the same
+  std::vector<int> moving_faces_;
+  Eigen::AlignedBox3d box_of_still_;  // m
+  bool fitted_ = false;
 };
 
 template <class Ask>
