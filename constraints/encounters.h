@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -41,6 +42,13 @@ inline FourPoints corners(const VecX& x, const Encounter& e) {
   FourPoints all;
   for (std::size_t k = 0; k < 4; ++k) all[k] = x.segment<3>(3 * e.v[k]);
   return all;
+}
+
+// No two things end a step nearer than this, or come nearer than half of it on the way [m]: places that are
+// written as floats then do not cross, either.
+inline double floor_of(const VecX& x, const VecX& x_new) {
+  const double largest = std::max(x.lpNorm<Eigen::Infinity>(), x_new.lpNorm<Eigen::Infinity>());
+  return 4 * std::sqrt(3.0) * std::ldexp(largest, -24);
 }
 
 class Encounters {

@@ -20,13 +20,6 @@ namespace {
 // common any more, and after the last round whole pieces stand still.
 constexpr int rounds_of_pushes = 40, stops_by_shares = 8, rounds_in_common = 40, most_rounds = 64;
 
-// No two things end a step nearer than this, or come nearer than half of it on the way [m]: places that are
-// written as floats then do not cross, either.
-double floor_of(const VecX& x, const VecX& x_new) {
-  const double largest = std::max(x.lpNorm<Eigen::Infinity>(), x_new.lpNorm<Eigen::Infinity>());
-  return 4 * std::sqrt(3.0) * std::ldexp(largest, -24);
-}
-
 }  // namespace
 
 std::vector<Meeting>& SelfContacts::meetings(const VecX& x, const VecX& x_new) {

@@ -143,9 +143,9 @@ void SelfContacts::set_particles(const StepMotion& step) {
   encounters_->set(mesh.triangles, segments, cloth, mesh.triangles.size(), step.x);
   if (surfaces_->any()) {
     take(surfaces_->faces());
-    if (faces_.empty())  // ropes alone, which meet bodies otherwise
+    if (faces_.empty()) {  // ropes alone, which meet bodies otherwise
       on_bodies_->set({}, {}, 0, 0, step.x);
-    else {
+    } else {
       std::vector<char> still(n);
       for (std::size_t i = 0; i < n; ++i) still[i] = surfaces_->is_still(static_cast<int>(i));
       on_bodies_->set(mesh.triangles, {}, static_cast<int>(n), faces_.size(), step.x, still);

@@ -158,8 +158,9 @@ void SelfContacts::take_over(SelfContact& contact, double recovery) const {
 }
 
 bool SelfContacts::follow_all(const VecX& x, const VecX& x_new) {
-  if (!encounters_->follow(x, x_new, reach_)) return false;
-  return !surfaces_->any() || on_bodies_->follow(x, x_new, body_reach_);
+  const double floor = floor_of(x, x_new);  // of the guard
+  if (!encounters_->follow(x, x_new, std::max(reach_, floor))) return false;
+  return !surfaces_->any() || on_bodies_->follow(x, x_new, std::max(body_reach_, floor));
 }
 
 // How far apart two edges may be to become a contact [m]. It takes nearest_ of their ends.

@@ -14,10 +14,6 @@ constexpr double rounding = 1e-9;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-std::pair<int, int> edge_of(const Face& face, std::size_t k) {
-  return std::minmax(face.v[k], face.v[(k + 1) % 3]);
-}
-
 }  // namespace
 
 std::array<Vec3, 2> plane_across(const Vec3& n) {
@@ -26,30 +22,32 @@ std::array<Vec3, 2> plane_across(const Vec3& n) {
 }
 
 ShadowHull::ShadowHull(const std::vector<Face>& faces, const std::vector<Vec3>& places)
-    : faces_(faces), places_(places), across_(faces.size()), met_(faces.size(), 0) {
-  struct Sides {
-    int sum = 0, count = 0;  // of the numbers of its faces
-  };
-  std::map<std::pair<int, int>, Sides> edges;
+    : faces_(faces), places_(places), beyond_(faces.size()), met_(faces.size(), 0), seen_(places.size(), 0) {
+  std::map<std::pair<int, int>, int> forward;  // the face that runs along the edge this way; -1: several do
   for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
     const Triangle& v = faces[f].v;
     normals_.push_back((places[v[1]] - places[v[0]]).cross(places[v[2]] - places[v[0]]));
     for (std::size_t k = 0; k < 3; ++k) {
-      Sides& sides = edges[edge_of(faces[f], k)];
-      sides.sum += f;
-      ++sides.count;
+      const auto [at, is_first] = forward.try_emplace({v[k], v[(k + 1) % 3]}, f);
+      if (!is_first) at->second = -1;
     }
   }
+  const auto face_along = [&](int from, int to) {
+    const auto at = forward.find({from, to});
+    return at == forward.end() ? -1 : at->second;
+  };
   for (int f = 0; f < static_cast<int>(faces.size()); ++f)
     for (std::size_t k = 0; k < 3; ++k) {
-      const Sides& sides = edges[edge_of(faces[f], k)];
-      across_[f][k] = sides.count == 2 ? sides.sum - f : -1;
+      const int from = faces[f].v[k], to = faces[f].v[(k + 1) % 3];
+      beyond_[f][k] = face_along(from, to) == f ? face_along(to, from) : -1;
     }
 }
 
-// Walks from the faces over all edges that go through the hull. What has no border inside the hull, and faces
-// one way, lies over each of its points equally often: once, where it does so somewhere.
+// Walks from the faces over all edges that go through the hull. A surface that has no border inside the hull
+// and faces one way, with triangles on both sides of each edge, lies over each point of the hull equally
+// often: once, where it does so somewhere.
 bool ShadowHull::covers(const std::vector<int>& faces, const Vec3& normal) {
+  if (!(normal.squaredNorm() > 0.5)) return false;  // as where there is a rope alone
   ++search_;
   found_.clear();
   height_ = std::numeric_limits<double>::infinity();
@@ -67,7 +65,7 @@ bool ShadowHull::covers(const std::vector<int>& faces, const Vec3& normal) {
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec2 &a = corners[i], &b = corners[(i + 1) % 3];
       height_ = std::min(height_, area / (b - a).norm());
-      const int beyond = across_[f][i];
+      const int beyond = beyond_[f][i];
       if ((beyond >= 0 && met_[beyond] == search_) || !enters_hull(a, b)) continue;
       if (beyond < 0) return false;
       add(beyond);
@@ -91,7 +89,8 @@ std::array<Eigen::Vector2d, 3> ShadowHull::shadow_of(int face) const {
 void ShadowHull::make_hull(const std::vector<int>& faces) {
   points_.clear();
   for (int f : faces)
-    for (const Vec2& corner : shadow_of(f)) points_.push_back(corner);
+    for (int v : faces_[f].v)
+      if (std::exchange(seen_[v], search_) != search_) points_.push_back(shadow(v));
   std::sort(points_.begin(), points_.end(),
             [](const Vec2& a, const Vec2& b) { return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y()); });
   hull_.clear();

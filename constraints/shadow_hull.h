@@ -31,9 +31,10 @@ class ShadowHull {
 
   const std::vector<Face>& faces_;
   const std::vector<Vec3>& places_;
-  std::vector<Vec3> normals_;               // twice the area long
-  std::vector<std::array<int, 3>> across_;  // the face beyond each edge; -1: there is none, or several
-  std::vector<int> met_;                    // the search that met the face last
+  std::vector<Vec3> normals_;  // twice the area long
+  // The face beyond each edge; -1: there is none, or several, or it is wound the other way.
+  std::vector<std::array<int, 3>> beyond_;
+  std::vector<int> met_, seen_;  // the search that met the face, and the vertex, last
   int search_ = 0;
   std::array<Vec3, 2> plane_;
   std::vector<Vec2> points_, hull_;  // counterclockwise

@@ -13,10 +13,9 @@ namespace drape::internal {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double rounding = 1e-6;
-constexpr int most_in_a_patch = 32;
-constexpr double small = 0.3;  // an e that nobody need know better
-constexpr int rest = 8;        // looks that what is folded is spared
+constexpr double rounding = 1e-6;      // of e
+constexpr double clearly_apart = 0.3;  // an e that is not looked at more closely
+constexpr int looks_spared = 8;        // where something was folded
 
 const double half = std::sqrt(0.5);
 
@@ -25,6 +24,11 @@ std::array<Vec3, 2> orthonormal(const Vec3& a, const Vec3& b) {
   const Vec3 first = a.normalized(), second = b.normalized();
   const Vec3 both = (first + second).normalized(), between = (first - second).normalized();
   return {half * (both + between), half * (both - between)};
+}
+
+bool are_equal(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  return a.size() == b.size() &&
+         std::equal(a.front().data(), a.front().data() + 3 * a.size(), b.front().data());
 }
 
 double norm(double a, double b) { return std::sqrt(a * a + b * b); }
@@ -63,10 +67,10 @@ class Unfolded::Builder {
     if (!hull_.covers(faces, normal)) return -1;
     patches_of(hull_.found(), all_);
     const auto [at, is_new] = numbers_.try_emplace({by_, all_}, static_cast<int>(numbers_.size()));
-    if (is_new) unfolded_.patches_.push_back({.all = all_, .normal = normal, .plane = plane_across(normal)});
-    Patches& patches = unfolded_.patches_[at->second];
-    patches.slope = std::max(patches.slope, hull_.slope());
-    patches.height = std::max(patches.height, hull_.height());
+    if (is_new) unfolded_.sets_.push_back({.patches = all_, .normal = normal, .plane = plane_across(normal)});
+    PatchSet& set = unfolded_.sets_[at->second];
+    set.slope = std::max(set.slope, hull_.slope());
+    set.height = std::max(set.height, hull_.height());
     unfolded_.regions_.push_back({at->second, hull_.height()});
     return static_cast<int>(unfolded_.regions_.size()) - 1;
   }
@@ -92,7 +96,7 @@ class Unfolded::Builder {
   ShadowHull hull_;
   std::vector<int> patch_of_;
   std::vector<std::vector<int>> faces_of_;
-  std::map<std::pair<std::vector<int>, std::vector<int>>, int> numbers_;  // of Patches
+  std::map<std::pair<std::vector<int>, std::vector<int>>, int> numbers_;  // of sets
   std::vector<int> by_, all_;
 };
 
@@ -125,6 +129,7 @@ Unfolded::Unfolded(const std::vector<Face>& faces, const MovingBoxes& boxes, con
 
 void Unfolded::add_shape(const Triangle& v, const std::vector<Vec3>& places) {
   const Vec3 a = places[v[1]] - places[v[0]], b = places[v[2]] - places[v[0]];
+  if (!has_area(places[v[0]], places[v[1]], places[v[2]])) return;  // no region has it
   const Vec3 t = a.normalized(), across = b - t.dot(b) * t;
   shapes_.push_back({v, {t, across.normalized()}, 1 / a.norm(), t.dot(b) / a.norm(), 1 / across.norm()});
 }
@@ -135,13 +140,13 @@ int Unfolded::region_of(int first, int second) const {
 }
 
 void Unfolded::look(const std::vector<Vec3>& start, const std::vector<Vec3>& end, double gap) {
-  const bool same = start == start_, goes_on = !same && start == end_;
+  const bool same = are_equal(start, start_), goes_on = !same && are_equal(start, end_);
   start_ = start;
   end_ = end;
   ++looks_;
-  for (const Patches& patches : patches_)
-    if (patches.rests == 0)
-      for (int p : patches.all) ends_[p].wanted = true;
+  for (const PatchSet& set : sets_)
+    if (set.rests == 0)
+      for (int p : set.patches) ends_[p].wanted = true;
   for_chunks<Work::heavy>(static_cast<int>(ends_.size()), [&](int begin, int after) {
     for (int p = begin; p < after; ++p) {
       Ends& ends = ends_[p];
@@ -154,24 +159,24 @@ void Unfolded::look(const std::vector<Vec3>& start, const std::vector<Vec3>& end
       ends.wanted = false;
     }
   });
-  for_chunks<Work::heavy>(static_cast<int>(patches_.size()), [&](int begin, int after) {
+  for_chunks<Work::heavy>(static_cast<int>(sets_.size()), [&](int begin, int after) {
     for (int k = begin; k < after; ++k) {
-      Patches& patches = patches_[k];
-      patches.off = patches.rests > 0 ? infinity : off_of(patches) + rounding;
-      if (patches.rests > 0)
-        --patches.rests;
-      else if (!((1 - patches.off) * patches.height > gap))
-        patches.rests = rest;
+      PatchSet& set = sets_[k];
+      set.off = set.rests > 0 ? infinity : off_of(set) + rounding;
+      if (set.rests > 0)
+        --set.rests;
+      else if (!((1 - set.off) * set.height > gap))
+        set.rests = looks_spared;
     }
   });
   for (std::size_t k = 0; k < regions_.size(); ++k)
-    apart_[k] = (1 - patches_[regions_[k].patches].off) * regions_[k].height > gap;
+    apart_[k] = (1 - sets_[regions_[k].set].off) * regions_[k].height > gap;
 }
 
 Unfolded::Turn Unfolded::turn_of(int patch, const std::vector<Vec3>& x) const {
   const int from = shapes_from_[patch], to = shapes_from_[patch + 1];
   const auto& [u, v] = planes_[patch];
-  std::array<Plane, most_in_a_patch> F;  // along t_0 and t_1
+  std::array<Plane, MovingBoxes::most_in_a_patch> F;  // along t_0 and t_1
   Vec3 of_u = Vec3::Zero(), of_v = Vec3::Zero();
   for (int k = from; k < to; ++k) {
     const Shape& s = shapes_[k];
@@ -186,7 +191,8 @@ Unfolded::Turn Unfolded::turn_of(int patch, const std::vector<Vec3>& x) const {
   Turn turn;
   turn.G = now[0] * u.transpose() + now[1] * v.transpose() + n * normals_[patch].transpose();
   turn.q = Eigen::Quaterniond(turn.G).coeffs();
-  double along = turn.G.determinant() > 0.5 ? 0 : infinity, across = 0;  // squares; or it is drawn to a line
+  // Squares. What is drawn to a line has turned in no one way.
+  double in_plane = turn.G.determinant() > 1 - rounding ? 0 : infinity, out_of_plane = 0;
   for (int k = from; k < to; ++k) {
     const Shape& s = shapes_[k];
     const Plane& f = F[static_cast<std::size_t>(k - from)];
@@ -195,56 +201,57 @@ Unfolded::Turn Unfolded::turn_of(int patch, const std::vector<Vec3>& x) const {
     a -= over_a * n;
     b -= over_b * n;
     const double here = largest_square(a.squaredNorm(), b.squaredNorm(), a.dot(b));
-    along = here <= along ? along : std::isnan(here) ? infinity : here;
-    across = std::max(across, over_a * over_a + over_b * over_b);
+    in_plane = here <= in_plane ? in_plane : std::isnan(here) ? infinity : here;
+    out_of_plane = std::max(out_of_plane, over_a * over_a + over_b * over_b);
   }
-  turn.along = std::sqrt(along);
-  turn.across = std::sqrt(across);
+  turn.in_plane = std::sqrt(in_plane);
+  turn.out_of_plane = std::sqrt(out_of_plane);
   return turn;
 }
 
 // e for the mean of how the patches have turned at the start.
-double Unfolded::off_of(const Patches& patches) const {
-  const double least = off_by_angles(patches);
-  if (least <= small) return least;
-  const auto& [u, v] = patches.plane;
+double Unfolded::off_of(const PatchSet& set) const {
+  const double least = off_by_angles(set);
+  if (least <= clearly_apart) return least;
+  const auto& [u, v] = set.plane;
   Vec3 of_u = Vec3::Zero(), of_v = Vec3::Zero();
-  for (int p : patches.all) {
+  for (int p : set.patches) {
     of_u += ends_[p].turn[0].G * u;
     of_v += ends_[p].turn[0].G * v;
   }
   const Plane R = orthonormal(of_u, of_v);
-  const double longest = std::sqrt(1 + patches.slope * patches.slope);
+  const double longest = std::sqrt(1 + set.slope * set.slope);
   double off = 0;
-  for (int p : patches.all)
+  for (int p : set.patches)
     for (const Turn& turn : ends_[p].turn) {
-      const Vec3 a = turn.G * u, b = turn.G * v, c = turn.G * patches.normal, n = turn.G * normals_[p];
+      const Vec3 a = turn.G * u, b = turn.G * v, c = turn.G * set.normal, n = turn.G * normals_[p];
       const double aa = R[0].dot(a), bb = R[1].dot(b), shear = 0.5 * (R[0].dot(b) + R[1].dot(a));
       const double turned = 0.5 * (aa + bb) - std::sqrt(0.25 * (aa - bb) * (aa - bb) + shear * shear);
       const double tilted = norm(R[0].dot(c), R[1].dot(c)), bent = norm(R[0].dot(n), R[1].dot(n));
-      const double here = 1 - turned + patches.slope * tilted + longest * (turn.along + bent * turn.across);
+      const double here =
+          1 - turned + set.slope * tilted + longest * (turn.in_plane + bent * turn.out_of_plane);
       off = here <= off ? off : std::isnan(here) ? infinity : here;
     }
   return std::min(least, off);
 }
 
 // An upper bound of e that costs little: by the largest angle between a patch and their mean.
-double Unfolded::off_by_angles(const Patches& patches) const {
+double Unfolded::off_by_angles(const PatchSet& set) const {
   Eigen::Vector4d mean = Eigen::Vector4d::Zero();
-  for (int p : patches.all) {
+  for (int p : set.patches) {
     const Eigen::Vector4d& q = ends_[p].turn[0].q;
     mean += q.dot(mean) < 0 ? -q : q;
   }
   mean.normalize();
-  double cosine = 1, along = 0, across = 0;  // of half the angle
-  for (int p : patches.all)
+  double cosine = 1, in_plane = 0, out_of_plane = 0;  // cosine: of half the angle
+  for (int p : set.patches)
     for (const Turn& turn : ends_[p].turn) {
       cosine = std::min(cosine, std::abs(turn.q.dot(mean)));
-      along = std::max(along, turn.along);
-      across = std::max(across, turn.across);
+      in_plane = std::max(in_plane, turn.in_plane);
+      out_of_plane = std::max(out_of_plane, turn.out_of_plane);
     }
-  const double longest = std::sqrt(1 + patches.slope * patches.slope);
-  return longest * (norm(along, across) + 2 * std::sqrt(1 - cosine * cosine));
+  const double longest = std::sqrt(1 + set.slope * set.slope);
+  return longest * (norm(in_plane, out_of_plane) + 2 * std::sqrt(1 - cosine * cosine));
 }
 
 }  // namespace drape::internal

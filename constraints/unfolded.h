@@ -1,23 +1,25 @@
 // Where cloth is surely not folded onto itself.
 //   F(X) says how the cloth about a point X has turned and stretched since a reference. Take a region of it
-//   over a convex part of a plane of normal N at the reference, and two points X and Y of it whose shadows on
-//   that plane are P apart, in the direction d. The way from X to Y over the cloth that has a straight shadow
-//   goes along t = d + s N, |s| <= slope. For any rotation R
-//     d . R^T (x(Y) - x(X)) = int d . R^T F t dP,   so that   |x(Y) - x(X)| >= (1 - e) P
-//   with e = max over the region, d and s of 1 - d . R^T F t. Where e < 1 the region cannot meet itself.
-//     F is linear in the places of the corners, and so is d . R^T F t: e at both ends of a straight motion is
-//   e for all of it. P is at least the least height of the shadows of the triangles, for a vertex and a
-//   triangle, or two edges, without a vertex in common: planar triangles are no nearer to what they do not
-//   touch. (That maps of convex regions are one to one where their gradient stays near to one matrix: John
-//   1968, "On quasi-isometric mappings I".)
-//     Triangles are looked at by patches. With a rotation G of each patch of normal n, and F - G in parts along
-//   and across n, of norms `across` and `along`, P the plane's projection,
-//     d . R^T F t >= d . R^T G t - |t| (along + |P R^T G n| across).
-// Motions that follow on each other share an end, of which what is known is kept.
+// that lies over a convex part of a plane of normal N at the reference, and two points X and Y of it whose
+// shadows on that plane are p apart, in the direction d. The way from X to Y over the cloth that has a
+// straight shadow goes along t = d + s N, where |s| is at most the slope of the region. For any rotation R
+//     d . R^T (x(Y) - x(X)) = int d . R^T F t dp,   so that   |x(Y) - x(X)| >= (1 - e) p
+// with e the largest of 1 - d . R^T F t in the region. Where e < 1 the region cannot meet itself.
+//   F is linear in the places of the corners, and so is d . R^T F t: what bounds e at both ends of a straight
+// motion bounds it all the way. R is the mean of how the region has turned at the start.
+//   For a vertex and a triangle, or two edges, without a vertex in common p is at least the least height of
+// the triangles' shadows: the straight way from a vertex leaves the triangle that it begins in over the edge
+// across from it, and two edges that do not cross are nearest at an end of one. (That maps of convex regions
+// are one to one where their gradient stays near to one matrix is known [John 1968].)
+//   Triangles are looked at by patches. Let G be a rotation near to F in a patch, and n the normal of the
+// patch as G turns it. F - G has a part across n and one along it, of norms `in_plane` and `out_of_plane`,
+// and Q takes a vector's part in the region's plane, as R turns it:
+//     d . R^T F t >= d . R^T G t - |t| (in_plane + |Q n| out_of_plane)
 #pragma once
 
 #include <array>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "mesh/distance/moving_boxes.h"
@@ -49,33 +51,33 @@ class Unfolded {
   };
   struct Turn {
     Mat3 G;
-    Eigen::Vector4d q;     // G as a unit quaternion
-    double along, across;  // by how much F differs from G at most, along the patch and across it
+    Eigen::Vector4d q;              // G as a unit quaternion
+    double in_plane, out_of_plane;  // by how much F differs from G at most
   };
-  // Patches that are looked at together, and the plane of their regions.
-  struct Patches {
-    std::vector<int> all;
+  // Patches that are looked at together, and the plane of the regions in them.
+  struct PatchSet {
+    std::vector<int> patches;
     Vec3 normal;
     Plane plane;
-    double slope = 0, height = 0;  // the largest of any region; m
+    double slope = 0, height = 0;  // the largest of any region: a tangent, m
     int rests = 0;                 // looks for which it is left alone
     double off = 0;                // e
   };
   struct Region {
-    int patches;    // a number of Patches
+    int set;        // of patches
     double height;  // m
   };
   class Builder;
   void add_shape(const Triangle& v, const std::vector<Vec3>& places);
   Turn turn_of(int patch, const std::vector<Vec3>& x) const;
-  double off_of(const Patches& patches) const;
-  double off_by_angles(const Patches& patches) const;
+  double off_of(const PatchSet& set) const;
+  double off_by_angles(const PatchSet& set) const;
 
   std::vector<Shape> shapes_;  // patch by patch
   std::vector<int> shapes_from_;
   std::vector<Vec3> normals_;  // of each patch
   std::vector<Plane> planes_;
-  std::vector<Patches> patches_;
+  std::vector<PatchSet> sets_;
   std::vector<Region> regions_;
   std::map<std::pair<int, int>, int> pairs_;  // regions
   std::vector<int> of_vertex_;

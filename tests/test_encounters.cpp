@@ -163,6 +163,41 @@ TEST_CASE("the search for what could meet misses nothing, and tells each pair on
         }
 }
 
+TEST_CASE("the search misses nothing of a sheet that is wound up, and unwound, again and again",
+          "[approach]") {
+  for (const Kind kind : kinds)
+    for (const double length : {1.5, 4.0, 15.0}) {  // steps in a radian of the winding
+      INFO("mesh " << static_cast<int>(kind) << ", " << length);
+      Sheets sheet(kind, 9, 0, false, 1);
+      const std::vector<Encounter> pairs = sheet.all_pairs();
+      std::mt19937 random(5);
+      std::uniform_real_distribution<double> tremble(-2e-4, 2e-4);
+      std::size_t fewest = pairs.size(), most = 0;
+      for (int step = 0; step < std::max(24.0, 7 * length); ++step) {
+        const double bent = std::max(0.0, 1.2 * std::sin(step / length));  // radians in an edge
+        const double radius = edge / std::max(bent, 1e-3);
+        VecX x_new = sheet.x;
+        for (int i = 0; i < sheet.vertices(); ++i) {
+          const double s = sheet.places[i].x() / radius;
+          x_new.segment<3>(3 * i) =
+              Vec3(radius * std::sin(s), radius * (1 - std::cos(s)), sheet.places[i].z()) +
+              Vec3(tremble(random), tremble(random), tremble(random));
+        }
+        const std::vector<Encounter> selected = sheet.select(x_new);
+        const std::set<Encounter> found(selected.begin(), selected.end());
+        long missed = 0;
+        for (const Encounter& e : pairs)
+          missed += come_near(e, corners(sheet.x, e), corners(x_new, e), 0.99 * gap) && found.count(e) == 0;
+        CHECK(missed == 0);
+        fewest = std::min(fewest, found.size());
+        most = std::max(most, found.size());
+        sheet.go(x_new);
+      }
+      CHECK(most > 1000);
+      CHECK(10 * fewest < most);
+    }
+}
+
 TEST_CASE("the search finds the same where it knows that a body never moves", "[approach]") {
   for (const Kind kind : kinds)
     for (const double way : {0.0002, 0.003, 0.5}) {  // m, in a step

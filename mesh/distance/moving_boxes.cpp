@@ -1,6 +1,5 @@
 #include "mesh/distance/moving_boxes.h"
 
-#include <Eigen/Geometry>
 #include <utility>
 
 #include "mesh/base/parallel.h"
@@ -60,7 +59,6 @@ void MovingBoxes::mark_kinds(int first_kind, const std::vector<char>& face_moves
 // Makes patches of the faces below a child, which are those from `first` on in the tree's order. Returns how
 // many they are.
 int MovingBoxes::make_patches(int node, int child, int first) {
-  constexpr int most = 32;
   int count = nodes_[node].count[child];
   const bool leaf = count >= 0;
   const std::size_t before = patches_.size();
@@ -69,7 +67,7 @@ int MovingBoxes::make_patches(int node, int child, int first) {
     for (int below = 0; below < 4; ++below)
       count += make_patches(nodes_[node].first[child], below, first + count);
   }
-  if (count == 0 || (count > most && !leaf)) return count;
+  if (count == 0 || (count > most_in_a_patch && !leaf)) return count;
   // What is a part of this patch is none by itself.
   for (std::size_t p = before; p < patches_.size(); ++p)
     nodes_[patches_[p].node].patch[patches_[p].child] = -1;
@@ -154,7 +152,7 @@ void MovingBoxes::refit(const std::vector<Face>& faces, const std::vector<Vec3>&
       !fitted_ || box_of_still_.isEmpty() || (box.center() - origin_).norm() > farthest_origin * size;
   fitted_ = true;
   if (all) origin_ = box.center();
-  still_ = &start == &end;
+  at_rest_ = &start == &end;
   slack_ = static_cast<float>(1e-6 * size) + std::numeric_limits<float>::min();
   const auto is_fitted_anew = [&](const Node& node, int child) {
     return all || (node.kinds[child] & moving) != 0;
@@ -183,7 +181,7 @@ unsigned MovingBoxes::near_children(int node, int child, int other, float margin
       if (b.count[k] != 0 && near[k] != 0) children |= 1u << k;
     return children;
   };
-  if (still_) {
+  if (at_rest_) {
     const auto near = [&](std::size_t k) {
       return (a.upper[0][k][child] - load(b.lower[0][k]) + margin >= zero) &
              (load(b.upper[0][k]) - a.lower[0][k][child] + margin >= zero);

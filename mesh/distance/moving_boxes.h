@@ -2,7 +2,7 @@
 // 1.
 //   lower(s) = (1 - s) lower(0) + s lower(1),  upper(s) likewise: no corner leaves its box on the way
 // Every node has four boxes. The tree halves the faces at the median when it is made, and is refitted to the
-// places of every later step. The boxes are floats relative to the middle of the surface, and the four of a
+// places of every later step. The boxes are floats relative to a place near the middle of the surface, and the four of a
 // node stand side by side, so that a search measures four at once (Eigen::AlignedBox holds only one). The
 // effect of rounding is less than `slack`, by which a search looks farther. So no triangle that counts is
 // left out, and further triangles that a search proposes do not change any answer.
@@ -43,7 +43,8 @@ class MovingBoxes {
   template <class Ask>
   void along(const Vec3& x0, const Vec3& x1, double from, const Ask& ask, double beside = 0) const;
 
-  // The faces in patches of up to 32 that lie beside each other.
+  // The faces in patches of up to so many that lie beside each other, where most_faces is no more.
+  static constexpr int most_in_a_patch = 32;
   struct Patch {
     int node, child;   // where in the tree
     int first, count;  // which faces of the tree's order
@@ -73,7 +74,8 @@ class MovingBoxes {
     int first, count;
     float squared;
   };
-  static constexpr int deepest = 64;  // most entries of a search's stack: three per level
+  static constexpr unsigned char moving = 4;  // a bit of Node::kinds: not all of the vertices below are still
+  static constexpr int deepest = 64;          // most entries of a search's stack: three per level
 
   // Calls meet(node, child, other node, its child) for what comes near below a child of a node and below
   // those children of another that are marked in `others`, down to where ends(node, child). Where both are
@@ -93,7 +95,6 @@ class MovingBoxes {
   static unsigned after(int child) { return ~(2u * (1u << child) - 1u); }
   unsigned near_children(int node, int child, int other, float margin) const;
   int make_patches(int node, int child, int first);
-  static constexpr unsigned char moving = 4;
   void mark_kinds(int first_kind, const std::vector<char>& face_moves);
   // Whether faces of different kinds are below both.
   static bool differ(unsigned char a, unsigned char b) {
@@ -110,10 +111,10 @@ class MovingBoxes {
   std::vector<Patch> patches_;
   int most_faces_;  // of a leaf
   Vec3 origin_ = Vec3::Zero();
-  float slack_ = 0;     // m
-  bool still_ = false;  // whether start and end are the same
-  std::vector<int> moving_faces_;
-  Eigen::AlignedBox3d box_of_still_;  // m
+  float slack_ = 0;                   // m
+  bool at_rest_ = false;              // whether start and end are the same
+  std::vector<int> moving_faces_;     // with a vertex that is not still
+  Eigen::AlignedBox3d box_of_still_;  // m, of the others
   bool fitted_ = false;
 };
 

@@ -5,14 +5,15 @@
 // down is counted once.
 // What is compared is the cost of all systems of one assembled matrix, because contacts ask for several short
 // solves with it, for which the levels of multigrid do not pay.
-// A run begins with block-ic0, or with multigrid where there are 20 000 rows. Multigrid has the next matrix on trial where a solve costs more than one with
-// multigrid usually does, and goes on when the matrix cost less than one costs with block-ic0 on average. After a
-// trial the other method waits for 8 matrices, and for twice as many after each that it loses, up to 64; block-ic0
-// for four times as many, up to 256, where it was given up. It waits
-// for 2 only where a matrix now costs 1.25 times what it cost with the other method when that was last used, as
-// when cloth arrives at a body; and multigrid that was never tried does not wait where block-ic0 costs twice what
-// is usual. While block-ic0 is cheap, multigrid has no trial. Matrices whose solves take no iteration, as in free
-// fall, tell nothing of a method, and are not in its average.
+// A solver begins with block-ic0, or with multigrid where its first matrix has 20 000 rows; where that fails before
+// block-ic0 was used, block-ic0 goes on. Multigrid has the next matrix on trial where a solve costs more than one
+// with multigrid usually does, and goes on when the matrix cost less than one costs with block-ic0 on average; and
+// the other way round. After a trial the other method waits for 8 matrices, and for twice as many after each that it
+// loses, up to 64; block-ic0 for four times as many, up to 256, where it was given up. The other method waits for 2
+// only where a matrix now costs 1.25 times what it cost with it when it was last used, as when cloth arrives at a
+// body; and one that was never tried does not wait where a matrix costs twice what it usually does with multigrid.
+// While block-ic0 is cheap, multigrid has no trial. Matrices whose solves take no iteration, as in free fall, tell
+// nothing of a method, and are not in its average.
 // Where a matrix costs 1.5 times what one did with multigrid, and four times what one usually does, block-ic0 is given
 // up in the middle of a solve: on trial, where a matrix costs 1.25 times what one did with multigrid. Multigrid solves
 // that system anew, and those that follow.
@@ -134,8 +135,13 @@ class Auto final : public LinearSolver {
         wait_ = shortest_wait;
       } else {
         now_ = other();
-        wait_ = std::clamp(2 * wait_, shortest_wait, longest_wait);
+        wait_ = std::clamp(2 * wait_, shortest_wait, std::max(wait_, longest_wait));
       }
+      return;
+    }
+    if (failed_ && now_ == multigrid && others == 0) {
+      own = std::numeric_limits<double>::infinity();
+      now_ = ic0;
       return;
     }
     if (failed_ || idle_) return;  // what it cost says nothing
