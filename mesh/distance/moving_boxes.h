@@ -2,10 +2,10 @@
 // 1.
 //   lower(s) = (1 - s) lower(0) + s lower(1),  upper(s) likewise: no corner leaves its box on the way
 // Every node has four boxes. The tree halves the faces at the median when it is made, and is refitted to the
-// places of every later step. The boxes are floats relative to a place near the middle of the surface, and the four of a
-// node stand side by side, so that a search measures four at once (Eigen::AlignedBox holds only one). The
-// effect of rounding is less than `slack`, by which a search looks farther. So no triangle that counts is
-// left out, and further triangles that a search proposes do not change any answer.
+// places of every later step. The boxes are floats relative to a place near the middle of the surface, and
+// the four of a node stand side by side, so that a search measures four at once (Eigen::AlignedBox holds only
+// one). The effect of rounding is less than `slack`, by which a search looks farther. So no triangle that
+// counts is left out, and further triangles that a search proposes do not change any answer.
 #pragma once
 
 #include <Eigen/Geometry>

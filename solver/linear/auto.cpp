@@ -1,22 +1,23 @@
 // Takes incomplete Cholesky or multigrid, whichever costs less in the run as it goes.
-//   Costs are counted, never timed, so that the same input gives the same bits. Their unit is one iteration with
-// block-ic0; the prices were measured (docs/design.md) on sheets of 4 k and 10 k vertices and on a skirt of 4.7 k, without
-// contact of cloth with cloth: the overlay, and what block-ic0 lists anew for it, is not counted. A factor that breaks
-// down is counted once.
-// What is compared is the cost of all systems of one assembled matrix, because contacts ask for several short
-// solves with it, for which the levels of multigrid do not pay.
-// A solver begins with block-ic0, or with multigrid where its first matrix has 20 000 rows; where that fails before
-// block-ic0 was used, block-ic0 goes on. Multigrid has the next matrix on trial where a solve costs more than one
-// with multigrid usually does, and goes on when the matrix cost less than one costs with block-ic0 on average; and
-// the other way round. After a trial the other method waits for 8 matrices, and for twice as many after each that it
-// loses, up to 64; block-ic0 for four times as many, up to 256, where it was given up. The other method waits for 2
-// only where a matrix now costs 1.25 times what it cost with it when it was last used, as when cloth arrives at a
-// body; and one that was never tried does not wait where a matrix costs twice what it usually does with multigrid.
-// While block-ic0 is cheap, multigrid has no trial. Matrices whose solves take no iteration, as in free fall, tell
-// nothing of a method, and are not in its average.
-// Where a matrix costs 1.5 times what one did with multigrid, and four times what one usually does, block-ic0 is given
-// up in the middle of a solve: on trial, where a matrix costs 1.25 times what one did with multigrid. Multigrid solves
-// that system anew, and those that follow.
+//   Costs are counted, never timed, so that the same input gives the same bits. Their unit is one iteration
+// with block-ic0; the prices were measured (docs/design.md) on sheets of 4 k and 10 k vertices and on a skirt
+// of 4.7 k, without contact of cloth with cloth: the overlay, and what block-ic0 lists anew for it, is not
+// counted. A factor that breaks down is counted once.
+//   What is compared is the cost of all systems of one assembled matrix, because contacts ask for several
+// short solves with it, for which the levels of multigrid do not pay.
+//   A solver begins with block-ic0, or with multigrid where its first matrix has 20 000 rows; where that
+// fails before block-ic0 was used, block-ic0 goes on. Multigrid has the next matrix on trial where a solve
+// costs more than one with multigrid usually does, and goes on when the matrix cost less than one costs with
+// block-ic0 on average; and the other way round. After a trial the other method waits for 8 matrices, and for
+// twice as many after each that it loses, up to 64; block-ic0 for four times as many, up to 256, where it was
+// given up. The other method waits for 2 only where a matrix now costs 1.25 times what it cost with it when
+// it was last used, as when cloth arrives at a body; and one that was never tried does not wait where a
+// matrix costs twice what it usually does with multigrid. While block-ic0 is cheap, multigrid has no trial.
+// Matrices whose solves take no iteration, as in free fall, tell nothing of a method, and are not in its
+// average.
+//   Where a matrix costs 1.5 times what one did with multigrid, and four times what one usually does,
+// block-ic0 is given up in the middle of a solve: on trial, where a matrix costs 1.25 times what one did with
+// multigrid. Multigrid solves that system anew, and those that follow.
 #include <algorithm>
 #include <array>
 #include <cmath>
