@@ -211,6 +211,21 @@ TEST_CASE("auto begins with multigrid on a large sheet", "[solvers]") {
   }
 }
 
+TEST_CASE("auto leaves multigrid where that fails at the beginning of a large sheet", "[solvers]") {
+  MovingSheet sheet(142, false, false);
+  Cost cost;
+  ImplicitEuler stepper(sheet.system, sheet.constraints, std::make_unique<CountingSolver>("auto", cost),
+                        {.tolerance = 1e-12, .max_linear_iterations = 1});
+  bool failed = false;
+  for (int k = 0; k < 10 && !failed; ++k) failed = !stepper.advance(sheet.state, 0.01).converged;
+  REQUIRE(failed);
+  const Cost before = cost;
+  CHECK(before.by_multigrid > 0);
+  stepper.advance(sheet.state, 0.01);
+  CHECK(cost.solves > before.solves);
+  CHECK(cost.by_multigrid == before.by_multigrid);
+}
+
 TEST_CASE("auto takes the same methods on any number of threads", "[solvers]") {
   const ThreadsRestored restored;
   set_threads(1);
