@@ -3,6 +3,7 @@
 #include "constraints/encounters.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
 #include <set>
@@ -120,6 +121,14 @@ bool come_near(const Encounter& e, const FourPoints& start, const FourPoints& en
   return false;
 }
 
+// How many of the pairs come within this distance on the way to x_new, and were not found.
+long missed(const Sheets& sheets, const std::vector<Encounter>& pairs, const VecX& x_new, double within,
+            const std::set<Encounter>& found) {
+  return std::count_if(pairs.begin(), pairs.end(), [&](const Encounter& e) {
+    return come_near(e, corners(sheets.x, e), corners(x_new, e), within) && found.count(e) == 0;
+  });
+}
+
 }  // namespace
 
 TEST_CASE("the search for what could meet misses nothing, and tells each pair once", "[approach]") {
@@ -149,13 +158,10 @@ TEST_CASE("the search for what could meet misses nothing, and tells each pair on
               const std::vector<Encounter> selected = two.select(x_new, within);
               const std::set<Encounter> found(selected.begin(), selected.end());
               CHECK(found.size() == selected.size());
-              long missed = 0, far = 0;
-              for (const Encounter& e : pairs)
-                missed +=
-                    come_near(e, corners(two.x, e), corners(x_new, e), 0.99 * within) && found.count(e) == 0;
+              long far = 0;
               for (const Encounter& e : selected)
                 far += !come_near(e, corners(two.x, e), corners(x_new, e), 1.3 * within);
-              CHECK(missed == 0);
+              CHECK(missed(two, pairs, x_new, 0.99 * within, found) == 0);
               CHECK(far == 0);
             }
             two.go(x_new);
@@ -185,10 +191,7 @@ TEST_CASE("the search misses nothing of a sheet that is wound up, and unwound, a
         }
         const std::vector<Encounter> selected = sheet.select(x_new);
         const std::set<Encounter> found(selected.begin(), selected.end());
-        long missed = 0;
-        for (const Encounter& e : pairs)
-          missed += come_near(e, corners(sheet.x, e), corners(x_new, e), 0.99 * gap) && found.count(e) == 0;
-        CHECK(missed == 0);
+        CHECK(missed(sheet, pairs, x_new, 0.99 * gap, found) == 0);
         fewest = std::min(fewest, found.size());
         most = std::max(most, found.size());
         sheet.go(x_new);
@@ -241,10 +244,7 @@ TEST_CASE("the search misses nothing of sheets that come near each other slowly,
         for (int i = two.half; i < two.vertices(); ++i) x_new.segment<3>(3 * i) -= way * facing.normalized();
         const std::vector<Encounter> selected = two.select(x_new);
         const std::set<Encounter> found(selected.begin(), selected.end());
-        long missed = 0;
-        for (const Encounter& e : pairs)
-          missed += come_near(e, corners(two.x, e), corners(x_new, e), 0.99 * gap) && found.count(e) == 0;
-        CHECK(missed == 0);
+        CHECK(missed(two, pairs, x_new, 0.99 * gap, found) == 0);
         two.go(x_new);
       }
     }
@@ -270,10 +270,7 @@ TEST_CASE("the search misses nothing of a pile that is pressed together and come
         const std::vector<Encounter> selected = pile.select(x_new);
         const std::set<Encounter> found(selected.begin(), selected.end());
         CHECK(found.size() == selected.size());
-        long missed = 0;
-        for (const Encounter& e : pairs)
-          missed += come_near(e, corners(pile.x, e), corners(x_new, e), 0.99 * gap) && found.count(e) == 0;
-        CHECK(missed == 0);
+        CHECK(missed(pile, pairs, x_new, 0.99 * gap, found) == 0);
         pile.go(x_new);
         distance += by;
       };
@@ -313,18 +310,16 @@ TEST_CASE("the search misses nothing within limits of particles, which rise and 
               two.ask(Encounters::Kind::edges, x_new, gap, gap_of, nullptr, &limits);
           const std::set<Encounter> found(selected.begin(), selected.end());
           found_in_all += static_cast<long>(found.size());
-          long missed = 0;
+          long missed_edges = 0;
           for (const Encounter& e : pairs)
-            missed += e.edges && found.count(e) == 0 &&
-                      come_near(e, corners(two.x, e), corners(x_new, e), 0.99 * gap_of(e));
-          CHECK(missed == 0);
+            missed_edges += e.edges && found.count(e) == 0 &&
+                            come_near(e, corners(two.x, e), corners(x_new, e), 0.99 * gap_of(e));
+          CHECK(missed_edges == 0);
           // Who asks for all in between, as the guard does, hears of all.
           const std::vector<Encounter> guarded =
               two.ask(Encounters::Kind::both, x_new, gap, [](const Encounter&) { return 0.5 * gap; });
           const std::set<Encounter> all(guarded.begin(), guarded.end());
-          for (const Encounter& e : pairs)
-            missed += all.count(e) == 0 && come_near(e, corners(two.x, e), corners(x_new, e), 0.49 * gap);
-          CHECK(missed == 0);
+          CHECK(missed(two, pairs, x_new, 0.49 * gap, all) == 0);
           two.go(x_new);
         }
         CHECK((moves == 2 || found_in_all > 0));
@@ -349,7 +344,7 @@ TEST_CASE("the search misses nothing of the parts and within the gaps that it is
         const auto gap_of = [&](const Encounter& e) {
           return e.edges && (e.v[0] + e.v[1] + e.v[2] + e.v[3] + step) % 4 != 0 ? 0.3 * gap : gap;
         };
-        const auto missed = [&](Encounters::Kind part, const auto& within) {
+        const auto missed_of = [&](Encounters::Kind part, const auto& within) {
           const std::vector<Encounter> selected = two.ask(part, x_new, gap, within);
           const std::set<Encounter> found(selected.begin(), selected.end());
           long count = 0;
@@ -361,9 +356,9 @@ TEST_CASE("the search misses nothing of the parts and within the gaps that it is
           }
           return count;
         };
-        CHECK(missed(Encounters::Kind::vertices, gap_of) == 0);
-        CHECK(missed(Encounters::Kind::edges, gap_of) == 0);
-        CHECK(missed(Encounters::Kind::both, [](const Encounter&) { return 0.1 * gap; }) == 0);
+        CHECK(missed_of(Encounters::Kind::vertices, gap_of) == 0);
+        CHECK(missed_of(Encounters::Kind::edges, gap_of) == 0);
+        CHECK(missed_of(Encounters::Kind::both, [](const Encounter&) { return 0.1 * gap; }) == 0);
         two.go(x_new);
       }
     }
