@@ -426,7 +426,10 @@ void Encounters::take(const std::vector<double>& limits, double gap) {
 
 void Encounters::went(const VecX& x, const VecX& x_new) {
   if (faces_.empty()) return;
-  read_clocks(x, x_new);
+  const bool followed = std::all_of(moving_.begin(), moving_.end(), [&](int i) {
+    return x.segment<3>(3 * i) == start_[i] && x_new.segment<3>(3 * i) == end_[i];
+  });
+  if (!followed) read_clocks(x, x_new);
   for (Group& g : groups_) g.clock.start = g.clock.end;
   for (Clock& clock : clock_) clock.start = clock.end;
 }

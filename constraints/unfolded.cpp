@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "constraints/shadow_hull.h"
@@ -16,6 +17,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding = 1e-6;      // of e
 constexpr double clearly_apart = 0.3;  // an e that is not looked at more closely
 constexpr int looks_spared = 8;        // where something was folded
+constexpr double small_drift = 0.05;   // so much is taken for what it may be
 
 const double half = std::sqrt(0.5);
 
@@ -26,9 +28,20 @@ std::array<Vec3, 2> orthonormal(const Vec3& a, const Vec3& b) {
   return {half * (both + between), half * (both - between)};
 }
 
-bool are_equal(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  return a.size() == b.size() &&
-         std::equal(a.front().data(), a.front().data() + 3 * a.size(), b.front().data());
+// Infinity where either is no number.
+double larger(double a, double b) { return b <= a ? a : std::isnan(a) || std::isnan(b) ? infinity : b; }
+
+// change <- places - known, known <- places. Returns whether anything changes.
+bool take(const std::vector<Vec3>& places, std::vector<Vec3>& known, std::vector<Vec3>& change) {
+  if (places == known) return false;
+  change.resize(known.size());
+  for_chunks(static_cast<int>(known.size()), [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      change[i] = places[i] - known[i];
+      known[i] = places[i];
+    }
+  });
+  return true;
 }
 
 double norm(double a, double b) { return std::sqrt(a * a + b * b); }
@@ -67,10 +80,16 @@ class Unfolded::Builder {
     if (!hull_.covers(faces, normal)) return -1;
     patches_of(hull_.found(), all_);
     const auto [at, is_new] = numbers_.try_emplace({by_, all_}, static_cast<int>(numbers_.size()));
-    if (is_new) unfolded_.sets_.push_back({.patches = all_, .normal = normal, .plane = plane_across(normal)});
+    if (is_new) {
+      std::vector<int>& patches = unfolded_.set_patches_;
+      const int from = static_cast<int>(patches.size());
+      patches.insert(patches.end(), all_.begin(), all_.end());
+      unfolded_.sets_.push_back({.from = from, .to = static_cast<int>(patches.size()), .normal = normal});
+    }
     PatchSet& set = unfolded_.sets_[at->second];
     set.slope = std::max(set.slope, hull_.slope());
     set.height = std::max(set.height, hull_.height());
+    set.least_height = std::min(set.least_height, hull_.height());
     unfolded_.regions_.push_back({at->second, hull_.height()});
     return static_cast<int>(unfolded_.regions_.size()) - 1;
   }
@@ -101,7 +120,11 @@ class Unfolded::Builder {
 };
 
 Unfolded::Unfolded(const std::vector<Face>& faces, const MovingBoxes& boxes, const std::vector<Vec3>& places)
-    : shapes_from_(1, 0), of_vertex_(places.size(), -1), ends_(boxes.patches().size()) {
+    : shapes_from_(1, 0),
+      of_vertex_(places.size(), -1),
+      ends_(boxes.patches().size()),
+      change_(ends_.size()),
+      places_{places, places} {
   for (const MovingBoxes::Patch& patch : boxes.patches()) {
     Vec3 normal = Vec3::Zero();
     for (int k = patch.first; k < patch.first + patch.count; ++k) {
@@ -139,38 +162,66 @@ int Unfolded::region_of(int first, int second) const {
   return at == pairs_.end() ? -1 : at->second;
 }
 
+std::span<const int> Unfolded::patches_of(const PatchSet& set) const {
+  return std::span(set_patches_).subspan(set.from, set.to - set.from);
+}
+
 void Unfolded::look(const std::vector<Vec3>& start, const std::vector<Vec3>& end, double gap) {
-  const bool same = are_equal(start, start_), goes_on = !same && are_equal(start, end_);
-  start_ = start;
-  end_ = end;
-  ++looks_;
-  for (const PatchSet& set : sets_)
-    if (set.rests == 0)
-      for (int p : set.patches) ends_[p].wanted = true;
-  for_chunks<Work::heavy>(static_cast<int>(ends_.size()), [&](int begin, int after) {
-    for (int p = begin; p < after; ++p) {
-      Ends& ends = ends_[p];
-      if (!ends.wanted) continue;
-      const bool known = ends.looked == looks_ - 1;
-      if (known && goes_on) ends.turn[0] = ends.turn[1];
-      if (!known || !(same || goes_on)) ends.turn[0] = turn_of(p, start);
-      ends.turn[1] = turn_of(p, end);
-      ends.looked = looks_;
-      ends.wanted = false;
+  const auto is_apart = [gap](const PatchSet& set, double height) { return (1 - set.off) * height > gap; };
+  const auto each_patch = [this](const auto& use) {
+    for_chunks<Work::heavy>(static_cast<int>(ends_.size()), [&](int from, int to) {
+      for (int p = from; p < to; ++p) use(p, ends_[p]);
+    });
+  };
+  const auto each_set = [this](const auto& use) {
+    for_chunks<Work::heavy>(static_cast<int>(sets_.size()), [&](int from, int to) {
+      for (int k = from; k < to; ++k) use(sets_[k]);
+    });
+  };
+  const std::array<bool, 2> changes = {take(start, places_[0], motion_[0]),
+                                       take(end, places_[1], motion_[1])};
+  each_patch([&](int p, Ends& ends) {
+    change_[p] = 0;
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (!changes[k]) continue;
+      const double change = change_of(p, motion_[k]);
+      ends.turn[k].drift += change;
+      change_[p] = larger(change_[p], change);
     }
   });
-  for_chunks<Work::heavy>(static_cast<int>(sets_.size()), [&](int begin, int after) {
-    for (int k = begin; k < after; ++k) {
-      PatchSet& set = sets_[k];
-      set.off = set.rests > 0 ? infinity : off_of(set) + rounding;
-      if (set.rests > 0)
-        --set.rests;
-      else if (!((1 - set.off) * set.height > gap))
-        set.rests = looks_spared;
-    }
+  each_set([&](PatchSet& set) {
+    double change = 0;
+    for (int p : patches_of(set)) change = larger(change, change_[p]);
+    set.off += longest_of(set) * change;
+    set.wanted = !is_apart(set, set.least_height) && --set.rests < 0;
+  });
+  for (const PatchSet& set : sets_)
+    if (set.wanted)
+      for (int p : patches_of(set)) ends_[p].wanted = true;
+  each_patch([&](int p, Ends& ends) {
+    if (!std::exchange(ends.wanted, false)) return;
+    for (std::size_t k = 0; k < 2; ++k)
+      if (!(ends.turn[k].drift < small_drift)) ends.turn[k] = turn_of(p, places_[k]);
+  });
+  each_set([&](PatchSet& set) {
+    if (!set.wanted) return;
+    set.off = off_of(set) + rounding;
+    set.rests = is_apart(set, set.height) ? 0 : looks_spared;
   });
   for (std::size_t k = 0; k < regions_.size(); ++k)
-    apart_[k] = (1 - sets_[regions_[k].set].off) * regions_[k].height > gap;
+    apart_[k] = is_apart(sets_[regions_[k].set], regions_[k].height);
+}
+
+// |dF| where the places change so, at most.
+double Unfolded::change_of(int patch, const std::vector<Vec3>& change) const {
+  double most = 0;
+  for (int k = shapes_from_[patch]; k < shapes_from_[patch + 1]; ++k) {
+    const Shape& s = shapes_[k];
+    const Vec3 a = change[s.v[1]] - change[s.v[0]], b = change[s.v[2]] - change[s.v[0]] - s.along * a;
+    most = larger(most, a.squaredNorm() * s.inverse_length * s.inverse_length +
+                            b.squaredNorm() * s.inverse_height * s.inverse_height);
+  }
+  return std::sqrt(most);
 }
 
 Unfolded::Turn Unfolded::turn_of(int patch, const std::vector<Vec3>& x) const {
@@ -201,7 +252,7 @@ Unfolded::Turn Unfolded::turn_of(int patch, const std::vector<Vec3>& x) const {
     a -= over_a * n;
     b -= over_b * n;
     const double here = largest_square(a.squaredNorm(), b.squaredNorm(), a.dot(b));
-    in_plane = here <= in_plane ? in_plane : std::isnan(here) ? infinity : here;
+    in_plane = larger(in_plane, here);
     out_of_plane = std::max(out_of_plane, over_a * over_a + over_b * over_b);
   }
   turn.in_plane = std::sqrt(in_plane);
@@ -213,45 +264,48 @@ Unfolded::Turn Unfolded::turn_of(int patch, const std::vector<Vec3>& x) const {
 double Unfolded::off_of(const PatchSet& set) const {
   const double least = off_by_angles(set);
   if (least <= clearly_apart) return least;
-  const auto& [u, v] = set.plane;
+  const auto [u, v] = plane_across(set.normal);
   Vec3 of_u = Vec3::Zero(), of_v = Vec3::Zero();
-  for (int p : set.patches) {
+  for (int p : patches_of(set)) {
     of_u += ends_[p].turn[0].G * u;
     of_v += ends_[p].turn[0].G * v;
   }
   const Plane R = orthonormal(of_u, of_v);
-  const double longest = std::sqrt(1 + set.slope * set.slope);
+  const double longest = longest_of(set);
   double off = 0;
-  for (int p : set.patches)
+  for (int p : patches_of(set))
     for (const Turn& turn : ends_[p].turn) {
       const Vec3 a = turn.G * u, b = turn.G * v, c = turn.G * set.normal, n = turn.G * normals_[p];
       const double aa = R[0].dot(a), bb = R[1].dot(b), shear = 0.5 * (R[0].dot(b) + R[1].dot(a));
       const double turned = 0.5 * (aa + bb) - std::sqrt(0.25 * (aa - bb) * (aa - bb) + shear * shear);
       const double tilted = norm(R[0].dot(c), R[1].dot(c)), bent = norm(R[0].dot(n), R[1].dot(n));
       const double here =
-          1 - turned + set.slope * tilted + longest * (turn.in_plane + bent * turn.out_of_plane);
-      off = here <= off ? off : std::isnan(here) ? infinity : here;
+          1 - turned + set.slope * tilted + longest * (turn.in_plane + bent * turn.out_of_plane + turn.drift);
+      off = larger(off, here);
     }
   return std::min(least, off);
 }
 
+// |t| in a region of the set, at most.
+double Unfolded::longest_of(const PatchSet& set) { return std::sqrt(1 + set.slope * set.slope); }
+
 // An upper bound of e that costs little: by the largest angle between a patch and their mean.
 double Unfolded::off_by_angles(const PatchSet& set) const {
   Eigen::Vector4d mean = Eigen::Vector4d::Zero();
-  for (int p : set.patches) {
+  for (int p : patches_of(set)) {
     const Eigen::Vector4d& q = ends_[p].turn[0].q;
     mean += q.dot(mean) < 0 ? -q : q;
   }
   mean.normalize();
-  double cosine = 1, in_plane = 0, out_of_plane = 0;  // cosine: of half the angle
-  for (int p : set.patches)
+  double cosine = 1, in_plane = 0, out_of_plane = 0, drift = 0;  // cosine: of half the angle
+  for (int p : patches_of(set))
     for (const Turn& turn : ends_[p].turn) {
       cosine = std::min(cosine, std::abs(turn.q.dot(mean)));
       in_plane = std::max(in_plane, turn.in_plane);
       out_of_plane = std::max(out_of_plane, turn.out_of_plane);
+      drift = std::max(drift, turn.drift);
     }
-  const double longest = std::sqrt(1 + set.slope * set.slope);
-  return longest * (norm(in_plane, out_of_plane) + 2 * std::sqrt(1 - cosine * cosine));
+  return longest_of(set) * (norm(in_plane, out_of_plane) + drift + 2 * std::sqrt(1 - cosine * cosine));
 }
 
 }  // namespace drape::internal

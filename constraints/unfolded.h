@@ -15,10 +15,14 @@
 // patch as G turns it. F - G has a part across n and one along it, of norms `in_plane` and `out_of_plane`,
 // and Q takes a vector's part in the region's plane, as R turns it:
 //     d . R^T F t >= d . R^T G t - |t| (in_plane + |Q n| out_of_plane)
+//   Where F changes by dF, e grows by |t| |dF| at most. So patches are looked at again only when what they
+// changed by since could add up to a fold.
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -50,18 +54,25 @@ class Unfolded {
     double inverse_length, along, inverse_height;
   };
   struct Turn {
-    Mat3 G;
-    Eigen::Vector4d q;              // G as a unit quaternion
-    double in_plane, out_of_plane;  // by how much F differs from G at most
+    Mat3 G = Mat3::Identity();
+    Eigen::Vector4d q = Eigen::Vector4d::UnitW();  // G as a unit quaternion
+    double in_plane = 0, out_of_plane = 0;         // by how much F differed from G at most
+    double drift = 0;                              // |dF| since then, at most
+  };
+  // What a patch is at both ends of the motion.
+  struct Ends {
+    std::array<Turn, 2> turn;
+    bool wanted = false;  // in this look
   };
   // Patches that are looked at together, and the plane of the regions in them.
   struct PatchSet {
-    std::vector<int> patches;
+    int from = 0, to = 0;  // in set_patches_
     Vec3 normal;
-    Plane plane;
-    double slope = 0, height = 0;  // the largest of any region: a tangent, m
-    int rests = 0;                 // looks for which it is left alone
-    double off = 0;                // e
+    double slope = 0, height = 0;                                   // the largest of any region: a tangent, m
+    double least_height = std::numeric_limits<double>::infinity();  // m
+    int rests = 0;                                                  // looks for which it is left alone
+    double off = 0;       // e is no more than that; nothing at the reference
+    bool wanted = false;  // in this look: `off` does not tell that all of it is apart
   };
   struct Region {
     int set;        // of patches
@@ -69,7 +80,10 @@ class Unfolded {
   };
   class Builder;
   void add_shape(const Triangle& v, const std::vector<Vec3>& places);
+  double change_of(int patch, const std::vector<Vec3>& change) const;
   Turn turn_of(int patch, const std::vector<Vec3>& x) const;
+  std::span<const int> patches_of(const PatchSet& set) const;
+  static double longest_of(const PatchSet& set);
   double off_of(const PatchSet& set) const;
   double off_by_angles(const PatchSet& set) const;
 
@@ -78,18 +92,16 @@ class Unfolded {
   std::vector<Vec3> normals_;  // of each patch
   std::vector<Plane> planes_;
   std::vector<PatchSet> sets_;
+  std::vector<int> set_patches_;
   std::vector<Region> regions_;
   std::map<std::pair<int, int>, int> pairs_;  // regions
   std::vector<int> of_vertex_;
-  std::vector<char> apart_;  // by region
-  struct Ends {
-    std::array<Turn, 2> turn;
-    bool wanted = false;
-    long looked = -1;  // the look in which they were found
-  };
-  std::vector<Ends> ends_;  // by patch
-  long looks_ = 0;
-  std::vector<Vec3> start_, end_;  // of the motion that was looked at last
+  std::vector<char> apart_;     // by region
+  std::vector<Ends> ends_;      // by patch
+  std::vector<double> change_;  // by patch: |dF| in this look at most, at either end
+  // Where the motion that was looked at last started and ended, at first the reference; and, as scratch, by
+  // how much the next one differs.
+  std::array<std::vector<Vec3>, 2> places_, motion_;
 };
 
 }  // namespace drape::internal

@@ -127,8 +127,14 @@ TEST_CASE("orient3d has the sign of rational arithmetic, also where doubles cann
   int undecided = 0;
   for (int n = 0; n < 3000; ++n) {
     const double scale = std::pow(10, random(-6, 6));
-    const Vec3 a = scale * random.point(1), b = scale * random.point(1), c = scale * random.point(1);
+    const Vec3 a = scale * random.point(1), c = scale * random.point(1);
+    Vec3 b = scale * random.point(1);
+    if (n % 11 == 0) b[n % 3] = a[n % 3];
     Vec3 d = a + random(-1, 2) * (b - a) + random(-1, 2) * (c - a);  // in the plane, but for rounding
+    if (n % 22 == 0) {  // nearly on the line, exactly across an axis
+      d = a + random(-1, 2) * (b - a);
+      d[n % 3] = a[n % 3];
+    }
     if (n % 3 == 0) d[n % 2] = std::nextafter(d[n % 2], 1e9);
     if (n % 5 == 0) d = n % 2 == 0 ? a : b;
     if (n % 7 == 0) d += scale * random.point(1);

@@ -164,6 +164,7 @@ TEST_CASE("the search for what could meet misses nothing, and tells each pair on
               CHECK(missed(two, pairs, x_new, 0.99 * within, found) == 0);
               CHECK(far == 0);
             }
+            if (step < 3) x_new *= step == 1 ? 1 / 0.15 : 0.15;  // goes elsewhere than was followed
             two.go(x_new);
           }
         }

@@ -89,6 +89,8 @@ int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
                       (std::abs(rxpy) + std::abs(pxry)) * std::abs(q.z()) +
                       (std::abs(pxqy) + std::abs(qxpy)) * std::abs(r.z());
   if (std::abs(det) > kOrient3dBound * size) return -sign(det);
+  for (int k = 0; k < 3; ++k)  // cloth often starts flat, across an axis
+    if (a[k] == d[k] && b[k] == d[k] && c[k] == d[k]) return 0;
   return exact_orient3d(a, b, c, d);
 }
 
