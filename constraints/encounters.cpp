@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <span>
 
 namespace drape::internal {
 namespace {
@@ -43,6 +44,8 @@ void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<s
   boxes_.reset();
   beside_ = {};
   groups_.clear();
+  awake_groups_.clear();
+  awake_vertices_.clear();
   forget();
   if (faces_.empty()) return;
 
@@ -92,6 +95,7 @@ void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<s
   beside_.due.assign(beside_.list.size(), never);
   beside_.normal.assign(beside_.list.size(), Vec3::Zero());
   clock_.assign(particles, {});
+  asleep_.assign(particles, 0);
   limits_.assign(particles, 0);
   start_.clear();
   moving_.clear();
@@ -247,7 +251,8 @@ bool Encounters::follow(const VecX& x, const VecX& x_new, double gap) {
   measure([&](int i) { return Eigen::Array3d(x_new.segment<3>(3 * i).array() - end_[i].array()); }, of_end_);
   spread(x, start_);
   spread(x_new, end_);
-  for (Group& g : groups_) {
+  for (int k : awake_groups_) {
+    Group& g = groups_[k];
     g.start_off += difference(of_start_[g.first], of_start_[g.second]).maxCoeff();
     g.end_off += difference(of_end_[g.first], of_end_[g.second]).maxCoeff();
   }
@@ -256,13 +261,15 @@ bool Encounters::follow(const VecX& x, const VecX& x_new, double gap) {
   if (room_ <= 0) room_ = most_room * mean_edge_;
   if (unfolded_) unfolded_->look(start_, end_, gap);
   const bool again = gap > gap_ || std::max(start_off_, end_off_) > grouped_room_;
-  if (again) boxes_->refit(faces_, start_, end_);
+  if (again) boxes_->refit_patches(patch_start_, patch_, start_, end_);
   const bool listed = (!again || group_patches(gap)) && make_lists(gap, again);
   if (!listed) {
     groups_.clear();
+    awake_groups_.clear();
     spare_.clear();
     forget();
   }
+  wake_vertices();
   read_clocks(x, x_new);
   return listed;
 }
@@ -310,16 +317,21 @@ bool Encounters::make_lists(double gap, bool fitted) {
   const std::size_t most = exploded * start_.size();
   std::size_t kept = 0;
   stale_.clear();
-  for (std::size_t k = 0; k < groups_.size(); ++k) {
+  awake_groups_.clear();
+  for (int k = 0; k < static_cast<int>(groups_.size()); ++k) {
     Group& g = groups_[k];
-    g.is_apart = unfolded_ && unfolded_->is_apart(g.region);
-    if (g.is_apart) continue;
+    if (unfolded_ && unfolded_->is_apart(g.region)) {
+      g.gap = -1;
+      continue;
+    }
+    awake_groups_.push_back(k);
     if (g.gap < gap || std::max(g.start_off, g.end_off) > g.room)
-      stale_.push_back(static_cast<int>(k));
+      stale_.push_back(k);
     else
       kept += g.pairs.list.size();
   }
-  if (!stale_.empty() && !fitted) boxes_->refit(faces_, start_, end_);
+  if (!stale_.empty() && !fitted) boxes_->refit_patches(patch_start_, patch_, start_, end_);
+  fit_stale_patches();
   std::atomic<std::size_t> count = kept;
   parallel_for(static_cast<int>(stale_.size()), particles_ < serial_below(Work::heavy), [&](int k) {
     if (count > most) return;
@@ -330,6 +342,29 @@ bool Encounters::make_lists(double gap, bool fitted) {
   if (count > most) return false;
   adapt_room(count);
   return true;
+}
+
+// Fits the boxes within the patches of which pairs will be listed.
+void Encounters::fit_stale_patches() {
+  patch_is_stale_.assign(boxes_->patches().size(), 0);
+  for (int k : stale_) patch_is_stale_[groups_[k].first] = patch_is_stale_[groups_[k].second] = 1;
+  for_chunks<Work::heavy>(static_cast<int>(patch_is_stale_.size()), [&](int begin, int end) {
+    for (int p = begin; p < end; ++p)
+      if (patch_is_stale_[p]) boxes_->refit_within(p, faces_, start_, end_);
+  });
+}
+
+void Encounters::wake_vertices() {
+  awake_vertices_.clear();
+  for (int c = 0; c < static_cast<int>(asleep_.size()); ++c) {
+    const bool was_asleep = asleep_[c] != 0;
+    asleep_[c] = unfolded_ && unfolded_->is_apart(unfolded_->region_of_vertex(c));
+    if (asleep_[c]) continue;
+    awake_vertices_.push_back(c);
+    if (!was_asleep) continue;
+    std::fill(beside_.due.begin() + beside_start_[c], beside_.due.begin() + beside_start_[c + 1], never);
+    beside_due_[c] = {never, never};
+  }
 }
 
 // Where there are too many pairs, the lists that look too far ahead are made anew for the next motion. Where
@@ -396,11 +431,13 @@ bool Encounters::search(Group& group, double within, std::size_t most) const {
 void Encounters::read_clocks(const VecX& x, const VecX& x_new) {
   const auto motion = [&](int i) { return Vec3(x_new.segment<3>(3 * i) - x.segment<3>(3 * i)); };
   measure([&](int i) { return Eigen::Array3d(motion(i).array()); }, of_motion_);
-  for (Group& g : groups_)
+  for (int k : awake_groups_) {
+    Group& g = groups_[k];
     g.clock.end = g.clock.start + difference(of_motion_[g.first], of_motion_[g.second]).matrix().norm();
+  }
   if (beside_.list.empty()) return;
-  for_chunks<Work::heavy>(static_cast<int>(clock_.size()), [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {
+  for_chunks<Work::heavy>(static_cast<int>(awake_vertices_.size()), [&](int begin, int end) {
+    for (int i : std::span(awake_vertices_).subspan(begin, end - begin)) {
       const Vec3 own = motion(i);
       double most = 0;
       for (int k = next_start_[i]; k < next_start_[i + 1]; ++k)
@@ -420,7 +457,8 @@ void Encounters::take(const std::vector<double>& limits, double gap) {
       for (int k = patch_start_[p]; k < patch_start_[p + 1]; ++k)
         rises_[p] = std::max(rises_[p], limit(patch_[k]) - limits_[patch_[k]]);
   });
-  for (Group& g : groups_) g.wanted -= std::max(rises_[g.first], rises_[g.second]);
+  for (int k : awake_groups_)
+    groups_[k].wanted -= std::max(rises_[groups_[k].first], rises_[groups_[k].second]);
   for (int i = 0; i < static_cast<int>(limits_.size()); ++i) limits_[i] = limit(i);
 }
 
@@ -430,8 +468,8 @@ void Encounters::went(const VecX& x, const VecX& x_new) {
     return x.segment<3>(3 * i) == start_[i] && x_new.segment<3>(3 * i) == end_[i];
   });
   if (!followed) read_clocks(x, x_new);
-  for (Group& g : groups_) g.clock.start = g.clock.end;
-  for (Clock& clock : clock_) clock.start = clock.end;
+  for (int k : awake_groups_) groups_[k].clock.start = groups_[k].clock.end;
+  for (int c : awake_vertices_) clock_[c].start = clock_[c].end;
 }
 
 }  // namespace drape::internal

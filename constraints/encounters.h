@@ -110,7 +110,6 @@ class Encounters {
     double start_off = 0, end_off = 0;  // by how much the two ends of the motion differ by now at most [m]
     double gap = -1, room = 0;          // m
     int region = -1;                    // of unfolded_
-    bool is_apart = false;              // in the motion that was followed last, by unfolded_
     Pairs pairs;
     int edges_from = 0;  // where the second part of the list begins
   };
@@ -126,6 +125,8 @@ class Encounters {
   void measure(const Change& change, Ranges& ranges) const;
   bool group_patches(double gap);
   bool make_lists(double gap, bool fitted);
+  void fit_stale_patches();
+  void wake_vertices();
   void make_list(Group& group, double gap) const;
   void adapt_room(std::size_t pairs);
   bool search(Group& group, double within, std::size_t most) const;
@@ -155,7 +156,11 @@ class Encounters {
   Pairs beside_;
   std::vector<int> beside_start_, beside_edges_;
   std::vector<Due> beside_due_;
-  std::vector<Clock> clock_;            // by vertex
+  std::vector<Clock> clock_;  // by vertex
+  std::vector<char> asleep_;  // of each vertex, whether its pairs are not followed
+  // What unfolded_ does not tell to be apart in the motion that was followed last. What sleeps is begun anew
+  // when it wakes.
+  std::vector<int> awake_groups_, awake_vertices_;
   std::vector<double> limits_;          // given last, by particle, at most the gap [m]
   std::vector<Group> groups_;           // sorted by patches
   std::vector<Vec3> start_, end_;       // of the motion that was followed last
@@ -168,6 +173,7 @@ class Encounters {
   std::vector<Group> old_, spare_;            // scratch of group_patches()
   std::vector<std::pair<int, int>> near_;     // scratch
   std::vector<int> stale_;                    // scratch: numbers of groups
+  std::vector<char> patch_is_stale_;          // scratch
   std::vector<std::vector<Meeting>> chunks_;  // scratch of select()
   std::vector<Meeting> selected_;
 };
@@ -209,15 +215,15 @@ std::vector<Meeting>& Encounters::select(Kind kind, const VecX& x, const VecX& x
     if (kind != Kind::edges) select_part(pairs, from[0], from[1], clock, due[0], nullptr, found);
     if (kind != Kind::vertices) select_part(pairs, from[1], from[2], clock, due[1], wanted, found);
   };
-  select_chunks(static_cast<int>(groups_.size()), groups_in_a_chunk, [&](int k, std::vector<Meeting>& found) {
-    Group& g = groups_[k];
-    if (g.is_apart) return;
+  const int groups = static_cast<int>(awake_groups_.size());
+  select_chunks(groups, groups_in_a_chunk, [&](int k, std::vector<Meeting>& found) {
+    Group& g = groups_[awake_groups_[k]];
     select_list(g.pairs, {0, g.edges_from, static_cast<int>(g.pairs.list.size())}, g.clock, g.due,
                 limits ? &g.wanted : nullptr, found);
   });
-  const int count = static_cast<int>(clock_.size());
-  select_chunks(count, heavy_chunk_size(count), [&](int c, std::vector<Meeting>& found) {
-    if (unfolded_ && unfolded_->is_apart(unfolded_->region_of_vertex(c))) return;
+  const int vertices = static_cast<int>(awake_vertices_.size());
+  select_chunks(vertices, heavy_chunk_size(vertices), [&](int k, std::vector<Meeting>& found) {
+    const int c = awake_vertices_[k];
     select_list(beside_, {beside_start_[c], beside_edges_[c], beside_start_[c + 1]}, clock_[c],
                 beside_due_[c], nullptr, found);
   });

@@ -31,6 +31,7 @@ MovingBoxes::MovingBoxes(const std::vector<Face>& faces, const std::vector<Vec3>
   for (const auto& [middle, face] : middles) order_.push_back(face);
   int below = 0;
   for (int child = 0; child < 4; ++child) below += make_patches(0, child, below);
+  fitted_for_.assign(patches_.size(), -1);
   std::vector<char> face_moves(faces.size(), 1);
   for (std::size_t f = 0; f < faces.size(); ++f) {
     const Triangle& v = faces[f].v;
@@ -107,18 +108,23 @@ int MovingBoxes::grow(std::vector<std::pair<Vec3, int>>& middles, int begin, int
   return node;
 }
 
+void MovingBoxes::store(const EndBoxes& boxes, Node& node, int child) const {
+  for (std::size_t s = 0; s < 2; ++s)
+    for (int k = 0; k < 3; ++k) {
+      node.lower[s][k][child] = static_cast<float>(boxes[s].min()[k] - origin_[k]);
+      node.upper[s][k][child] = static_cast<float>(boxes[s].max()[k] - origin_[k]);
+    }
+}
+
 void MovingBoxes::fit_leaf(Node& node, int child, const std::vector<Face>& faces,
                            const std::vector<Vec3>& start, const std::vector<Vec3>& end) const {
-  for (int s = 0; s < 2; ++s) {
-    const std::vector<Vec3>& places = s == 0 ? start : end;
-    Eigen::AlignedBox3d box;
-    for (int i = node.first[child]; i < node.first[child] + node.count[child]; ++i)
-      for (int v : faces[order_[i]].v) box.extend(places[v]);
-    for (int k = 0; k < 3; ++k) {
-      node.lower[s][k][child] = static_cast<float>(box.min()[k] - origin_[k]);
-      node.upper[s][k][child] = static_cast<float>(box.max()[k] - origin_[k]);
+  EndBoxes boxes;
+  for (int i = node.first[child]; i < node.first[child] + node.count[child]; ++i)
+    for (int v : faces[order_[i]].v) {
+      boxes[0].extend(start[v]);
+      boxes[1].extend(end[v]);
     }
-  }
+  store(boxes, node, child);
 }
 
 void MovingBoxes::fit_node(Node& node, int child) const {
@@ -136,6 +142,18 @@ void MovingBoxes::fit_node(Node& node, int child) const {
     }
 }
 
+// All boxes are relative to one place, to which everything has to be near, for the sake of rounding. Returns
+// whether it is a new one, for which all are fitted anew.
+bool MovingBoxes::set_origin(const Eigen::AlignedBox3d& all, bool anew, bool at_rest) {
+  const double size = all.diagonal().norm();
+  at_rest_ = at_rest;
+  slack_ = static_cast<float>(1e-6 * size) + std::numeric_limits<float>::min();
+  if (!anew && (all.center() - origin_).norm() <= farthest_origin * size) return false;
+  origin_ = all.center();
+  ++origins_;
+  return true;
+}
+
 void MovingBoxes::refit(const std::vector<Face>& faces, const std::vector<Vec3>& start,
                         const std::vector<Vec3>& end) {
   Eigen::AlignedBox3d box =
@@ -146,14 +164,8 @@ void MovingBoxes::refit(const std::vector<Face>& faces, const std::vector<Vec3>&
         return extent;
       }).box;
   box.extend(box_of_still_);
-  const double size = box.diagonal().norm();
-  // All boxes are relative to this place, to which it has to be near, for the sake of rounding.
-  const bool all =
-      !fitted_ || box_of_still_.isEmpty() || (box.center() - origin_).norm() > farthest_origin * size;
+  const bool all = set_origin(box, !fitted_ || box_of_still_.isEmpty(), &start == &end);
   fitted_ = true;
-  if (all) origin_ = box.center();
-  at_rest_ = &start == &end;
-  slack_ = static_cast<float>(1e-6 * size) + std::numeric_limits<float>::min();
   const auto is_fitted_anew = [&](const Node& node, int child) {
     return all || (node.kinds[child] & moving) != 0;
   };
@@ -166,6 +178,59 @@ void MovingBoxes::refit(const std::vector<Face>& faces, const std::vector<Vec3>&
   for (auto node = nodes_.rbegin(); node != nodes_.rend(); ++node)  // a node stands before those below it
     for (int child = 0; child < 4; ++child)
       if (node->count[child] < 0 && is_fitted_anew(*node, child)) fit_node(*node, child);
+}
+
+void MovingBoxes::refit_patches(const std::vector<int>& from, const std::vector<int>& vertices,
+                                const std::vector<Vec3>& start, const std::vector<Vec3>& end) {
+  const int patches = static_cast<int>(patches_.size());
+  if (above_patches_.empty()) mark_above_patches();
+  patch_boxes_.resize(patches_.size());
+  for_chunks<Work::heavy>(patches, [&](int begin, int after) {
+    for (int p = begin; p < after; ++p) {
+      patch_boxes_[p] = {};
+      for (int k = from[p]; k < from[p + 1]; ++k) {
+        patch_boxes_[p][0].extend(start[vertices[k]]);
+        patch_boxes_[p][1].extend(end[vertices[k]]);
+      }
+    }
+  });
+  Eigen::AlignedBox3d all;
+  for (const EndBoxes& boxes : patch_boxes_) all.extend(boxes[0]).extend(boxes[1]);
+  set_origin(all, box_of_still_.isEmpty(), &start == &end);
+  fitted_ = false;
+  for (int p = 0; p < patches; ++p) store(patch_boxes_[p], nodes_[patches_[p].node], patches_[p].child);
+  for (auto above = above_patches_.rbegin(); above != above_patches_.rend(); ++above)
+    fit_node(nodes_[above->first], above->second);
+}
+
+void MovingBoxes::refit_within(int patch, const std::vector<Face>& faces, const std::vector<Vec3>& start,
+                               const std::vector<Vec3>& end) {
+  const auto& [node, child, first, count] = patches_[patch];
+  if ((nodes_[node].kinds[child] & moving) == 0 && fitted_for_[patch] == origins_) return;
+  fitted_for_[patch] = origins_;
+  if (nodes_[node].count[child] < 0) fit_below(node, child, faces, start, end);
+}
+
+// Fits what is below a child of a node, and the child.
+void MovingBoxes::fit_below(int node, int child, const std::vector<Face>& faces,
+                            const std::vector<Vec3>& start, const std::vector<Vec3>& end) {
+  const int below = nodes_[node].first[child];
+  for (int i = 0; i < 4; ++i) {
+    if (nodes_[below].count[i] > 0) fit_leaf(nodes_[below], i, faces, start, end);
+    if (nodes_[below].count[i] < 0) fit_below(below, i, faces, start, end);
+  }
+  fit_node(nodes_[node], child);
+}
+
+void MovingBoxes::mark_above_patches() {
+  std::vector<char> within(nodes_.size(), 0);
+  for (int n = 0; n < static_cast<int>(nodes_.size()); ++n)
+    for (int child = 0; child < 4; ++child) {
+      if (nodes_[n].count[child] >= 0) continue;
+      const bool inside = within[n] != 0 || nodes_[n].patch[child] >= 0;
+      within[nodes_[n].first[child]] = inside;
+      if (!inside) above_patches_.emplace_back(n, child);
+    }
 }
 
 // Which children of a node come within the margin of a child of another along all axes at a common s.

@@ -31,6 +31,14 @@ class MovingBoxes {
   // Allocates nothing.
   void refit(const std::vector<Face>& faces, const std::vector<Vec3>& start, const std::vector<Vec3>& end);
 
+  // The same in two parts, for who asks pairs_of_patches() for few of the patches only: first the boxes about
+  // patches, whose vertices these are, patch by patch from from[p] to from[p + 1], then those within a patch.
+  // Patches can be fitted side by side.
+  void refit_patches(const std::vector<int>& from, const std::vector<int>& vertices,
+                     const std::vector<Vec3>& start, const std::vector<Vec3>& end);
+  void refit_within(int patch, const std::vector<Face>& faces, const std::vector<Vec3>& start,
+                    const std::vector<Vec3>& end);
+
   // Calls ask(face) for every face whose box at s is within the distance of interest from x, nearer boxes
   // first. ask returns the squared distance [m^2] that is of interest from then on. Nothing is asked when x
   // is not finite.
@@ -105,10 +113,20 @@ class MovingBoxes {
   void fit_leaf(Node& node, int child, const std::vector<Face>& faces, const std::vector<Vec3>& start,
                 const std::vector<Vec3>& end) const;
   void fit_node(Node& node, int child) const;
+  using EndBoxes = std::array<Eigen::AlignedBox3d, 2>;  // at both ends of the motion
+  void store(const EndBoxes& boxes, Node& node, int child) const;
+  bool set_origin(const Eigen::AlignedBox3d& all, bool anew, bool at_rest);
+  void fit_below(int node, int child, const std::vector<Face>& faces, const std::vector<Vec3>& start,
+                 const std::vector<Vec3>& end);
+  void mark_above_patches();
 
   std::vector<Node> nodes_;  // parents before their children
   std::vector<int> order_;   // face numbers, leaf by leaf
   std::vector<Patch> patches_;
+  std::vector<std::pair<int, int>> above_patches_;  // nodes and their children, parents first
+  std::vector<EndBoxes> patch_boxes_;               // scratch [m]
+  std::vector<long> fitted_for_;  // the number of the origin for which each patch was fitted within
+  long origins_ = 0;
   int most_faces_;  // of a leaf
   Vec3 origin_ = Vec3::Zero();
   float slack_ = 0;                   // m
