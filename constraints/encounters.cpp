@@ -125,6 +125,7 @@ void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<s
 
 void Encounters::forget() {
   gap_ = -1;
+  clocks_are_read_ = false;
   for (Group& g : groups_) g.gap = -1;
   std::fill(beside_.due.begin(), beside_.due.end(), never);
   std::fill(beside_due_.begin(), beside_due_.end(), Due{never, never});
@@ -245,6 +246,7 @@ void Encounters::measure(const Change& change, Ranges& ranges) const {
 }
 
 bool Encounters::follow(const VecX& x, const VecX& x_new, double gap) {
+  clocks_are_read_ = false;
   if (!x.allFinite() || !x_new.allFinite()) return false;
   if (faces_.empty()) return true;
   measure([&](int i) { return Eigen::Array3d(x.segment<3>(3 * i).array() - start_[i].array()); }, of_start_);
@@ -271,6 +273,7 @@ bool Encounters::follow(const VecX& x, const VecX& x_new, double gap) {
   }
   wake_vertices();
   read_clocks(x, x_new);
+  clocks_are_read_ = true;
   return listed;
 }
 
@@ -464,10 +467,11 @@ void Encounters::take(const std::vector<double>& limits, double gap) {
 
 void Encounters::went(const VecX& x, const VecX& x_new) {
   if (faces_.empty()) return;
-  const bool followed = std::all_of(moving_.begin(), moving_.end(), [&](int i) {
-    return x.segment<3>(3 * i) == start_[i] && x_new.segment<3>(3 * i) == end_[i];
-  });
+  const bool followed = clocks_are_read_ && std::all_of(moving_.begin(), moving_.end(), [&](int i) {
+                          return x.segment<3>(3 * i) == start_[i] && x_new.segment<3>(3 * i) == end_[i];
+                        });
   if (!followed) read_clocks(x, x_new);
+  clocks_are_read_ = false;
   for (int k : awake_groups_) groups_[k].clock.start = groups_[k].clock.end;
   for (int c : awake_vertices_) clock_[c].start = clock_[c].end;
 }

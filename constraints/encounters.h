@@ -156,8 +156,9 @@ class Encounters {
   Pairs beside_;
   std::vector<int> beside_start_, beside_edges_;
   std::vector<Due> beside_due_;
-  std::vector<Clock> clock_;  // by vertex
-  std::vector<char> asleep_;  // of each vertex, whether its pairs are not followed
+  std::vector<Clock> clock_;      // by vertex
+  bool clocks_are_read_ = false;  // for the motion from start_ to end_
+  std::vector<char> asleep_;      // of each vertex, whether its pairs are not followed
   // What unfolded_ does not tell to be apart in the motion that was followed last. What sleeps is begun anew
   // when it wakes.
   std::vector<int> awake_groups_, awake_vertices_;

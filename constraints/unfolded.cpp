@@ -17,7 +17,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding = 1e-6;      // of e
 constexpr double clearly_apart = 0.3;  // an e that is not looked at more closely
 constexpr int looks_spared = 8;        // where something was folded
-constexpr double small_drift = 0.05;   // so much is taken for what it may be
+constexpr double small_drift = 0.05;   // so much is not looked at, unless something was folded
 
 const double half = std::sqrt(0.5);
 
@@ -88,8 +88,7 @@ class Unfolded::Builder {
     }
     PatchSet& set = unfolded_.sets_[at->second];
     set.slope = std::max(set.slope, hull_.slope());
-    set.height = std::max(set.height, hull_.height());
-    set.least_height = std::min(set.least_height, hull_.height());
+    set.height = std::min(set.height, hull_.height());
     unfolded_.regions_.push_back({at->second, hull_.height()});
     return static_cast<int>(unfolded_.regions_.size()) - 1;
   }
@@ -193,20 +192,22 @@ void Unfolded::look(const std::vector<Vec3>& start, const std::vector<Vec3>& end
     double change = 0;
     for (int p : patches_of(set)) change = larger(change, change_[p]);
     set.off += longest_of(set) * change;
-    set.wanted = !is_apart(set, set.least_height) && --set.rests < 0;
+    set.wanted = !is_apart(set, set.height) && --set.rests < 0;
   });
   for (const PatchSet& set : sets_)
     if (set.wanted)
-      for (int p : patches_of(set)) ends_[p].wanted = true;
+      for (int p : patches_of(set))
+        ends_[p].most_drift = std::min(ends_[p].most_drift, set.folded ? 0 : small_drift);
   each_patch([&](int p, Ends& ends) {
-    if (!std::exchange(ends.wanted, false)) return;
+    const double most_drift = std::exchange(ends.most_drift, never);
     for (std::size_t k = 0; k < 2; ++k)
-      if (!(ends.turn[k].drift < small_drift)) ends.turn[k] = turn_of(p, places_[k]);
+      if (most_drift < never && !(ends.turn[k].drift < most_drift)) ends.turn[k] = turn_of(p, places_[k]);
   });
   each_set([&](PatchSet& set) {
     if (!set.wanted) return;
     set.off = off_of(set) + rounding;
-    set.rests = is_apart(set, set.height) ? 0 : looks_spared;
+    set.folded = !is_apart(set, set.height);
+    set.rests = set.folded ? looks_spared : 0;
   });
   for (std::size_t k = 0; k < regions_.size(); ++k)
     apart_[k] = is_apart(sets_[regions_[k].set], regions_[k].height);

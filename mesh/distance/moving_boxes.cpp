@@ -183,7 +183,7 @@ void MovingBoxes::refit(const std::vector<Face>& faces, const std::vector<Vec3>&
 void MovingBoxes::refit_patches(const std::vector<int>& from, const std::vector<int>& vertices,
                                 const std::vector<Vec3>& start, const std::vector<Vec3>& end) {
   const int patches = static_cast<int>(patches_.size());
-  if (above_patches_.empty()) mark_above_patches();
+  if (patch_boxes_.empty()) mark_above_patches();
   patch_boxes_.resize(patches_.size());
   for_chunks<Work::heavy>(patches, [&](int begin, int after) {
     for (int p = begin; p < after; ++p) {

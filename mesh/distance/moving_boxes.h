@@ -31,9 +31,10 @@ class MovingBoxes {
   // Allocates nothing.
   void refit(const std::vector<Face>& faces, const std::vector<Vec3>& start, const std::vector<Vec3>& end);
 
-  // The same in two parts, for who asks pairs_of_patches() for few of the patches only: first the boxes about
-  // patches, whose vertices these are, patch by patch from from[p] to from[p + 1], then those within a patch.
-  // Patches can be fitted side by side.
+  // The same in two parts, where pairs_of_patches() is asked for few patches: first the boxes about patches,
+  // which is enough for near_patches(), and then those within each patch that is asked for. `vertices` lists
+  // those of patch p from place from[p] to from[p + 1]. Patches can be fitted within by several threads. What
+  // searches all of the tree, near() and along(), needs refit().
   void refit_patches(const std::vector<int>& from, const std::vector<int>& vertices,
                      const std::vector<Vec3>& start, const std::vector<Vec3>& end);
   void refit_within(int patch, const std::vector<Face>& faces, const std::vector<Vec3>& start,
