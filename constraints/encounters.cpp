@@ -96,6 +96,7 @@ void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<s
   beside_.normal.assign(beside_.list.size(), Vec3::Zero());
   clock_.assign(particles, {});
   asleep_.assign(particles, 0);
+  awake_vertices_.reserve(particles);
   limits_.assign(particles, 0);
   start_.clear();
   moving_.clear();

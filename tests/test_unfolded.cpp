@@ -194,6 +194,35 @@ const std::vector<Reference> references = {
      [](Kind kind) { return sheet(kind, [](double x, double) { return 0.004 * std::sin(120 * x); }); },
      nothing}};
 
+// Looks at motions in a row.
+struct Row {
+  explicit Row(Kind kind) : cloth(sheet(kind)) {}
+
+  // What is told of this motion is true, also where a first look would not tell it, and where it would.
+  void look(const std::vector<Vec3>& start, const std::vector<Vec3>& end) {
+    cloth.unfolded->look(start, end, gap);
+    Unfolded anew(cloth.faces, *cloth.boxes, cloth.places);
+    anew.look(start, end, gap);
+    long near = 0;
+    fewer = regions = told_now = 0;
+    cloth.each_region([&](int region, const std::vector<Triangle>& triangles) {
+      const bool apart = cloth.unfolded->is_apart(region), first = anew.is_apart(region);
+      ++regions;
+      told_now += apart;
+      fewer += !apart && first;
+      more += apart && !first;
+      near += apart && !(least_distance(triangles, start, end) > gap);
+    });
+    told += told_now;
+    CHECK(near == 0);
+  }
+
+  static constexpr double gap = 0.15 * edge;
+  Patched cloth;
+  long told = 0, more = 0;                    // in all looks; more: than first looks
+  long told_now = 0, fewer = 0, regions = 0;  // in the last one
+};
+
 }  // namespace
 
 TEST_CASE("what is told to be unfolded stays apart", "[approach]") {
@@ -265,35 +294,6 @@ TEST_CASE("a sheet that is bent a little is told to be unfolded everywhere", "[a
       CHECK(regions > 0.9 * n * n);  // there is none at a border that is not straight
     }
 }
-
-// Looks at motions in a row.
-struct Row {
-  explicit Row(Kind kind) : cloth(sheet(kind)) {}
-
-  // What is told of this motion is true, also where a first look would not tell it, and where it would.
-  void look(const std::vector<Vec3>& start, const std::vector<Vec3>& end) {
-    cloth.unfolded->look(start, end, gap);
-    Unfolded anew(cloth.faces, *cloth.boxes, cloth.places);
-    anew.look(start, end, gap);
-    long near = 0;
-    fewer = regions = told_now = 0;
-    cloth.each_region([&](int region, const std::vector<Triangle>& triangles) {
-      const bool apart = cloth.unfolded->is_apart(region), first = anew.is_apart(region);
-      ++regions;
-      told_now += apart;
-      fewer += !apart && first;
-      more += apart && !first;
-      near += apart && !(least_distance(triangles, start, end) > gap);
-    });
-    told += told_now;
-    CHECK(near == 0);
-  }
-
-  static constexpr double gap = 0.15 * edge;
-  Patched cloth;
-  long told = 0, more = 0;                    // in all looks; more: than first looks
-  long told_now = 0, fewer = 0, regions = 0;  // in the last one
-};
 
 TEST_CASE("what looks in a row tell stays apart", "[approach]") {
   for (const Kind kind : kinds) {
