@@ -10,7 +10,8 @@
 //   elsewhere, and what both do alike, leaves it as it is. In a dense pile all lists allow for less, because
 //   every pair of them costs something in every step.
 //   Patches side by side, and the triangles of a vertex, that surely do not meet, since the cloth is hardly
-//   folded there, need no list (unfolded.h).
+//   folded there, need no list (unfolded.h). They sleep: what is known of their pairs is not kept up, and is
+//   found anew when they wake.
 //   What was found to be apart is not looked at again before it can have come near. No two points of two
 //   patches come nearer to each other in a step than the motions of their vertices differ at most, and no two
 //   of triangles that share the vertex c than by 2 e_c, where e_c is by how much the vertices next to c move
@@ -93,6 +94,7 @@ class Encounters {
   struct Clock {
     double start = 0, end = 0;
   };
+  static constexpr double at_once = -std::numeric_limits<double>::infinity();  // a due, whatever the clock
   // A list has two parts, vertices with triangles and then edges. When the first pair of each is due.
   using Due = std::array<double, 2>;
   // The range of a vector over the vertices of a patch [m].
@@ -113,6 +115,7 @@ class Encounters {
     Pairs pairs;
     int edges_from = 0;  // where the second part of the list begins
   };
+  static bool is_of_vertex(const Encounter& e) { return !e.edges; }
   void list(int first, int second, std::vector<Encounter>& found) const;
   void spread(const VecX& x, std::vector<Vec3>& places) const;  // those that move
   Box box_about(const Encounter& e, std::size_t from, std::size_t to) const;
@@ -158,9 +161,8 @@ class Encounters {
   std::vector<Due> beside_due_;
   std::vector<Clock> clock_;      // by vertex
   bool clocks_are_read_ = false;  // for the motion from start_ to end_
-  std::vector<char> asleep_;      // of each vertex, whether its pairs are not followed
-  // What unfolded_ does not tell to be apart in the motion that was followed last. What sleeps is begun anew
-  // when it wakes.
+  std::vector<char> asleep_;      // by vertex
+  // Numbers of what does not sleep in the motion that was followed last.
   std::vector<int> awake_groups_, awake_vertices_;
   std::vector<double> limits_;          // given last, by particle, at most the gap [m]
   std::vector<Group> groups_;           // sorted by patches

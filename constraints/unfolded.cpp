@@ -13,11 +13,10 @@
 namespace drape::internal {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding = 1e-6;      // of e
 constexpr double clearly_apart = 0.3;  // an e that is not looked at more closely
 constexpr int looks_spared = 8;        // where something was folded
-constexpr double small_drift = 0.05;   // so much is not looked at, unless something was folded
+constexpr double small_drift = 0.05;   // less is added to e, where nothing was folded, and G stays
 
 const double half = std::sqrt(0.5);
 
@@ -29,7 +28,10 @@ std::array<Vec3, 2> orthonormal(const Vec3& a, const Vec3& b) {
 }
 
 // Infinity where either is no number.
-double larger(double a, double b) { return b <= a ? a : std::isnan(a) || std::isnan(b) ? infinity : b; }
+double larger(double a, double b) {
+  if (std::isnan(a) || std::isnan(b)) return std::numeric_limits<double>::infinity();
+  return std::max(a, b);
+}
 
 // change <- places - known, known <- places. Returns whether anything changes.
 bool take(const std::vector<Vec3>& places, std::vector<Vec3>& known, std::vector<Vec3>& change) {
@@ -199,9 +201,9 @@ void Unfolded::look(const std::vector<Vec3>& start, const std::vector<Vec3>& end
       for (int p : patches_of(set))
         ends_[p].most_drift = std::min(ends_[p].most_drift, set.folded ? 0 : small_drift);
   each_patch([&](int p, Ends& ends) {
-    const double most_drift = std::exchange(ends.most_drift, never);
+    const double most_drift = std::exchange(ends.most_drift, infinity);
     for (std::size_t k = 0; k < 2; ++k)
-      if (most_drift < never && !(ends.turn[k].drift < most_drift)) ends.turn[k] = turn_of(p, places_[k]);
+      if (most_drift < infinity && !(ends.turn[k].drift < most_drift)) ends.turn[k] = turn_of(p, places_[k]);
   });
   each_set([&](PatchSet& set) {
     if (!set.wanted) return;

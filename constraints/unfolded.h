@@ -6,8 +6,8 @@
 //     d . R^T (x(Y) - x(X)) = int d . R^T F t dp,   so that   |x(Y) - x(X)| >= (1 - e) p
 // with e the largest of 1 - d . R^T F t in the region. Where e < 1 the region cannot meet itself.
 //   F is linear in the places of the corners, and so is d . R^T F t: what bounds e at both ends of a straight
-// motion bounds it all the way. R is the mean of how the region had turned at the start when e was
-// found.
+// motion bounds it all the way. R is how the region had turned at the start, in the
+// mean, when e was found.
 //   For a vertex and a triangle, or two edges, without a vertex in common p is at least the least height of
 // the triangles' shadows: the straight way from a vertex leaves the triangle that it begins in over the edge
 // across from it, and two edges that do not cross are nearest at an end of one. (That maps of convex regions
@@ -16,8 +16,8 @@
 // patch as G turns it. F - G has a part across n and one along it, of norms `in_plane` and `out_of_plane`,
 // and Q takes a vector's part in the region's plane, as R turns it:
 //     d . R^T F t >= d . R^T G t - |t| (in_plane + |Q n| out_of_plane)
-//   Where F changes by dF, e grows by |t| |dF| at most. So patches are looked at again only when what they
-// changed by since could add up to a fold.
+//   Where F changes by dF, e grows by |t| |dF| at most. So e is found again only when the changes since,
+// added up, could have made a fold.
 #pragma once
 
 #include <array>
@@ -54,7 +54,7 @@ class Unfolded {
     Plane t;
     double inverse_length, along, inverse_height;
   };
-  static constexpr double never = std::numeric_limits<double>::infinity();
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
   struct Turn {
     Mat3 G = Mat3::Identity();
     Eigen::Vector4d q = Eigen::Vector4d::UnitW();  // G as a unit quaternion
@@ -64,18 +64,18 @@ class Unfolded {
   // What a patch is at both ends of the motion.
   struct Ends {
     std::array<Turn, 2> turn;
-    double most_drift = never;  // with more the turns are found anew in this look
+    double most_drift = infinity;  // with so much or more the turns are found anew in this look
   };
   // Patches that are looked at together, and the plane of the regions in them.
   struct PatchSet {
     int from = 0, to = 0;  // in set_patches_
     Vec3 normal;
-    double slope = 0;                                         // the largest of any region, a tangent
-    double height = std::numeric_limits<double>::infinity();  // the least of any region [m]
-    int rests = 0;                                            // looks for which it is left alone
-    double off = 0;       // e is no more than that; nothing at the reference
-    bool wanted = false;  // in this look: `off` does not tell that all of it is apart
-    bool folded = false;  // by the last look that wanted it
+    double slope = 0;          // the largest of any region, a tangent
+    double height = infinity;  // the least of any region [m]
+    int rests = 0;             // looks for which it is left alone
+    double off = 0;            // e is no more than that; nothing at the reference
+    bool wanted = false;       // in this look: `off` does not tell that all of it is apart
+    bool folded = false;       // by the last look that wanted it
   };
   struct Region {
     int set;        // of patches

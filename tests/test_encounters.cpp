@@ -130,6 +130,25 @@ long missed(const Sheets& sheets, const std::vector<Encounter>& pairs, const Vec
   });
 }
 
+// Goes from place to place with the sheets, and looks whether the search misses something on the way.
+struct Walk {
+  explicit Walk(Sheets& of) : sheets(of), pairs(of.all_pairs()), fewest(pairs.size()) {}
+
+  void go(const VecX& x_new) {
+    const std::vector<Encounter> selected = sheets.select(x_new);
+    const std::set<Encounter> found(selected.begin(), selected.end());
+    CHECK(found.size() == selected.size());
+    CHECK(missed(sheets, pairs, x_new, 0.99 * gap, found) == 0);
+    fewest = std::min(fewest, found.size());
+    most = std::max(most, found.size());
+    sheets.go(x_new);
+  }
+
+  Sheets& sheets;
+  std::vector<Encounter> pairs;
+  std::size_t fewest, most = 0;  // that were found in a step
+};
+
 }  // namespace
 
 TEST_CASE("the search for what could meet misses nothing, and tells each pair once", "[approach]") {
@@ -177,10 +196,9 @@ TEST_CASE("the search misses nothing of a sheet that is wound up, and unwound, a
     for (const double length : {1.5, 4.0, 15.0}) {  // steps in a radian of the winding
       INFO("mesh " << static_cast<int>(kind) << ", " << length);
       Sheets sheet(kind, 9, 0, false, 1);
-      const std::vector<Encounter> pairs = sheet.all_pairs();
+      Walk walk(sheet);
       std::mt19937 random(5);
       std::uniform_real_distribution<double> tremble(-2e-4, 2e-4);
-      std::size_t fewest = pairs.size(), most = 0;
       for (int step = 0; step < std::max(24.0, 14 * length); ++step) {
         const double bent = std::max(0.0, 1.2 * std::sin(step / length));  // radians in an edge
         const double radius = edge / std::max(bent, 1e-3);
@@ -192,15 +210,10 @@ TEST_CASE("the search misses nothing of a sheet that is wound up, and unwound, a
           x_new.segment<3>(3 * i) = (along_x ? at : Vec3(at.z(), at.y(), at.x())) +
                                     Vec3(tremble(random), tremble(random), tremble(random));
         }
-        const std::vector<Encounter> selected = sheet.select(x_new);
-        const std::set<Encounter> found(selected.begin(), selected.end());
-        CHECK(missed(sheet, pairs, x_new, 0.99 * gap, found) == 0);
-        fewest = std::min(fewest, found.size());
-        most = std::max(most, found.size());
-        sheet.go(x_new);
+        walk.go(x_new);
       }
-      CHECK(most > 500);
-      CHECK(10 * fewest < most);
+      CHECK(walk.most > 500);
+      CHECK(10 * walk.fewest < walk.most);
     }
 }
 
@@ -210,24 +223,18 @@ TEST_CASE("the search misses nothing of a sheet that was folded, lay flat for lo
     for (const double shrinks : {0.93, 0.97}) {  // in a step
       INFO("mesh " << static_cast<int>(kind) << ", by " << shrinks);
       Sheets sheet(kind, 9, 0, false, 1);
-      const std::vector<Encounter> pairs = sheet.all_pairs();
+      Walk walk(sheet);
       const VecX flat = sheet.x;
-      std::size_t fewest = pairs.size(), most = 0;
       double size = 1;
       for (int step = 0; size > 0.2; ++step) {
         VecX x_new = size * flat;
         if (step == 1)
           for (int i = 0; i < sheet.vertices(); ++i) x_new[3 * i] = 0.1 * std::abs(x_new[3 * i]);
         if (step > 20) size *= shrinks;
-        const std::vector<Encounter> selected = sheet.select(x_new);
-        const std::set<Encounter> found(selected.begin(), selected.end());
-        CHECK(missed(sheet, pairs, x_new, 0.99 * gap, found) == 0);
-        fewest = std::min(fewest, found.size());
-        most = std::max(most, found.size());
-        sheet.go(x_new);
+        walk.go(x_new);
       }
-      CHECK(most > 500);
-      CHECK(10 * fewest < most);
+      CHECK(walk.most > 500);
+      CHECK(10 * walk.fewest < walk.most);
     }
 }
 
@@ -271,14 +278,11 @@ TEST_CASE("the search misses nothing of sheets that come near each other slowly,
       const Mat3 turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), facing).toRotationMatrix();
       for (int i = 0; i < two.vertices(); ++i) two.x.segment<3>(3 * i) = turn * two.places[i];
       two.encounters.set(two.triangles, {}, two.vertices(), two.triangles.size(), two.x);
-      const std::vector<Encounter> pairs = two.all_pairs();
+      Walk walk(two);
       for (int step = 0; step < 14; ++step) {
         VecX x_new = two.x;
         for (int i = two.half; i < two.vertices(); ++i) x_new.segment<3>(3 * i) -= way * facing.normalized();
-        const std::vector<Encounter> selected = two.select(x_new);
-        const std::set<Encounter> found(selected.begin(), selected.end());
-        CHECK(missed(two, pairs, x_new, 0.99 * gap, found) == 0);
-        two.go(x_new);
+        walk.go(x_new);
       }
     }
 }
@@ -289,7 +293,7 @@ TEST_CASE("the search misses nothing of a pile that is pressed together and come
     for (const double speed : {0.2, 0.6, 1.5}) {  // mm a step, of each sheet against the next
       INFO("mesh " << static_cast<int>(kind) << ", " << speed << " mm a step");
       Sheets pile(kind, n, 0.015, false, sheets);
-      const std::vector<Encounter> pairs = pile.all_pairs();
+      Walk walk(pile);
       std::mt19937 random(5);
       std::uniform_real_distribution<double> tremble(-1e-5, 1e-5);
       double distance = 15;  // mm
@@ -300,11 +304,7 @@ TEST_CASE("the search misses nothing of a pile that is pressed together and come
           x_new.segment<3>(3 * i) +=
               Vec3(tremble(random), 1e-3 * by * sheet + tremble(random), tremble(random));
         }
-        const std::vector<Encounter> selected = pile.select(x_new);
-        const std::set<Encounter> found(selected.begin(), selected.end());
-        CHECK(found.size() == selected.size());
-        CHECK(missed(pile, pairs, x_new, 0.99 * gap, found) == 0);
-        pile.go(x_new);
+        walk.go(x_new);
         distance += by;
       };
       for (int time = 0; time < 2; ++time) {

@@ -33,8 +33,8 @@ class MovingBoxes {
 
   // The same in two parts, where pairs_of_patches() is asked for few patches: first the boxes about patches,
   // which is enough for near_patches(), and then those within each patch that is asked for. `vertices` lists
-  // those of patch p from place from[p] to from[p + 1]. Patches can be fitted within by several threads. What
-  // searches all of the tree, near() and along(), needs refit().
+  // those of patch p from place from[p] to from[p + 1]. Several threads may call refit_within(), each for other
+  // patches. What searches all of the tree, near() and along(), needs refit().
   void refit_patches(const std::vector<int>& from, const std::vector<int>& vertices,
                      const std::vector<Vec3>& start, const std::vector<Vec3>& end);
   void refit_within(int patch, const std::vector<Face>& faces, const std::vector<Vec3>& start,
@@ -127,8 +127,8 @@ class MovingBoxes {
   std::vector<std::pair<int, int>> above_patches_;  // nodes and their children, parents first
   std::vector<EndBoxes> patch_boxes_;               // scratch [m]
   std::vector<long> fitted_for_;  // the number of the origin for which each patch was fitted within
-  long origins_ = 0;
-  int most_faces_;  // of a leaf
+  long origins_ = 0;              // that there have been
+  int most_faces_;                // of a leaf
   Vec3 origin_ = Vec3::Zero();
   float slack_ = 0;                   // m
   bool at_rest_ = false;              // whether start and end are the same
