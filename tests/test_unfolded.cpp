@@ -327,6 +327,28 @@ TEST_CASE("what looks in a row tell stays apart", "[approach]") {
   }
 }
 
+TEST_CASE("of places that are no numbers, or have no squares, nothing is told, and later all is again",
+          "[approach]") {
+  for (const Kind kind : kinds)
+    for (const double place :
+         {std::numeric_limits<double>::quiet_NaN(), 1e200, std::numeric_limits<double>::infinity()})
+      for (const bool at_start : {false, true}) {
+        INFO("mesh " << static_cast<int>(kind) << ", " << place
+                     << (at_start ? " at the start" : " at the end"));
+        Row row(kind);
+        const std::vector<Vec3>& flat = row.cloth.places;
+        std::vector<Vec3> wild = flat;
+        for (std::size_t v = 0; v < wild.size(); v += 2) wild[v] *= place;
+        row.cloth.unfolded->look(at_start ? wild : flat, at_start ? flat : wild, Row::gap);
+        long told = 0;
+        row.cloth.each_region([&](int region, const auto&) { told += row.cloth.unfolded->is_apart(region); });
+        CHECK(told == 0);
+        for (int look = 0; look < 10; ++look) row.look(flat, flat);
+        CHECK(row.told_now > 0);
+        CHECK(row.fewer == 0);
+      }
+}
+
 TEST_CASE("a sheet that folds little by little is told to be unfolded until it is not", "[approach]") {
   long more = 0;
   for (const Kind kind : kinds)
