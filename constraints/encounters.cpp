@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <map>
 #include <span>
 
 namespace drape::internal {
@@ -36,10 +35,15 @@ void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<s
   const auto particles = static_cast<std::size_t>(particle_count);
   owned_.assign(faces_.size(), 0);
   std::vector<char> has_owner(particles, 0);
-  std::map<std::pair<int, int>, int> owner;
   std::vector<std::vector<int>> around(particles), next(particles);
   double length = 0;
   int edges = 0;  // of cloth
+  FaceSide last = {-1, -1, -1, -1};
+  for (const FaceSide& side : sorted_sides(faces_)) {
+    const bool is_first = side.low != last.low || side.high != last.high;
+    if (is_first && side.low != side.high) owned_[side.face] |= static_cast<unsigned char>(8u << side.side);
+    last = side;
+  }
   for (std::size_t f = 0; f < faces_.size(); ++f)
     for (std::size_t k = 0; k < 3; ++k) {
       const int v = faces_[f].v[k], w = faces_[f].v[(k + 1) % 3];
@@ -47,8 +51,7 @@ void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<s
       around[v].push_back(static_cast<int>(f));
       if (!has_owner[v]) owned_[f] |= static_cast<unsigned char>(1u << k);
       has_owner[v] = 1;
-      if (!owner.emplace(std::minmax(v, w), static_cast<int>(f)).second) continue;
-      owned_[f] |= static_cast<unsigned char>(8u << k);
+      if ((owned_[f] >> k & 8u) == 0) continue;
       next[v].push_back(w);
       next[w].push_back(v);
       if (of_cloth_ != 0 && static_cast<int>(f) >= of_cloth_) continue;
@@ -92,7 +95,10 @@ void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<s
   end_ = start_;
   boxes_.emplace(faces_, start_, 1, of_cloth_, still);
   unfolded_.reset();
-  if (of_cloth_ == 0) unfolded_.emplace(faces_, *boxes_, start_);
+  if (of_cloth_ == 0) {
+    join(faces_);
+    unfolded_.emplace(faces_, *boxes_, start_);
+  }
   patch_start_.assign(1, 0);
   patch_.clear();
   patch_moves_.clear();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 namespace drape::internal {
@@ -22,25 +21,20 @@ std::array<Vec3, 2> plane_across(const Vec3& n) {
 }
 
 ShadowHull::ShadowHull(const std::vector<Face>& faces, const std::vector<Vec3>& places)
-    : faces_(faces), places_(places), beyond_(faces.size()), met_(faces.size(), 0), seen_(places.size(), 0) {
-  std::map<std::pair<int, int>, int> forward;  // the face that runs along the edge this way; -1: several do
-  for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
-    const Triangle& v = faces[f].v;
-    normals_.push_back((places[v[1]] - places[v[0]]).cross(places[v[2]] - places[v[0]]));
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [at, is_first] = forward.try_emplace({v[k], v[(k + 1) % 3]}, f);
-      if (!is_first) at->second = -1;
-    }
-  }
-  const auto face_along = [&](int from, int to) {
-    const auto at = forward.find({from, to});
-    return at == forward.end() ? -1 : at->second;
-  };
-  for (int f = 0; f < static_cast<int>(faces.size()); ++f)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int from = faces[f].v[k], to = faces[f].v[(k + 1) % 3];
-      beyond_[f][k] = face_along(from, to) == f ? face_along(to, from) : -1;
-    }
+    : faces_(faces), places_(places), met_(faces.size(), 0), seen_(places.size(), 0) {}
+
+int ShadowHull::beyond(int face, int side) const {
+  const int other = faces_[face].across[side];
+  if (other < 0) return -1;
+  const Triangle &v = faces_[face].v, &w = faces_[other].v;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (w[k] == v[(side + 1) % 3] && w[(k + 1) % 3] == v[side]) return other;
+  return -1;
+}
+
+Vec3 ShadowHull::normal_of(int face) const {
+  const Triangle& v = faces_[face].v;
+  return (places_[v[1]] - places_[v[0]]).cross(places_[v[2]] - places_[v[0]]);
 }
 
 // Walks from the faces over all edges that go through the hull. A surface that has no border inside the hull
@@ -57,18 +51,19 @@ bool ShadowHull::covers(const std::vector<int>& faces, const Vec3& normal) {
   for (int f : faces) add(f);
   for (std::size_t k = 0; k < found_.size(); ++k) {
     const int f = found_[k];
-    const double along = normals_[f].dot(normal), slope = (normals_[f] - along * normal).norm() / along;
+    const Vec3 own = normal_of(f);
+    const double along = own.dot(normal), slope = (own - along * normal).norm() / along;
     if (!(along > 0 && slope <= steepest)) return false;
     slope_ = std::max(slope_, slope);
     const std::array<Vec2, 3> corners = shadow_of(f);
     const double area = cross(corners[1] - corners[0], corners[2] - corners[0]);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vec2 &a = corners[i], &b = corners[(i + 1) % 3];
+    for (int side = 0; side < 3; ++side) {
+      const Vec2 &a = corners[side], &b = corners[(side + 1) % 3];
       height_ = std::min(height_, area / (b - a).norm());
-      const int beyond = beyond_[f][i];
-      if ((beyond >= 0 && met_[beyond] == search_) || !enters_hull(a, b)) continue;
-      if (beyond < 0) return false;
-      add(beyond);
+      const int other = beyond(f, side);
+      if ((other >= 0 && met_[other] == search_) || !enters_hull(a, b)) continue;
+      if (other < 0) return false;
+      add(other);
     }
   }
   return !is_beneath_another(faces.front());

@@ -10,6 +10,7 @@ namespace drape::internal {
 
 class ShadowHull {
  public:
+  // The faces are joined.
   ShadowHull(const std::vector<Face>& faces, const std::vector<Vec3>& places);
 
   // Whether the surface around these faces covers the hull of their shadow, across the unit normal, once and
@@ -23,6 +24,9 @@ class ShadowHull {
  private:
   using Vec2 = Eigen::Vector2d;
   void add(int face);
+  // The face beyond an edge; -1: there is none, or several, or it is wound the other way.
+  int beyond(int face, int side) const;
+  Vec3 normal_of(int face) const;  // twice the area long
   Vec2 shadow(int vertex) const { return {plane_[0].dot(places_[vertex]), plane_[1].dot(places_[vertex])}; }
   std::array<Vec2, 3> shadow_of(int face) const;
   void make_hull(const std::vector<int>& faces);
@@ -31,9 +35,6 @@ class ShadowHull {
 
   const std::vector<Face>& faces_;
   const std::vector<Vec3>& places_;
-  std::vector<Vec3> normals_;  // twice the area long
-  // The face beyond each edge; -1: there is none, or several, or it is wound the other way.
-  std::vector<std::array<int, 3>> beyond_;
   std::vector<int> met_, seen_;  // the search that met the face, and the vertex, last
   int search_ = 0;
   std::array<Vec3, 2> plane_;

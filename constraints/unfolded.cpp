@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include "constraints/shadow_hull.h"
@@ -55,56 +57,117 @@ double largest_square(double p, double q, double product) {
 
 }  // namespace
 
-// Finds the regions.
+// Finds the regions about the triangles of a vertex, and of two patches. Each is found by itself, on any
+// thread.
 class Unfolded::Builder {
  public:
   Builder(Unfolded& unfolded, const std::vector<Face>& faces, const MovingBoxes& boxes,
           const std::vector<Vec3>& places)
       : unfolded_(unfolded),
-        hull_(faces, places),
+        faces_(faces),
+        places_(places),
         patch_of_(faces.size()),
-        faces_of_(boxes.patches().size()) {
-    for (std::size_t p = 0; p < faces_of_.size(); ++p) {
+        of_patch_(boxes.patches().size()),
+        of_vertex_(places.size()) {
+    for (std::size_t p = 0; p < of_patch_.size(); ++p) {
       const MovingBoxes::Patch& patch = boxes.patches()[p];
       for (int k = patch.first; k < patch.first + patch.count; ++k) {
         patch_of_[boxes.face(k)] = static_cast<int>(p);
-        faces_of_[p].push_back(boxes.face(k));
+        of_patch_[p].push_back(boxes.face(k));
       }
     }
+    for (int f = 0; f < static_cast<int>(faces.size()); ++f)
+      for (int v : faces[f].v)
+        if (of_vertex_[v].empty() || of_vertex_[v].back() != f) of_vertex_[v].push_back(f);
   }
 
-  // The region about these faces; -1: none.
-  int about(const std::vector<int>& faces) {
-    patches_of(faces, by_);
-    Vec3 normal = Vec3::Zero();
-    for (int p : by_) normal += unfolded_.normals_[p];
-    normal.normalize();
-    if (!hull_.covers(faces, normal)) return -1;
-    patches_of(hull_.found(), all_);
-    const auto [at, is_new] = numbers_.try_emplace({by_, all_}, static_cast<int>(numbers_.size()));
-    if (is_new) {
-      std::vector<int>& patches = unfolded_.set_patches_;
-      const int from = static_cast<int>(patches.size());
-      patches.insert(patches.end(), all_.begin(), all_.end());
-      unfolded_.sets_.push_back({.from = from, .to = static_cast<int>(patches.size()), .normal = normal});
-    }
-    PatchSet& set = unfolded_.sets_[at->second];
-    set.slope = std::max(set.slope, hull_.slope());
-    set.height = std::min(set.height, hull_.height());
-    unfolded_.regions_.push_back({at->second, hull_.height()});
-    return static_cast<int>(unfolded_.regions_.size()) - 1;
-  }
-
-  void add_pair(int face, int other) {
-    const auto pair = std::pair(patch_of_[face], patch_of_[other]);
-    if (pair.first > pair.second || unfolded_.pairs_.contains(pair)) return;
-    std::vector<int> together = faces_of_[pair.first];
-    if (pair.second != pair.first)
-      together.insert(together.end(), faces_of_[pair.second].begin(), faces_of_[pair.second].end());
-    unfolded_.pairs_.emplace(pair, about(together));
+  void build() {
+    find_pairs();
+    const int vertices = static_cast<int>(of_vertex_.size());
+    const int count = vertices + static_cast<int>(unfolded_.pairs_.size());
+    candidates_.resize(count);
+    // Each part goes through numbers of all faces and vertices of its own, so there are few.
+    constexpr int parts = 32;
+    const auto first_of = [&](int part) { return static_cast<int>(std::int64_t{count} * part / parts); };
+    parallel_for(parts, count < serial_below(Work::heavy), [&](int part) {
+      ShadowHull hull(faces_, places_);
+      for (int k = first_of(part); k < first_of(part + 1); ++k)
+        look(k < vertices ? of_vertex_[k] : faces_of(unfolded_.pairs_[k - vertices]), hull, candidates_[k]);
+    });
+    number_sets();
+    for (int k = 0; k < count; ++k)
+      (k < vertices ? unfolded_.of_vertex_ : unfolded_.of_pair_).push_back(add_region(candidates_[k]));
   }
 
  private:
+  struct Candidate {
+    std::vector<int> by,
+        all;  // the patches that it is about, and those that lie over the hull of their shadow; none: it is no region
+    Vec3 normal;
+    double slope, height;
+    int set;
+  };
+
+  void find_pairs() {
+    std::vector<std::pair<int, int>>& pairs = unfolded_.pairs_;
+    std::vector<int> here;
+    for (const std::vector<int>& faces : of_vertex_) {
+      patches_of(faces, here);
+      for (std::size_t k = 0; k < here.size(); ++k)
+        for (std::size_t l = k; l < here.size(); ++l) pairs.emplace_back(here[k], here[l]);
+    }
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  }
+
+  std::vector<int> faces_of(const std::pair<int, int>& patches) const {
+    std::vector<int> faces = of_patch_[patches.first];
+    const std::vector<int>& other = of_patch_[patches.second];
+    if (patches.second != patches.first) faces.insert(faces.end(), other.begin(), other.end());
+    return faces;
+  }
+
+  void look(const std::vector<int>& faces, ShadowHull& hull, Candidate& found) const {
+    if (faces.empty()) return;
+    patches_of(faces, found.by);
+    found.normal.setZero();
+    for (int p : found.by) found.normal += unfolded_.normals_[p];
+    found.normal.normalize();
+    if (!hull.covers(faces, found.normal)) return;
+    patches_of(hull.found(), found.all);
+    found.slope = hull.slope();
+    found.height = hull.height();
+  }
+
+  // Regions of the same patches, about the same ones of them, are looked at together.
+  void number_sets() {
+    std::vector<Candidate*> regions;
+    for (Candidate& c : candidates_)
+      if (!c.all.empty()) regions.push_back(&c);
+    const auto patches = [](const Candidate* c) { return std::tie(c->by, c->all); };
+    std::sort(regions.begin(), regions.end(),
+              [&](const Candidate* a, const Candidate* b) { return patches(a) < patches(b); });
+    for (std::size_t k = 0; k < regions.size(); ++k) {
+      Candidate& c = *regions[k];
+      if (k == 0 || patches(regions[k - 1]) != patches(&c)) {
+        std::vector<int>& all = unfolded_.set_patches_;
+        const int from = static_cast<int>(all.size());
+        all.insert(all.end(), c.all.begin(), c.all.end());
+        unfolded_.sets_.push_back({.from = from, .to = static_cast<int>(all.size()), .normal = c.normal});
+      }
+      c.set = static_cast<int>(unfolded_.sets_.size()) - 1;
+      PatchSet& set = unfolded_.sets_.back();
+      set.slope = std::max(set.slope, c.slope);
+      set.height = std::min(set.height, c.height);
+    }
+  }
+
+  int add_region(const Candidate& c) {
+    if (c.all.empty()) return -1;
+    unfolded_.regions_.push_back({c.set, c.height});
+    return static_cast<int>(unfolded_.regions_.size()) - 1;
+  }
+
   void patches_of(const std::vector<int>& faces, std::vector<int>& patches) const {
     patches.clear();
     for (int f : faces) patches.push_back(patch_of_[f]);
@@ -113,19 +176,15 @@ class Unfolded::Builder {
   }
 
   Unfolded& unfolded_;
-  ShadowHull hull_;
+  const std::vector<Face>& faces_;
+  const std::vector<Vec3>& places_;
   std::vector<int> patch_of_;
-  std::vector<std::vector<int>> faces_of_;
-  std::map<std::pair<std::vector<int>, std::vector<int>>, int> numbers_;  // of sets
-  std::vector<int> by_, all_;
+  std::vector<std::vector<int>> of_patch_, of_vertex_;  // faces
+  std::vector<Candidate> candidates_;
 };
 
 Unfolded::Unfolded(const std::vector<Face>& faces, const MovingBoxes& boxes, const std::vector<Vec3>& places)
-    : shapes_from_(1, 0),
-      of_vertex_(places.size(), -1),
-      ends_(boxes.patches().size()),
-      change_(ends_.size()),
-      places_{places, places} {
+    : shapes_from_(1, 0), ends_(boxes.patches().size()), change_(ends_.size()), places_{places, places} {
   for (const MovingBoxes::Patch& patch : boxes.patches()) {
     Vec3 normal = Vec3::Zero();
     for (int k = patch.first; k < patch.first + patch.count; ++k) {
@@ -137,17 +196,7 @@ Unfolded::Unfolded(const std::vector<Face>& faces, const MovingBoxes& boxes, con
     normals_.push_back(normal.normalized());
     planes_.push_back(plane_across(normals_.back()));
   }
-  std::vector<std::vector<int>> around(places.size());
-  for (int f = 0; f < static_cast<int>(faces.size()); ++f)
-    for (int v : faces[f].v)
-      if (around[v].empty() || around[v].back() != f) around[v].push_back(f);
-  Builder regions(*this, faces, boxes, places);
-  for (std::size_t v = 0; v < around.size(); ++v) {
-    if (around[v].empty()) continue;
-    of_vertex_[v] = regions.about(around[v]);
-    for (int f : around[v])
-      for (int g : around[v]) regions.add_pair(f, g);
-  }
+  Builder(*this, faces, boxes, places).build();
   apart_.assign(regions_.size(), 0);
 }
 
@@ -159,8 +208,9 @@ void Unfolded::add_shape(const Triangle& v, const std::vector<Vec3>& places) {
 }
 
 int Unfolded::region_of(int first, int second) const {
-  const auto at = pairs_.find({first, second});
-  return at == pairs_.end() ? -1 : at->second;
+  const std::pair pair(first, second);
+  const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), pair);
+  return at == pairs_.end() || *at != pair ? -1 : of_pair_[at - pairs_.begin()];
 }
 
 std::span<const int> Unfolded::patches_of(const PatchSet& set) const {

@@ -22,7 +22,6 @@
 
 #include <array>
 #include <limits>
-#include <map>
 #include <span>
 #include <utility>
 #include <vector>
@@ -33,7 +32,7 @@ namespace drape::internal {
 
 class Unfolded {
  public:
-  // The reference: the faces at these places, in the patches of the boxes.
+  // The reference: the joined faces at these places, in the patches of the boxes.
   Unfolded(const std::vector<Face>& faces, const MovingBoxes& boxes, const std::vector<Vec3>& places);
   // Looks at a motion, in which vertices go straight from `start` to `end`: which regions have no two parts
   // within this gap [m]. What is folded is not looked at again for a while.
@@ -97,11 +96,11 @@ class Unfolded {
   std::vector<PatchSet> sets_;
   std::vector<int> set_patches_;
   std::vector<Region> regions_;
-  std::map<std::pair<int, int>, int> pairs_;  // regions
-  std::vector<int> of_vertex_;
-  std::vector<char> apart_;     // by region
-  std::vector<Ends> ends_;      // by patch
-  std::vector<double> change_;  // by patch: |dF| in this look at most, at either end
+  std::vector<std::pair<int, int>> pairs_;  // of patches that have a vertex in common, sorted
+  std::vector<int> of_pair_, of_vertex_;    // regions
+  std::vector<char> apart_;                 // by region
+  std::vector<Ends> ends_;                  // by patch
+  std::vector<double> change_;              // by patch: |dF| in this look at most, at either end
   // Where the motion that was looked at last started and ended, at first the reference; and, as scratch, by
   // how much the next one differs.
   std::array<std::vector<Vec3>, 2> places_, motion_;

@@ -27,6 +27,7 @@ constexpr int n = 13;
 struct Patched {
   Patched(const TriangleMesh& mesh) : places(mesh.positions) {
     for (const Triangle& t : mesh.triangles) faces.push_back({t, {-1, -1, -1}});
+    join(faces);
     boxes.emplace(faces, places, 1);
     unfolded.emplace(faces, *boxes, places);
   }

@@ -34,30 +34,6 @@ std::vector<Face> distinct_faces(const TriangleMesh& mesh, const std::vector<int
   return faces;
 }
 
-// Fills `across` of every face. Returns true when every edge has exactly two faces.
-bool join(std::vector<Face>& faces) {
-  std::vector<std::tuple<int, int, int, int>> edges;  // lower vertex, higher vertex, face, side
-  edges.reserve(3 * faces.size());
-  for (int f = 0; f < static_cast<int>(faces.size()); ++f)
-    for (int k = 0; k < 3; ++k) {
-      const auto [u, v] = std::minmax({faces[f].v[k], faces[f].v[next(k)]});
-      edges.emplace_back(u, v, f, k);
-      faces[f].across[k] = -1;
-    }
-  std::sort(edges.begin(), edges.end());
-  bool manifold = true;
-  for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
-    const auto [u, v, f, k] = edges[i];
-    for (j = i; j < edges.size() && std::get<0>(edges[j]) == u && std::get<1>(edges[j]) == v;) ++j;
-    manifold = manifold && j - i == 2;
-    if (j - i != 2) continue;
-    const auto [u2, v2, g, m] = edges[i + 1];
-    faces[f].across[k] = g;
-    faces[g].across[m] = f;
-  }
-  return manifold;
-}
-
 void turn(Face& f) {
   std::swap(f.v[1], f.v[2]);
   std::swap(f.across[0], f.across[2]);
@@ -109,6 +85,36 @@ Eigen::AlignedBox3d box_of(const SurfaceFaces& surface, const std::vector<Vec3>&
 bool has_area(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
   return twice_area_normal(a, b, c).norm() > flat * longest;
+}
+
+std::vector<FaceSide> sorted_sides(const std::vector<Face>& faces) {
+  std::vector<FaceSide> sides;
+  sides.reserve(3 * faces.size());
+  for (int f = 0; f < static_cast<int>(faces.size()); ++f)
+    for (int k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax({faces[f].v[k], faces[f].v[next(k)]});
+      sides.push_back({low, high, f, k});
+    }
+  std::sort(sides.begin(), sides.end(), [](const FaceSide& a, const FaceSide& b) {
+    return std::tie(a.low, a.high, a.face, a.side) < std::tie(b.low, b.high, b.face, b.side);
+  });
+  return sides;
+}
+
+bool join(std::vector<Face>& faces) {
+  for (Face& f : faces) f.across = {-1, -1, -1};
+  const std::vector<FaceSide> sides = sorted_sides(faces);
+  bool manifold = true;
+  for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
+    const FaceSide& one = sides[i];
+    for (j = i; j < sides.size() && sides[j].low == one.low && sides[j].high == one.high;) ++j;
+    manifold = manifold && j - i == 2;
+    if (j - i != 2) continue;
+    const FaceSide& other = sides[i + 1];
+    faces[one.face].across[one.side] = other.face;
+    faces[other.face].across[other.side] = one.face;
+  }
+  return manifold;
 }
 
 SurfaceFaces surface_faces(const TriangleMesh& mesh) {

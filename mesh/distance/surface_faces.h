@@ -24,6 +24,18 @@ struct SurfaceFaces {
   bool inside_out = false;  // closed, but a piece was wound with most of its normals inwards
 };
 
+// A side of a face, from v[side] to the next corner.
+struct FaceSide {
+  int low, high;  // its vertices
+  int face, side;
+};
+
+// All sides, by their vertices, and those of one edge by their faces.
+std::vector<FaceSide> sorted_sides(const std::vector<Face>& faces);
+
+// Fills `across` of every face. Returns true when every edge has exactly two faces.
+bool join(std::vector<Face>& faces);
+
 // Throws InputError when no triangle has an area.
 SurfaceFaces surface_faces(const TriangleMesh& mesh);
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
+#include "mesh/base/parallel.h"
 #include "solver/forces/buckling_spring.h"
 #include "solver/forces/damping.h"
 #include "solver/forces/tension_spring.h"
@@ -25,10 +27,16 @@ std::vector<std::unique_ptr<Force>> forces_of(const Connections& connections, co
   std::vector<PairForce<TensionSpring>::Element> stretch;
   for (const StretchConnection& s : connections.stretch)
     if (s.k > 0) stretch.push_back({first + s.i, first + s.j, {s.L, s.k}});
-  std::vector<PairForce<BucklingSpring>::Element> bend;
-  for (const BendConnection& b : connections.bend)
-    if (b.k_b > 0)
-      bend.push_back({first + b.i, first + b.j, BucklingSpring::rest(b.L, b.k_b, clamp_of(b, fabric))});
+  std::vector<BendConnection> stiff;
+  std::copy_if(connections.bend.begin(), connections.bend.end(), std::back_inserter(stiff),
+               [](const BendConnection& b) { return b.k_b > 0; });
+  std::vector<PairForce<BucklingSpring>::Element> bend(stiff.size());
+  for_chunks<Work::heavy>(static_cast<int>(stiff.size()), [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) {
+      const BendConnection& b = stiff[k];
+      bend[k] = {first + b.i, first + b.j, BucklingSpring::rest(b.L, b.k_b, clamp_of(b, fabric))};
+    }
+  });
   std::vector<std::unique_ptr<Force>> forces;
   if (fabric.damping > 0) {
     std::vector<PairDamping::Element> damped;
