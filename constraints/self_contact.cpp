@@ -234,8 +234,7 @@ void SelfContacts::begin_step(const StepMotion& of_cloth, const std::vector<Movi
   recovery_ = recovery;
   ahead_ = step.x + step.h * step.v;
   find_contacts(step);
-  std::sort(touching_.begin(), touching_.end(),
-            [](const SelfContact& a, const SelfContact& b) { return a.who < b.who; });
+  sort_touching();
   for_chunks<Work::heavy>(static_cast<int>(touching_.size()), [&](int begin, int end) {
     for (SelfContact& c : std::span(touching_).subspan(begin, end - begin)) {
       go_on(c, step, std::min(recovery, step.h * lift_speed(thickness_of(c.who))));

@@ -300,6 +300,7 @@ class SelfContacts {
   void look_at_ends(std::vector<internal::Meeting>::iterator begin,
                     std::vector<internal::Meeting>::iterator end) const;
   void find_contacts(const StepMotion& step);
+  void sort_touching();
   void find_contacts_of_vertices(const StepMotion& step, double thickest);
   void find_contacts_of_edges(const StepMotion& step, double thickest);
   std::optional<SelfContact> contact_of(const StepMotion& step, const Encounter& who,
@@ -340,6 +341,8 @@ class SelfContacts {
   VecX rest_;                      // places of the cloth when the faces were added [m]
   std::vector<char> tangled_;      // whether it was in a tangle there, or is beside a cut
   std::vector<SelfContact> touching_, last_;  // of this step and of the last one, sorted
+  std::vector<SelfContact> unsorted_;         // scratch of sort_touching()
+  std::vector<int> sorted_;                   // scratch of it: numbers in unsorted_
   std::vector<Encounter> last_ones_;          // scratch: the pairs of last_, in its order
   // Scratch: where in last_ the pairs of vertices, and those of edges, begin whose first particle is this
   // one.

@@ -70,8 +70,7 @@ bool SelfContacts::meet(const VecX& of_cloth) {
   }
   if (touching_.size() == before && !stiffer) return false;
   accepted_ = false;
-  std::sort(touching_.begin(), touching_.end(),
-            [](const SelfContact& a, const SelfContact& b) { return a.who < b.who; });
+  sort_touching();
   for (const SelfContact& found : met_) {
     SelfContact& contact = *std::lower_bound(touching_.begin(), touching_.end(), found.who, by_pair);
     go_on(contact, step, recovery_);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "constraints/encounters.h"
@@ -290,6 +291,17 @@ void SelfContacts::find_contacts(const StepMotion& step) {
   if (!follow_all(step.x, ahead_)) return;
   find_contacts_of_vertices(step, thickest);
   find_contacts_of_edges(step, thickest);
+}
+
+// Moves each contact once: they are large.
+void SelfContacts::sort_touching() {
+  std::swap(touching_, unsorted_);
+  sorted_.resize(unsorted_.size());
+  std::iota(sorted_.begin(), sorted_.end(), 0);
+  std::sort(sorted_.begin(), sorted_.end(),
+            [&](int a, int b) { return unsorted_[a].who < unsorted_[b].who; });
+  touching_.clear();
+  for (int k : sorted_) touching_.push_back(unsorted_[k]);
 }
 
 // A vertex has one contact with each sheet beside it: the nearest, of triangles that share a particle and lie

@@ -1,5 +1,7 @@
 #include "solver/linear/elimination_order.h"
 
+#include <cstdlib>
+#include <numeric>
 #include <utility>
 
 #include "solver/linear/projected_block.h"
@@ -7,38 +9,86 @@
 namespace drape::internal {
 
 void EliminationOrder::build(const BlockMatrix& A) {
-  order_rows(A);
+  find_below_diagonal(A, left_);
+  place_.resize(static_cast<std::size_t>(A.rows()));
+  sequence_.resize(place_.size());
+  std::iota(sequence_.begin(), sequence_.end(), 0);
+  cut(A.pattern().bandwidth());
+  if (!colour_chunks(A)) {
+    bring_near(A);
+    colour_chunks(A);
+  }
+  order_rows();
   list_blocks(A);
   list_updates();
 }
 
-void EliminationOrder::order_rows(const BlockMatrix& A) {
-  const int chunk_rows = std::max(A.pattern().chunk_rows(), (A.rows() + most_chunks - 1) / most_chunks);
-  const int chunks = (A.rows() + chunk_rows - 1) / chunk_rows;
+// Gives each chunk the first colour that no earlier one has to which a block couples it. Whether two colours
+// are enough.
+bool EliminationOrder::colour_chunks(const BlockMatrix& A) {
+  std::vector<int>& chunk_of = place_;
+  for (int k = 0; k < chunks_; ++k)
+    for (int at = cut_[k]; at < cut_[k + 1]; ++at) chunk_of[sequence_[at]] = k;
   // Bit k of coupled[l], k <= l, says whether a block couples the chunks k and l.
   std::array<unsigned, most_chunks> coupled = {};
   for (int r = 0; r < A.rows(); ++r)
-    A.each(r, [&](int c, int) { coupled[c / chunk_rows] |= 1u << (r / chunk_rows); });
-  std::array<int, most_chunks> colour_of = {};
+    A.each(r, [&](int c, int) {
+      const auto [k, l] = std::minmax({chunk_of[r], chunk_of[c]});
+      coupled[l] |= 1u << k;
+    });
+  colour_ = {};
   colours_ = 0;
-  for (int l = 0; l < chunks; ++l) {
+  for (int l = 0; l < chunks_; ++l) {
     unsigned taken = 0;
     for (int k = 0; k < l; ++k)
-      if ((coupled[l] >> k & 1u) != 0) taken |= 1u << colour_of[k];
-    while ((taken >> colour_of[l] & 1u) != 0) ++colour_of[l];
-    colours_ = std::max(colours_, colour_of[l] + 1);
+      if ((coupled[l] >> k & 1u) != 0) taken |= 1u << colour_[k];
+    while ((taken >> colour_[l] & 1u) != 0) ++colour_[l];
+    colours_ = std::max(colours_, colour_[l] + 1);
   }
+  return colours_ <= 2;
+}
+
+// A sequence in which also what blocks of the overlay couple stands near each other.
+void EliminationOrder::bring_near(const BlockMatrix& A) {
+  graph_.start.assign(1, 0);
+  graph_.neighbour.clear();
+  for (int r = 0; r < A.rows(); ++r) {
+    left_.in_column(r, [&](int c, int) { graph_.neighbour.push_back(c); });
+    A.each(r, [&](int c, int) {
+      if (c != r) graph_.neighbour.push_back(c);
+    });
+    graph_.start.push_back(static_cast<int>(graph_.neighbour.size()));
+  }
+  locality_.find(graph_, sequence_);
+  std::vector<int>& at = place_;
+  for (int k = 0; k < A.rows(); ++k) at[sequence_[k]] = k;
+  int bandwidth = 0;
+  for (int r = 0; r < A.rows(); ++r)
+    A.each(r, [&](int c, int) { bandwidth = std::max(bandwidth, std::abs(at[r] - at[c])); });
+  cut(bandwidth);
+  for (int k = 0; k < chunks_; ++k) std::sort(sequence_.begin() + cut_[k], sequence_.begin() + cut_[k + 1]);
+}
+
+void EliminationOrder::cut(int bandwidth) {
+  const int count = static_cast<int>(sequence_.size());
+  const int length =
+      std::max({bandwidth, BlockPattern::shortest_chunk, (count + most_chunks - 1) / most_chunks});
+  chunks_ = 0;
+  for (int at = 0; at < count; at += length) cut_[chunks_++] = at;
+  cut_[chunks_] = count;
+}
+
+void EliminationOrder::order_rows() {
   row_.clear();
-  place_.resize(static_cast<std::size_t>(A.rows()));
   int ordered = 0;
   for (int colour = 0; colour < colours_; ++colour) {
     colour_start_[colour] = ordered;
-    for (int k = 0; k < chunks; ++k) {
-      if (colour_of[k] != colour) continue;
+    for (int k = 0; k < chunks_; ++k) {
+      if (colour_[k] != colour) continue;
       chunk_start_[ordered++] = rows();
-      for (int r = k * chunk_rows; r < std::min(A.rows(), (k + 1) * chunk_rows); ++r) {
-        place_[r] = rows();
-        row_.push_back(r);
+      for (int at = cut_[k]; at < cut_[k + 1]; ++at) {
+        place_[sequence_[at]] = rows();
+        row_.push_back(sequence_[at]);
       }
     }
   }
@@ -46,22 +96,32 @@ void EliminationOrder::order_rows(const BlockMatrix& A) {
   chunk_start_[ordered] = rows();
 }
 
+// Calls f(column, slot, turned) for each block of row i from its diagonal on.
+template <class F>
+void EliminationOrder::each_block(const BlockMatrix& A, int i, const F& f) const {
+  const auto add = [&](int column, int slot, bool turned) {
+    if (place_[column] >= i) f(place_[column], slot, turned);
+  };
+  left_.in_column(row_[i], [&](int r, int slot) { add(r, slot, true); });
+  A.each(row_[i], [&](int c, int slot) { add(c, slot, false); });
+}
+
 void EliminationOrder::list_blocks(const BlockMatrix& A) {
-  find_below_diagonal(A, left_);
-  block_.clear();
-  block_.reserve(static_cast<std::size_t>(A.pattern().blocks() + A.overlay().blocks()));
-  start_.assign(1, 0);
-  for (int i = 0; i < rows(); ++i) {
-    const auto first = static_cast<std::ptrdiff_t>(block_.size());
-    const auto add = [&](int column, int slot, bool turned) {
-      if (place_[column] >= i) block_.push_back({place_[column], slot, turned});
-    };
-    left_.in_column(row_[i], [&](int r, int slot) { add(r, slot, true); });
-    A.each(row_[i], [&](int c, int slot) { add(c, slot, false); });
-    std::sort(block_.begin() + first, block_.end(),
-              [](const Block& a, const Block& b) { return a.column < b.column; });
-    start_.push_back(static_cast<int>(block_.size()));
-  }
+  block_.resize(static_cast<std::size_t>(A.pattern().blocks() + A.overlay().blocks()));
+  start_.assign(place_.size() + 1, 0);
+  const auto each_row = [&](const auto& use) {
+    drape::for_chunks<Work::heavy>(rows(), [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) use(i);
+    });
+  };
+  each_row([&](int i) { each_block(A, i, [&](int, int, bool) { ++start_[i + 1]; }); });
+  std::partial_sum(start_.begin(), start_.end(), start_.begin());
+  each_row([&](int i) {
+    Block* const first = block_.data() + start(i);
+    Block* last = first;
+    each_block(A, i, [&](int column, int slot, bool turned) { *last++ = {column, slot, turned}; });
+    std::sort(first, last, [](const Block& a, const Block& b) { return a.column < b.column; });
+  });
   below_.build(rows(), rows(), [&](int i, const auto& f) {
     for (int k = start(i) + 1; k < start(i + 1); ++k) f(block_[k].column, k);
   });

@@ -1,11 +1,13 @@
 // The order in which an incomplete factorisation eliminates the rows of a matrix, and which blocks it
 // multiplies, listed once for its blocks, those of the overlay among them.
-//   Rows are cut into at most eight chunks, at least as long as the bandwidth of the base. Each chunk gets
-//   the first colour that no earlier chunk has to which a block couples it, and rows come in the order of
-//   their chunks' colours. Two chunks of one colour have no coupling, so they are eliminated at the same
-//   time. The base alone takes two colours at most, those of the even and of the odd chunks; where far parts
-//   of a cloth touch each other it may take more. (Every cut costs iterations: a hung sheet of 10 k vertices
-//   took 120 with one chunk, 125 with 8, 153 with 40.)
+//   Rows are cut into at most eight chunks, and these get two colours, so that no block couples two chunks
+// of one colour: these are eliminated at the same time. Rows come in the order of their chunks' colours.
+// Chunks of the rows as the matrix has them, at least as long as the bandwidth of the base, couple to the
+// next one only, unless far parts of the cloth touch each other. Then rows are put in an order in which what
+// touches stands near, too [Cuthill & McKee 1969], and cut into chunks as long as its bandwidth. Within a
+// chunk they come as in the matrix, layer by layer, which takes fewer iterations.
+//   (Every cut costs iterations: a hung sheet of 10 k vertices took 120 with one chunk, 125 with 8, 153 with
+// 40.)
 #pragma once
 
 #include <algorithm>
@@ -16,6 +18,7 @@
 #include "mesh/base/parallel.h"
 #include "solver/linear/mirror.h"
 #include "solver/matrix/block_matrix.h"
+#include "solver/matrix/locality_order.h"
 
 namespace drape::internal {
 
@@ -65,10 +68,21 @@ class EliminationOrder {
  private:
   static constexpr int most_chunks = 8;
 
-  void order_rows(const BlockMatrix& A);
+  bool colour_chunks(const BlockMatrix& A);
+  void bring_near(const BlockMatrix& A);
+  void cut(int bandwidth);
+  void order_rows();
+  template <class F>
+  void each_block(const BlockMatrix& A, int i, const F& f) const;
   void list_blocks(const BlockMatrix& A);
   void list_updates();
 
+  Graph graph_;  // scratch
+  LocalityOrder locality_;
+  std::vector<int> sequence_;  // the rows of the matrix, to be cut into chunks
+  int chunks_ = 0;
+  std::array<int, most_chunks + 1> cut_ = {};  // where in the sequence each begins
+  std::array<int, most_chunks> colour_ = {};   // of each
   int colours_ = 0;
   // In the order of elimination: where the chunks begin, and which of them is the first of each colour.
   std::array<int, most_chunks + 1> chunk_start_ = {}, colour_start_ = {};

@@ -5,17 +5,13 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "solver/matrix/locality_order.h"
+
 namespace drape {
 namespace {
 
-// The neighbours of every particle: sorted, each once, without the particle itself.
-struct Graph {
-  std::vector<int> start, neighbour;
-  int degree(int i) const { return start[i + 1] - start[i]; }
-};
-
-Graph make_graph(int particles, const std::vector<ParticlePair>& pairs) {
-  Graph g;
+internal::Graph make_graph(int particles, const std::vector<ParticlePair>& pairs) {
+  internal::Graph g;
   g.start.assign(static_cast<std::size_t>(particles) + 1, 0);
   for (const ParticlePair& p : pairs) {
     ++g.start[p.i + 1];
@@ -43,55 +39,13 @@ Graph make_graph(int particles, const std::vector<ParticlePair>& pairs) {
   return g;
 }
 
-// Searches breadth first from `root` and appends what it reaches to `order`, neighbours by rising degree,
-// then by number.
-void breadth_first(const Graph& g, int root, std::vector<char>& seen, std::vector<int>& order) {
-  std::size_t head = order.size();
-  order.push_back(root);
-  seen[root] = 1;
-  while (head < order.size()) {
-    const int i = order[head++];
-    const std::size_t first = order.size();
-    for (int k = g.start[i]; k < g.start[i + 1]; ++k) {
-      const int j = g.neighbour[k];
-      if (seen[j]) continue;
-      seen[j] = 1;
-      order.push_back(j);
-    }
-    std::sort(order.begin() + static_cast<std::ptrdiff_t>(first), order.end(),
-              [&](int a, int b) { return g.degree(a) != g.degree(b) ? g.degree(a) < g.degree(b) : a < b; });
-  }
-}
-
-// Reverse Cuthill-McKee order. Each connected piece starts from one of its ends: the last vertex of two
-// searches.
-std::vector<int> locality_order(const Graph& g) {
-  const auto n = g.start.size() - 1;
-  std::vector<int> order, trial;
-  std::vector<char> seen(n, 0), scratch(n, 0);
-  order.reserve(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    if (seen[i]) continue;
-    int root = static_cast<int>(i);
-    for (int round = 0; round < 2; ++round) {
-      trial.clear();
-      breadth_first(g, root, scratch, trial);
-      for (int t : trial) scratch[t] = 0;
-      root = trial.back();
-    }
-    breadth_first(g, root, seen, order);
-  }
-  std::reverse(order.begin(), order.end());
-  return order;
-}
-
 }  // namespace
 
 BlockPattern::BlockPattern(int particles, std::vector<ParticlePair> pairs) {
   serial_ = next_pattern_serial();
-  const Graph g = make_graph(particles, pairs);
+  const internal::Graph g = make_graph(particles, pairs);
   pairs = {};
-  particle_of_ = locality_order(g);
+  internal::LocalityOrder().find(g, particle_of_);
   row_of_.resize(particle_of_.size());
   for (std::size_t r = 0; r < particle_of_.size(); ++r) row_of_[particle_of_[r]] = static_cast<int>(r);
 
@@ -108,7 +62,7 @@ BlockPattern::BlockPattern(int particles, std::vector<ParticlePair> pairs) {
     row_start_[r + 1] = static_cast<int>(column_.size());
     bandwidth_ = std::max(bandwidth_, column_.back() - row);
   }
-  chunk_rows_ = std::max(bandwidth_, 256);
+  chunk_rows_ = std::max(bandwidth_, shortest_chunk);
 }
 
 int BlockPattern::find(int row, int column) const {

@@ -20,6 +20,8 @@ struct ParticlePair {
 
 class BlockPattern {
  public:
+  static constexpr int shortest_chunk = 256;  // rows
+
   // particles: how many; pairs: which particles act on each other (any order, repeats allowed).
   BlockPattern(int particles, std::vector<ParticlePair> pairs);
 
