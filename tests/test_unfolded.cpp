@@ -13,6 +13,7 @@
 
 #include "mesh/distance/approach.h"
 #include "tests/sheets.h"
+#include "tests/tables.h"
 
 using namespace drape;
 using namespace drape::internal;
@@ -294,6 +295,29 @@ TEST_CASE("a sheet that is bent a little is told to be unfolded everywhere", "[a
       CHECK(told > 0.98 * regions);
       CHECK(regions > 0.9 * n * n);  // there is none at a border that is not straight
     }
+}
+
+TEST_CASE("regions of unfolded cloth are the same on any number of threads", "[approach]") {
+  const ThreadsRestored restored;
+  for (const Kind kind : kinds) {
+    const TriangleMesh saddle = bent(32, kind, 32 * edge, [](double x, double z) { return x * x - z * z; });
+    const Bend bend{.angle = 0.4, .radius = 3 * edge};
+    std::vector<bool> first;
+    for (const int t : {1, 2, 7}) {
+      INFO("mesh " << static_cast<int>(kind) << ", " << t << " threads");
+      set_threads(t);
+      Patched cloth(saddle);
+      std::mt19937 random(3);
+      const std::vector<Vec3> at = bend.of(cloth.places, Eigen::Quaterniond::Identity(), 0, random);
+      cloth.unfolded->look(at, at, 0.15 * edge);
+      std::vector<bool> told;
+      cloth.each_region([&](int region, const auto&) { told.push_back(cloth.unfolded->is_apart(region)); });
+      if (t == 1) first = told;
+      CHECK(told == first);
+      CHECK(std::count(told.begin(), told.end(), true) > 100);
+      CHECK(std::count(told.begin(), told.end(), false) > 100);
+    }
+  }
 }
 
 TEST_CASE("what looks in a row tell stays apart", "[approach]") {
