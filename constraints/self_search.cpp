@@ -293,7 +293,7 @@ void SelfContacts::find_contacts(const StepMotion& step) {
   find_contacts_of_edges(step, thickest);
 }
 
-// Moves each contact once: they are large.
+// Moves each contact once: they are large. Pointers to contacts are no longer good then.
 void SelfContacts::sort_touching() {
   std::swap(touching_, unsorted_);
   sorted_.resize(unsorted_.size());

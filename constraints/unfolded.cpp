@@ -57,8 +57,8 @@ double largest_square(double p, double q, double product) {
 
 }  // namespace
 
-// Finds the regions about the triangles of a vertex, and of two patches. Each is found by itself, on any
-// thread.
+// Finds the regions: about the triangles of each vertex, and of every two patches that have a vertex in
+// common, or of one. Each is found by itself, on any thread.
 class Unfolded::Builder {
  public:
   Builder(Unfolded& unfolded, const std::vector<Face>& faces, const MovingBoxes& boxes,
@@ -68,7 +68,7 @@ class Unfolded::Builder {
         places_(places),
         patch_of_(faces.size()),
         of_patch_(boxes.patches().size()),
-        of_vertex_(places.size()) {
+        around_(places.size()) {
     for (std::size_t p = 0; p < of_patch_.size(); ++p) {
       const MovingBoxes::Patch& patch = boxes.patches()[p];
       for (int k = patch.first; k < patch.first + patch.count; ++k) {
@@ -78,21 +78,24 @@ class Unfolded::Builder {
     }
     for (int f = 0; f < static_cast<int>(faces.size()); ++f)
       for (int v : faces[f].v)
-        if (of_vertex_[v].empty() || of_vertex_[v].back() != f) of_vertex_[v].push_back(f);
+        if (around_[v].empty() || around_[v].back() != f) around_[v].push_back(f);
   }
 
   void build() {
     find_pairs();
-    const int vertices = static_cast<int>(of_vertex_.size());
+    const int vertices = static_cast<int>(around_.size());
     const int count = vertices + static_cast<int>(unfolded_.pairs_.size());
     candidates_.resize(count);
-    // Each part goes through numbers of all faces and vertices of its own, so there are few.
+    // Each part has a ShadowHull, with marks for all faces and vertices. So there are few parts.
     constexpr int parts = 32;
     const auto first_of = [&](int part) { return static_cast<int>(std::int64_t{count} * part / parts); };
     parallel_for(parts, count < serial_below(Work::heavy), [&](int part) {
       ShadowHull hull(faces_, places_);
       for (int k = first_of(part); k < first_of(part + 1); ++k)
-        look(k < vertices ? of_vertex_[k] : faces_of(unfolded_.pairs_[k - vertices]), hull, candidates_[k]);
+        if (k < vertices)
+          look(around_[k], hull, candidates_[k]);
+        else
+          look(faces_of(unfolded_.pairs_[k - vertices]), hull, candidates_[k]);
     });
     number_sets();
     for (int k = 0; k < count; ++k)
@@ -101,8 +104,8 @@ class Unfolded::Builder {
 
  private:
   struct Candidate {
-    std::vector<int> by,
-        all;  // the patches that it is about, and those that lie over the hull of their shadow; none: it is no region
+    std::vector<int> by;   // the patches that it is about
+    std::vector<int> all;  // those over the hull of their shadow; none: it is no region
     Vec3 normal;
     double slope, height;
     int set;
@@ -111,7 +114,7 @@ class Unfolded::Builder {
   void find_pairs() {
     std::vector<std::pair<int, int>>& pairs = unfolded_.pairs_;
     std::vector<int> here;
-    for (const std::vector<int>& faces : of_vertex_) {
+    for (const std::vector<int>& faces : around_) {
       patches_of(faces, here);
       for (std::size_t k = 0; k < here.size(); ++k)
         for (std::size_t l = k; l < here.size(); ++l) pairs.emplace_back(here[k], here[l]);
@@ -179,7 +182,7 @@ class Unfolded::Builder {
   const std::vector<Face>& faces_;
   const std::vector<Vec3>& places_;
   std::vector<int> patch_of_;
-  std::vector<std::vector<int>> of_patch_, of_vertex_;  // faces
+  std::vector<std::vector<int>> of_patch_, around_;  // faces: of each patch, and around each vertex
   std::vector<Candidate> candidates_;
 };
 

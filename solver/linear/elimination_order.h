@@ -3,9 +3,10 @@
 //   Rows are cut into at most eight chunks, and these get two colours, so that no block couples two chunks
 // of one colour: these are eliminated at the same time. Rows come in the order of their chunks' colours.
 // Chunks of the rows as the matrix has them, at least as long as the bandwidth of the base, couple to the
-// next one only, unless far parts of the cloth touch each other. Then rows are put in an order in which what
-// touches stands near, too [Cuthill & McKee 1969], and cut into chunks as long as its bandwidth. Within a
-// chunk they come as in the matrix, layer by layer, which takes fewer iterations.
+// next one only, unless far parts of the cloth touch each other. Where these need a third colour, rows are
+// put in an order in which what touches stands near, too [Cuthill & McKee 1969], and cut into chunks at
+// least as long as its bandwidth. Within a chunk they come as in the matrix, layer by layer, which takes
+// fewer iterations.
 //   (Every cut costs iterations: a hung sheet of 10 k vertices took 120 with one chunk, 125 with 8, 153 with
 // 40.)
 #pragma once
@@ -77,7 +78,7 @@ class EliminationOrder {
   void list_blocks(const BlockMatrix& A);
   void list_updates();
 
-  Graph graph_;  // scratch
+  Graph graph_;  // scratch: what base and overlay couple
   LocalityOrder locality_;
   std::vector<int> sequence_;  // the rows of the matrix, to be cut into chunks
   int chunks_ = 0;
