@@ -1,4 +1,5 @@
 // Cloth against cloth: nothing passes through anything, layers carry and rub.
+#include <numbers>
 #include <random>
 
 #include "constraints/self_contact.h"
@@ -166,6 +167,45 @@ Layers pile_of(int layers, int n, double apart, double above, bool cuts = true) 
 }
 
 }  // namespace
+
+TEST_CASE("cloth twice as thick as its edges are long feels nothing flat, and parts where it is folded",
+          "[self-contact]") {
+  constexpr double edge = 0.01, thick = 2 * edge, gap = 1.2 * edge;
+  for (const Kind kind : kinds) {
+    INFO("mesh " << static_cast<int>(kind));
+    Layers cloth({sheet(13, 12 * edge, {0, 0, 0}, kind)}, {0, 0, 0}, 0.3, ClothModel::noh_jung, thick);
+    cloth.use("implicit-euler", "auto", usual());
+    const VecX flat = cloth.state.x;
+    for (int k = 0; k < 5; ++k) REQUIRE(cloth.advance(0.01).done);
+    CHECK((cloth.state.x - flat).lpNorm<Eigen::Infinity>() < 1e-9);
+
+    std::vector<int> above, below;  // what lies far from the fold
+    double middle = 0;
+    for (int i = 0; i < cloth.state.particles(); ++i) middle += flat[3 * i] / cloth.state.particles();
+    for (int i = 0; i < cloth.state.particles(); ++i) {
+      const double s = flat[3 * i] - middle, half = std::numbers::pi * gap / 4;  // of the arc
+      const double angle = std::clamp(s / half, -1.0, 1.0) * std::numbers::pi / 2;
+      cloth.state.x[3 * i] = gap / 2 * std::cos(angle) - std::max(0.0, std::abs(s) - half);
+      cloth.state.x[3 * i + 1] = gap / 2 * std::sin(angle);
+      if (std::abs(s) > 4 * edge) (s > 0 ? above : below).push_back(i);
+    }
+    const auto height = [&](const std::vector<int>& of) {
+      double sum = 0;
+      for (int i : of) sum += cloth.state.x[3 * i + 1];
+      return sum / static_cast<double>(of.size());
+    };
+    REQUIRE(height(above) - height(below) == Approx(gap));
+    int most = 0;
+    for (int k = 0; k < 60; ++k) {
+      const StepReport report = cloth.advance(0.01);
+      REQUIRE(report.done);
+      most = std::max(most, report.self_contacts);
+    }
+    CHECK(most > 10);
+    CHECK(height(above) - height(below) > 0.95 * thick);
+    CHECK(cloth.crossings() == 0);
+  }
+}
 
 TEST_CASE("layers come to rest in steps of any length, whose rims lie across each other", "[self-contact]") {
   for (const std::string name : {"implicit-euler", "pbd"})
