@@ -38,6 +38,7 @@ void Encounters::set(const std::vector<Triangle>& triangles, const std::vector<s
   std::vector<std::vector<int>> around(particles), next(particles);
   double length = 0;
   int edges = 0;  // of cloth
+  // An edge belongs to its first face.
   FaceSide last = {-1, -1, -1, -1};
   for (const FaceSide& side : sorted_sides(faces_)) {
     const bool is_first = side.low != last.low || side.high != last.high;

@@ -6,8 +6,8 @@
 //     d . R^T (x(Y) - x(X)) = int d . R^T F t dp,   so that   |x(Y) - x(X)| >= (1 - e) p
 // with e the largest of 1 - d . R^T F t in the region. Where e < 1 the region cannot meet itself.
 //   F is linear in the places of the corners, and so is d . R^T F t: what bounds e at both ends of a straight
-// motion bounds it all the way. R is how the region had turned at the start, in the
-// mean, when e was found.
+// motion bounds it all the way. R is how the region had turned at the start, in the mean,
+// when e was found.
 //   For a vertex and a triangle, or two edges, without a vertex in common p is at least the least height of
 // the triangles' shadows: the straight way from a vertex leaves the triangle that it begins in over the edge
 // across from it, and two edges that do not cross are nearest at an end of one. (That maps of convex regions

@@ -58,6 +58,16 @@ struct Layers : Assembly {
     for (int i = 0; i < state.particles(); ++i) sum += system->masses()[i] * state.v.segment<3>(3 * i);
     return sum;
   }
+  // Takes steps of 10 ms; the most pairs that push in any of them.
+  int most_contacts(int steps) {
+    int most = 0;
+    for (int k = 0; k < steps; ++k) {
+      const StepReport report = advance(0.01);
+      REQUIRE(report.done);
+      most = std::max(most, report.self_contacts);
+    }
+    return most;
+  }
   double speed() const {
     double most = 0;
     for (int i = 0; i < state.particles(); ++i) most = std::max(most, state.v.segment<3>(3 * i).norm());
@@ -195,13 +205,7 @@ TEST_CASE("cloth twice as thick as its edges are long feels nothing flat, and pa
       return sum / static_cast<double>(of.size());
     };
     REQUIRE(height(above) - height(below) == Approx(gap));
-    int most = 0;
-    for (int k = 0; k < 60; ++k) {
-      const StepReport report = cloth.advance(0.01);
-      REQUIRE(report.done);
-      most = std::max(most, report.self_contacts);
-    }
-    CHECK(most > 10);
+    CHECK(cloth.most_contacts(60) > 10);
     CHECK(height(above) - height(below) > 0.95 * thick);
     CHECK(cloth.crossings() == 0);
   }
@@ -448,13 +452,7 @@ TEST_CASE("a strip folds up without passing through itself, by the same bits on 
     set_threads(count);
     Layers strip = folding(160);  // 640 particles: some loops are shared by threads, some are not
     strip.use("implicit-euler", "auto", usual());
-    int met = 0;
-    for (int k = 0; k < 45; ++k) {
-      const StepReport report = strip.advance(0.01);
-      REQUIRE(report.done);
-      met = std::max(met, report.self_contacts);
-    }
-    CHECK(met > 10);
+    CHECK(strip.most_contacts(45) > 10);
     CHECK(strip.crossings() == 0);
     CHECK(strip.crossings(true) == 0);
     if (count == 1) first = strip.state.x;

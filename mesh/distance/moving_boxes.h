@@ -33,8 +33,8 @@ class MovingBoxes {
 
   // The same in two parts, where pairs_of_patches() is asked for few patches: first the boxes about patches,
   // which is enough for near_patches(), and then those within each patch that is asked for. `vertices` lists
-  // those of patch p from place from[p] to from[p + 1]. Several threads may call refit_within(), each for other
-  // patches. What searches all of the tree, near() and along(), needs refit().
+  // those of patch p from place from[p] to from[p + 1]. Several threads may call refit_within(), each for
+  // other patches. What searches all of the tree, near() and along(), needs refit().
   void refit_patches(const std::vector<int>& from, const std::vector<int>& vertices,
                      const std::vector<Vec3>& start, const std::vector<Vec3>& end);
   void refit_within(int patch, const std::vector<Face>& faces, const std::vector<Vec3>& start,

@@ -33,7 +33,8 @@ struct FaceSide {
 // All sides, by their vertices, and those of one edge by their faces.
 std::vector<FaceSide> sorted_sides(const std::vector<Face>& faces);
 
-// Fills `across` of every face. Returns true when every edge has exactly two faces.
+// Fills `across` of every face, whichever way the two are wound. Returns true when every edge has exactly two
+// faces.
 bool join(std::vector<Face>& faces);
 
 // Throws InputError when no triangle has an area.
