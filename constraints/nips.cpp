@@ -52,6 +52,14 @@ Squeeze squeeze(const MovingBody& a, const MovingBody& b, const MovingBody* lead
           -at_a.normal.dot(at_b.normal) >= std::cos(std::clamp(held, nearly_opposite, widest_held))};
 }
 
+// How fast what begins to be clamped goes to the middle between both sides, beside their own way [m/s].
+Vec3 to_middle(const ContactPlane& a, const ContactPlane& b, double h, double recovery_speed) {
+  const Vec3 out_of_a = (a.normal - b.normal).normalized();
+  const double most = std::max(recovery_speed, (a.body_velocity - b.body_velocity).norm());
+  const double speed = (b.gap - a.gap) / (2 * h * out_of_a.dot(a.normal));
+  return std::clamp(speed, -most, most) * out_of_a;
+}
+
 // Where the bodies are nearest to each other beside a particle that they pinch: what lies between them is a
 // layer there, and a ball that rolls on it does not climb over each of its particles. Steps from one surface
 // to the other and back come nearer to that place by a constant share, so two of them tell where they lead
@@ -178,19 +186,47 @@ void ParticleContacts::clamp_between(const Bodies& bodies, const StepMotion& ste
                                ? gap_a + gap_b < -closed
                                : std::max(gap_a, gap_b) < (clamped ? -closed : -share_of_touch * least);
       if (!no_room) continue;
-      const bool in_a = gap_a < gap_b;
       contact = {
           .particle = particle, .planes = 1, .known = 1, .plane = {}, .clamped = true, .leader = leader};
-      contact.plane[0] =
-          in_a ? ContactPlane{a, at_a.normal, gap_a, way} : ContactPlane{b, at_b.normal, gap_b, way};
-      if (!clamped) {  // it begins in the middle
-        const Vec3 out_of_a = (at_a.normal - at_b.normal).normalized();
-        const double most = std::max(recovery_speed_, (bodies[a].velocity(x) - bodies[b].velocity(x)).norm());
-        const double speed = (gap_b - gap_a) / (2 * step.h * out_of_a.dot(at_a.normal));
-        contact.plane[0].body_velocity += std::clamp(speed, -most, most) * out_of_a;
-      }
+      const ContactPlane of_a{a, at_a.normal, gap_a, bodies[a].velocity(x)};
+      const ContactPlane of_b{b, at_b.normal, gap_b, bodies[b].velocity(x)};
+      contact.plane[0] = gap_a < gap_b ? of_a : of_b;
+      contact.plane[0].body_velocity = way;
+      if (!clamped) contact.plane[0].body_velocity += to_middle(of_a, of_b, step.h, recovery_speed_);
       return;
     }
+  }
+}
+
+// Where the particle is in a fold of the body, such as an armpit, its plane is that of the nearer side alone. Makes
+// the contact a clamp where both sides close on the particle, or have closed on it: the plane would push it into the
+// other side, and be that one's in the next step. Else the plane of the other side is one that was let go, so that
+// it holds the particle where a solve takes it there.
+void ParticleContacts::look_into_fold(const MovingBody& body, const StepMotion& step,
+                                      const ContactPlane& near, const SurfacePoint& start,
+                                      const Contact* before, Contact& contact) const {
+  const int particle = contact.particle;
+  const double radius = step.radius_of(particle), offset = body.obstacle().margin + radius;
+  const bool clamped = before && before->clamped;
+  if (start.distance < radius && (!before || before->comes_out)) return;  // it comes out first
+  const auto far = body.opposite(step.place(particle), offset);
+  if (!far) return;
+  const Vec3 v_near = near.body_velocity, v_far = far->body_velocity, way = 0.5 * (v_near + v_far);
+  const bool closes = (v_near - v_far).dot(near.normal - far->normal) > still;
+  const bool holds = -near.normal.dot(far->normal) >= std::cos(widest_held);
+  const auto with_both = [&](const ContactPlane& plane) {  // its gap at a particle that goes that way
+    ContactPlane passed = plane;
+    passed.gap += step.h * (way - plane.body_velocity).dot(plane.normal);
+    return passed;
+  };
+  const ContactPlane a = with_both(near), b = with_both(*far);
+  if (clamped ? std::max(a.gap, b.gap) < -closed : closes && holds && a.gap + b.gap < -closed) {
+    contact = {.particle = particle, .planes = 1, .known = 1, .plane = {}, .clamped = true};
+    contact.plane[0] = a;
+    contact.plane[0].body_velocity = way;
+    if (!clamped) contact.plane[0].body_velocity += to_middle(a, b, step.h, recovery_speed_);
+  } else if (step.foresight == Foresight::ahead && contact.known < 3) {
+    contact.plane[static_cast<std::size_t>(contact.known++)] = *far;
   }
 }
 

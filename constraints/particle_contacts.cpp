@@ -152,9 +152,9 @@ void ParticleContacts::look_for(int particle, const Bodies& bodies, const StepMo
       continue;
     }
     const bool touched = knows(before, o) || (nip && o == nip->holder);
-    if (!contact.clamped) look_at(body, step, touched, contact, deepest);
+    if (!contact.clamped) look_at(body, step, touched, before, contact, deepest);
   }
-  if (nip && !contact.active()) look_at(bodies[nip->other()], step, true, contact, deepest);
+  if (nip && !contact.active()) look_at(bodies[nip->other()], step, true, before, contact, deepest);
   if (!contact.active()) return;
   if (!contact.clamped) {
     const double touch = touching_range(bodies[contact.plane[0].obstacle].obstacle().margin);
@@ -168,8 +168,8 @@ void ParticleContacts::look_for(int particle, const Bodies& bodies, const StepMo
 }
 
 // Adds to the contact the plane in which its particle touches the body.
-void ParticleContacts::look_at(const MovingBody& body, const StepMotion& step, bool touched, Contact& contact,
-                               double& deepest) {
+void ParticleContacts::look_at(const MovingBody& body, const StepMotion& step, bool touched,
+                               const Contact* before, Contact& contact, double& deepest) {
   const int particle = contact.particle;
   const Vec3 x = step.place(particle), v = step.velocity(particle);
   const double radius = step.radius_of(particle), margin = body.obstacle().margin, offset = margin + radius;
@@ -190,6 +190,7 @@ void ParticleContacts::look_at(const MovingBody& body, const StepMotion& step, b
   if (touched ? plane.gap < touching_range(margin)
               : plane.gap < inside && plane.gap + body.approach(x, x_new, plane) < inside) {
     add_deepest(contact, plane);
+    look_into_fold(body, step, plane, start, before, contact);
   } else if (plane.gap < travel) {
     if (const auto met = body.meeting(x, x_new, radius)) add_deepest(contact, *met);
   }

@@ -37,6 +37,7 @@ struct ContactReport {
   double deepest = 0;       // how deep the deepest particle was inside a body when the step began [m]
   int self_contacts = 0;    // pairs of cloth and cloth that push each other
   int self_guarded = 0;     // particles that were pushed or stopped so that no cloth passes through cloth
+  int self_held = 0;        // of these, particles that were pushed, and not stopped
   int stood_still = 0;      // particles of pieces that the guard left where they began
   int tangled = 0;          // particles where cloth passes through cloth
   int pinched = 0;          // particles that a body could not be kept off, or that bodies hold between them
@@ -128,8 +129,8 @@ class ParticleContacts {
  private:
   void look_for(int particle, const Bodies& bodies, const StepMotion& step, std::vector<Contact>& found,
                 double& deepest);
-  void look_at(const MovingBody& body, const StepMotion& step, bool touched, Contact& contact,
-               double& deepest);
+  void look_at(const MovingBody& body, const StepMotion& step, bool touched, const Contact* before,
+               Contact& contact, double& deepest);
   void look_along(int particle, const Bodies& bodies, const StepMotion& step, const Contact* known,
                   const Vec3& x_new, std::vector<Contact>& found);
   void take_found(double h);
@@ -144,6 +145,8 @@ class ParticleContacts {
   int leader_of(const Bodies& bodies, int a, int b, const Contact* before) const;
   void clamp_between(const Bodies& bodies, const StepMotion& step, const Contact* before,
                      Contact& contact) const;
+  void look_into_fold(const MovingBody& body, const StepMotion& step, const ContactPlane& near,
+                      const SurfacePoint& start, const Contact* before, Contact& contact) const;
   void rub_in_nips(const Bodies& bodies, const StepMotion& step);
   // What presses the particle against each plane, with what the bodies press where it is in a nip; and the
   // sum of it [N s].
