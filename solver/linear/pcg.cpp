@@ -40,9 +40,15 @@ class Pcg final : public LinearSolver {
       else
         dv += z_;
       r_ -= multiple * q_;
-      if (reference != 0) iterate(A, prefiltered_ ? right_ : b, filter, options, reference, dv, report);
+      const bool known =
+          reference != 0 && iterate(A, prefiltered_ ? right_ : b, filter, options, reference, dv, report);
       if (prefiltered_) dv += z_;
-      conclude(A, b, filter, options, reference, dv, report);
+      filter.impose(dv);  // meets the constraints to the last bit
+      if (!known) {
+        if (reference == 0) dv = z_;  // no impulse acts, so there is nothing to do
+        residual(A, b, filter, dv, r_);
+      }
+      conclude(options, reference, report);
     }
     return report;
   }
@@ -58,8 +64,9 @@ class Pcg final : public LinearSolver {
     if (!preconditioner_->prepare(A, filter, report)) report.reason = StopReason::indefinite;
   }
 
-  // Solves S (right - A x) = 0 in the free directions, starting from x, where r is the residual.
-  void iterate(const BlockMatrix& A, const VecX& right, const Filter& filter, const LinearOptions& options,
+  // Solves S (right - A x) = 0 in the free directions, starting from x, where r is the residual. Returns whether
+  // r is the residual of x in the end, too, computed anew.
+  bool iterate(const BlockMatrix& A, const VecX& right, const Filter& filter, const LinearOptions& options,
                double reference, VecX& x, LinearReport& report) {
     const int rows = A.rows(), limit = iteration_limit(options, rows);
     const double target = options.tolerance * reference;
@@ -74,7 +81,9 @@ class Pcg final : public LinearSolver {
     bool quick = options.tolerance >= 1e-7;
     double rr_ready = rr;  // rr when the preconditioner was made ready
     const auto decades = [&] { return rr > 0 && rr_ready > 0 ? 0.5 * std::log10(rr_ready / rr) : 0; };
+    bool known = false;
     while (report.reason == StopReason::converged) {
+      known = false;
       d_.setZero();
       q_.setZero();
       double rho = 1;
@@ -114,6 +123,7 @@ class Pcg final : public LinearSolver {
       // from the true one.
       residual(A, right, filter, x, r_);
       rr = dot(r_, r_);
+      known = true;
       if (rr <= 1.02 * target * target || report.iterations >= limit) break;
       if (preconditioner_->outdated(since_ready, decades())) {
         preconditioner_->learn(since_ready, decades());
@@ -130,6 +140,7 @@ class Pcg final : public LinearSolver {
       preconditioner_->learn(since_ready, decades());
     else
       preconditioner_->forget();
+    return known;
   }
 
   // d <- s + beta d,  q <- S A d, by A s where it is known. Returns d.q.
@@ -175,11 +186,7 @@ class Pcg final : public LinearSolver {
     });
   }
 
-  void conclude(const BlockMatrix& A, const VecX& b, const Filter& filter, const LinearOptions& options,
-                double reference, VecX& dv, LinearReport& report) {
-    if (reference == 0) dv.setZero();  // no impulse acts, so there is nothing to do
-    filter.impose(dv);                 // meets the constraints to the last bit
-    residual(A, b, filter, dv, r_);
+  void conclude(const LinearOptions& options, double reference, LinearReport& report) {
     report.residual_impulse = std::sqrt(dot(r_, r_));
     report.residual = reference == 0 ? 0 : report.residual_impulse / reference;
     if (!std::isfinite(report.residual_impulse)) report.reason = StopReason::not_finite;
