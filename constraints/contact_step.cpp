@@ -160,17 +160,18 @@ ContactReport ContactStep::finish(VecX& x_new, VecX& v_new) {
   if (!meets_anything()) return report;
   StepMotion& step = constraints_->step_;
   if (bodies()) constraints_->contacts_.guard(constraints_->bodies_, step, x_new, v_new, report);
-  report.self_guarded = constraints_->self_.guard(constraints_->bodies_, constraints_->contacts_.touching(),
-                                                  true, x_new, v_new);
-  report.stood_still = constraints_->self_.stood_still();
+  const auto guard_cloth = [&](bool in_common) {
+    const GuardReport of_cloth = constraints_->self_.guard(
+        constraints_->bodies_, constraints_->contacts_.touching(), in_common, x_new, v_new);
+    report.self_guarded += of_cloth.guarded;
+    report.self_held += of_cloth.held;
+    report.stood_still = std::max(report.stood_still, of_cloth.stood_still);
+  };
+  guard_cloth(true);
   if (bodies() && (report.self_guarded > 0 || constraints_->self_.crossing())) {
     const int before = report.guarded;
     constraints_->contacts_.guard(constraints_->bodies_, step, x_new, v_new, report);
-    if (report.guarded > before) {  // a common way led into a body
-      report.self_guarded += constraints_->self_.guard(
-          constraints_->bodies_, constraints_->contacts_.touching(), false, x_new, v_new);
-      report.stood_still = std::max(report.stood_still, constraints_->self_.stood_still());
-    }
+    if (report.guarded > before) guard_cloth(false);  // a common way led into a body
   }
   constraints_->self_.end_step(x_new);
   report.self_contacts = constraints_->self_.pushing();

@@ -174,6 +174,13 @@ struct SelfContact {
   }
 };
 
+// What the guard did to the particles of cloth.
+struct GuardReport {
+  int guarded = 0;      // were pushed or stopped
+  int held = 0;         // of these, were pushed only, and kept the rest of their way
+  int stood_still = 0;  // stayed where they began, with all of their piece, since nothing else kept it apart
+};
+
 class SelfContacts {
  public:
   SelfContacts();
@@ -224,11 +231,11 @@ class SelfContacts {
   // Adds the pairs that would meet on the way to x_new and are no contacts yet, and makes those stiffer that
   // are; true when there are any.
   bool meet(const VecX& x_new);
-  // Changes the ways to x_new so that nothing meets; returns how many particles it pushed or stopped.
+  // Changes the ways to x_new so that nothing meets.
   // on_bodies: the contacts with bodies. in_common: whether what is stopped goes on by a common way, which
   // may lead into a body; without it, everything stays on its own way.
-  int guard(const std::vector<MovingBody>& bodies, const std::vector<Contact>& on_bodies, bool in_common,
-            VecX& x_new, VecX& v_new);
+  GuardReport guard(const std::vector<MovingBody>& bodies, const std::vector<Contact>& on_bodies,
+                    bool in_common, VecX& x_new, VecX& v_new);
   void end_step(const VecX& x_new);
 
   void look_again() { look_again_ = true; }  // the particles were moved from outside
@@ -240,9 +247,6 @@ class SelfContacts {
   int pushing() const { return pushing_; }  // how many of them pushed at its end
   // Whether the guard of the last step pushed or stopped the particle.
   bool is_stopped(int particle) const { return any() && !stopped_.empty() && stopped_[particle] != 0; }
-  // How many particles the last guard left where they began, with all of their piece, since nothing else kept
-  // it apart.
-  int stood_still() const { return stood_still_; }
   // Whether the cloth passed through itself when the step began.
   bool crossing() const;
   int tangled() const;  // particles near triangles that pass through each other at the end of the last step
@@ -266,7 +270,7 @@ class SelfContacts {
   bool let_bodies_yield(const std::vector<internal::Meeting>& failing);
   void stop_tangles(const std::vector<int>& tangles);
   void find_relief(const StepMotion& step, const std::vector<Contact>& on_bodies);
-  int go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX& v_new);
+  GuardReport go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX& v_new);
   void shorten(const StepMotion& step, const VecX& x_new, bool in_common);
   void let_pieces_stand(const StepMotion& step);
   bool pieces_part(const StepMotion& step, std::vector<char>& stands);

@@ -354,30 +354,32 @@ bool SelfContacts::stand_still(const StepMotion& step, const std::vector<char>& 
 }
 
 // Takes the particles to ahead_, and changes their velocity by what changes of their way; relief is none of
-// it. Returns how many particles it changes. The second guard of a step finds the relief of the first one in
-// x_new.
-int SelfContacts::go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX& v_new) {
-  int stopped = 0;
+// it. The second guard of a step finds the relief of the first one in x_new.
+GuardReport SelfContacts::go_ahead(const StepMotion& step, bool first, VecX& x_new, VecX& v_new) {
+  GuardReport report;
+  report.stood_still = stood_still_;
   if (first) given_.setZero(x_new.size());
   for (std::size_t i = 0; i < static_cast<std::size_t>(cloth_particles()); ++i) {
     const auto k = 3 * static_cast<Eigen::Index>(i);
     const Vec3 relief = way_[i] * relief_.segment<3>(k);
-    if (way_[i] < 1 || still_[i] != 0 || !push_.segment<3>(k).isZero(0)) {
+    const bool stopped = way_[i] < 1 || still_[i] != 0;
+    if (stopped || !push_.segment<3>(k).isZero(0)) {
       const Vec3 kept = x_new.segment<3>(k) - (still_[i] != 0 ? 1 : 1 - way_[i]) * given_.segment<3>(k);
       v_new.segment<3>(k) -= (kept + relief - ahead_.segment<3>(k)) / step.h;
-      ++stopped;
+      ++report.guarded;
+      report.held += !stopped;
       stopped_[i] = 1;
     }
     if (first) given_.segment<3>(k) = relief;
     x_new.segment<3>(k) = ahead_.segment<3>(k);
   }
-  return stopped;
+  return report;
 }
 
-int SelfContacts::guard(const std::vector<MovingBody>& bodies, const std::vector<Contact>& on_bodies,
-                        bool in_common, VecX& x_new, VecX& v_new) {
+GuardReport SelfContacts::guard(const std::vector<MovingBody>& bodies, const std::vector<Contact>& on_bodies,
+                                bool in_common, VecX& x_new, VecX& v_new) {
   stood_still_ = 0;
-  if (!any() || (is_proven_ && !crossing() && x_new == proven_) || !x_new.allFinite()) return 0;
+  if (!any() || (is_proven_ && !crossing() && x_new == proven_) || !x_new.allFinite()) return {};
   const StepMotion& step = surfaces_->step();
   bodies_ = &bodies;
   hold_.assign(way_.size(), Held::no);

@@ -110,7 +110,7 @@ TEST_CASE("whatever particles are told to do, no cloth passes through cloth", "[
       VecX v_new = step.v;
       contacts.begin_step(step, {}, 1e-3, SelfSprings{});
       const VecX asked = x_new;
-      stopped += contacts.guard({}, {}, true, x_new, v_new);
+      stopped += contacts.guard({}, {}, true, x_new, v_new).guarded;
       contacts.end_step(x_new);
       INFO("round " << round << ", step " << k << ", size " << size);
       REQUIRE(crossings(mesh, x_new, false) == 0);

@@ -112,7 +112,7 @@ TEST_CASE("a million motions: no cloth passes through cloth", "[.][soak]") {
       step.v = (x_new - step.x) / step.h;
       VecX v_new = step.v;
       contacts.begin_step(step, {}, 1e-3, SelfSprings{});
-      stopped += contacts.guard({}, {}, true, x_new, v_new) > 0;
+      stopped += contacts.guard({}, {}, true, x_new, v_new).guarded > 0;
       contacts.end_step(x_new);
       INFO("case " << cases << ", motion " << size << " m");
       REQUIRE(crossings(mesh, x_new, false) == 0);

@@ -64,6 +64,8 @@ void add_reports_of_steps(py::module_& m) {
                     "pairs of cloth and cloth that push each other")
       .def_readonly("self_guarded", &StepReport::self_guarded,
                     "particles that were pushed or stopped so that no cloth passes through cloth")
+      .def_readonly("self_held", &StepReport::self_held,
+                    "of these, particles that were pushed aside only, and kept the rest of their way")
       .def_readonly("stood_still", &StepReport::stood_still,
                     "particles of pieces that were left where they began, since nothing else kept cloth from "
                     "passing through cloth")

@@ -148,6 +148,7 @@ std::string run_json(const RunRecord& record) {
       {"contact_residual", record.contact_residual},
       {"self_contacts", Json::Members{{"end", record.self_contacts}, {"max", record.self_contacts_max}}},
       {"self_guarded", record.self_guarded},
+      {"self_held", record.self_held},
       {"torn", Json::Members{{"edges", record.torn},
                              {"first_time", record.first_torn ? Json(*record.first_torn) : Json()}}},
       {"pinched", Json::Members{{"end", record.pinched}, {"max", record.pinched_max}}},

@@ -104,6 +104,7 @@ struct RunRecord {
   double contact_residual = 0;                   // the largest of the whole run
   int self_contacts = 0, self_contacts_max = 0;  // pairs of cloth and cloth that push, at the end and at most
   long self_guarded = 0;                         // how often a particle was pushed or stopped
+  long self_held = 0;                            // how often it was pushed, and not stopped
   int pinched = 0, pinched_max = 0;              // see StepReport::pinched; at the end and at most
   // Pairs of triangles that pass through each other: at the start, at the end, and the most of all frames.
   int crossings_at_start = 0, crossings = 0, crossings_max = 0;

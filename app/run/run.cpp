@@ -237,6 +237,7 @@ void Run::record_step(const StepRow& row) {
   record_.self_contacts = report.self_contacts;
   record_.self_contacts_max = std::max(record_.self_contacts_max, report.self_contacts);
   record_.self_guarded += report.self_guarded;
+  record_.self_held += report.self_held;
   touched_ = touched_ || report.contacts > 0 || report.self_contacts > 0 ||
              !simulation_.constraints->faces().touching().empty();
   record_.torn += report.torn;

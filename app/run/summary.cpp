@@ -25,8 +25,8 @@ std::string hints(const RunRecord& record, const Output& output) {
             "through cloth that lies between, and has no two vertices at one place, does not pass through "
             "itself and others; drape untangle brings a mesh apart\n";
   if (record.self_guarded > 0)
-    text += "hint: vertices were pushed aside or stopped on their way " +
-            counted(record.self_guarded, "time") +
+    text += "hint: vertices were pushed aside " + counted(record.self_held, "time") +
+            " and stopped on their way " + counted(record.self_guarded - record.self_held, "time") +
             ", so that no cloth passes through cloth: a smaller time step is smoother\n";
   if (record.pinched > 0)
     text += "hint: a body passes through the cloth, or holds it against another body, near " +

@@ -37,6 +37,7 @@ void end_step(ContactStep& contacts, VecX& x, VecX& v, StepReport& report) {
   report.guarded += contact.guarded;
   report.self_contacts = contact.self_contacts;
   report.self_guarded += contact.self_guarded;
+  report.self_held += contact.self_held;
   report.stood_still = std::max(report.stood_still, contact.stood_still);
   report.tangled = contact.tangled;
   report.pinched = contact.pinched;

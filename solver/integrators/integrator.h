@@ -72,6 +72,7 @@ struct StepReport {
   int contacts = 0;  // particles in contact at the end
   int self_contacts = 0;  // pairs of cloth and cloth that push each other at the end
   int self_guarded = 0;   // particles that were pushed or stopped so that no cloth passes through cloth
+  int self_held = 0;      // of these, particles that were pushed aside only, and kept the rest of their way
   // Particles of pieces that stood still, at the cost of their momentum, since nothing else kept cloth from
   // passing through cloth.
   int stood_still = 0;
