@@ -238,8 +238,6 @@ void FaceContacts::look(int f, const MovingBody& body, const VecX& x, const VecX
   if (room > offset && lowest_point(then, at_end, offset, likely).surface.distance > offset)
     return;                           // the triangle passes by
   if (start.surface.covered) return;  // its vertices go with the body
-  // The two sides of a fold that leaves no room would push it by turns, each to the other one.
-  if (const auto far = body.opposite(start.point, offset); far && far->gap < 0) return;
 
   // A rim that lies along the triangle touches it at many points, and the lowest is now this one, now that.
   const Before last = before(body.number(), f, start.weights);
