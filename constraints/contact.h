@@ -27,9 +27,10 @@
 //   doubt    where a contact changed more than once, was let go and held again, or went up and down, r.n changes by a half
 //            to all of what a solve asks for, as the last two solves tell: friction may lift a particle off, or press it on,
 //            by more than it takes itself
-//   clamp    where a body overlaps itself, as thighs do that are pressed into each other, or two bodies close on the cloth
-//            (constraints/nip.h), there is no way out that the cloth could take: the particle goes with the body, or with
-//            both (nips.cpp), in all directions, whatever pulls, until it is free
+//   clamp    where a body overlaps itself, as thighs do that are pressed into each other, or where two bodies
+//            or the sides of a fold of one close on the cloth (nips.cpp), there is no way out that the cloth
+//            could take: the particle goes with the body, or with both sides, in all directions, whatever
+//            pulls, until it is free
 //   stop     where friction can stop all that slides on a body within a step, and it slows down, the step
 //            begins with it as sticking
 // r = A dv - b [N s] is the impulse of the constraint on the particle.
@@ -55,7 +56,9 @@ enum class Grip { stick, slide, brake };  // what is braked slides, too
 struct Contact {
   int particle;
   int planes = 0;  // that hold the particle: 1 to 3; 0: it was let go in this step
-  int known = 0;   // those that hold it, and behind them those that were let go in this step
+  // Those that hold it, and behind them those that may: they were let go in this step, or are the other side
+  // of a fold.
+  int known = 0;
   std::array<ContactPlane, 3> plane;  // of those that hold, the deepest first
   Grip grip = Grip::stick;
   bool clamped = false;       // it sticks whatever pulls

@@ -178,7 +178,7 @@ void FaceContacts::begin_step(const std::vector<MovingBody>& bodies, const std::
   clamped_.assign(static_cast<std::size_t>(x.size() / 3), 0);
   for (const Contact& c : contacts)
     if (c.clamped && !bodies[c.plane[0].obstacle].near_start(x.segment<3>(3 * c.particle)).covered)
-      clamped_[c.particle] = 1;  // by two bodies, and not where one overlaps itself
+      clamped_[c.particle] = 1;  // between two surfaces, and not where a body overlaps itself
   for (const MovingBody& body : bodies) {
     measure_travel(body, x, x_new);
     parallel_for(heavy_chunk_count(n), n < serial_below(Work::heavy), [&](int k) {

@@ -158,18 +158,16 @@ ContactPlane MovingBody::plane(const Vec3& x, const SurfacePoint& at_start, cons
   return plane_at(x, s.normal, s.distance - s.normal.dot(slid) - offset);
 }
 
-std::optional<ContactPlane> MovingBody::opposite(const Vec3& x, double offset) const {
+std::optional<ContactPlane> MovingBody::opposite(const Vec3& x, const SurfacePoint& at_start,
+                                                 double offset) const {
   constexpr double alike = 0.5;  // normals of one side of a fold: their product at least
   if (!deforms()) return std::nullopt;
-  const SurfacePoint here = near_start(x);
-  const Vec3 beyond = x + (2 * offset - here.distance) * here.normal;
+  const Vec3 normal = start_.direction_to_world(at_start.normal);
+  const Vec3 beyond = x + (2 * offset - at_start.distance) * normal;
   const SurfacePoint there = near_start(beyond);
-  if (there.covered || there.normal.dot(here.normal) > alike) return std::nullopt;
-  const Vec3 velocity = this->velocity(beyond);
-  SurfacePoint at_end = near_end(beyond + h_ * velocity);
-  if (at_end.covered) at_end = there;  // it closes within the step
-  const double gap = at_end.distance - (beyond - x).dot(at_end.normal) - offset;
-  return ContactPlane{number_, at_end.normal, gap, velocity};
+  if (there.covered || there.normal.dot(normal) > alike) return std::nullopt;
+  const double gap = there.distance - (beyond - x).dot(there.normal) - offset;
+  return ContactPlane{number_, turned(there.normal), gap, velocity(beyond)};
 }
 
 std::optional<ContactPlane> MovingBody::meeting(const Vec3& x0, const Vec3& x1, double radius) const {

@@ -100,10 +100,10 @@ class MovingBody {
   double travel(const Vec3& x0, const Vec3& x1) const;
   // radius [m]: of the particle (Constraints::set_radius), here and below.
   ContactPlane plane(const Vec3& x, const SurfacePoint& at_start, const Vec3& x_new, double radius = 0) const;
-  // The plane, moved out by the offset [m], of the other side of a fold in which x is, such as an armpit: of what is
-  // nearest to the place twice the offset above the surface beside x. Nothing where that is the same side, and for a
-  // body that does not deform, whose folds do not close.
-  std::optional<ContactPlane> opposite(const Vec3& x, double offset) const;
+  // The other side of a fold in which x is, such as an armpit, as a plane moved out by the offset [m]: what is
+  // nearest to the place twice the offset above at_start, the surface beside x. Nothing where that is the same
+  // side, and for a body that does not deform, whose folds do not close.
+  std::optional<ContactPlane> opposite(const Vec3& x, const SurfacePoint& at_start, double offset) const;
   ContactPlane plane_at(const Vec3& x, const Vec3& normal, double gap) const;  // normal: in the body's frame
   // How far the way leads away from the plane that moves with the body [m]; negative where it comes nearer.
   double approach(const Vec3& x0, const Vec3& x1, const ContactPlane& plane) const;

@@ -1,4 +1,4 @@
-// Particles that two bodies pinch: constraints/nip.h.
+// Particles that two bodies pinch (constraints/nip.h), or the sides of a fold of one.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -50,6 +50,20 @@ Squeeze squeeze(const MovingBody& a, const MovingBody& b, const MovingBody* lead
       std::atan(a.obstacle().friction.kinetic) + std::atan(b.obstacle().friction.kinetic);  // rad
   return {at_a, at_b, way, (v_a - v_b).dot(at_a.normal - at_b.normal) > still,
           -at_a.normal.dot(at_b.normal) >= std::cos(std::clamp(held, nearly_opposite, widest_held))};
+}
+
+// Whether two surfaces leave no room for what is between them. touch [m]: the lesser of their touching_range().
+bool no_room(bool clamped, bool closes, double gap_a, double gap_b, double touch) {
+  if (!clamped && closes) return gap_a + gap_b < -closed;
+  return std::max(gap_a, gap_b) < (clamped ? -closed : -share_of_touch * touch);
+}
+
+// A contact that goes this way [m/s] between two surfaces.
+Contact clamp(int particle, const ContactPlane& a, const ContactPlane& b, const Vec3& way) {
+  Contact contact{.particle = particle, .planes = 1, .known = 1, .plane = {}, .clamped = true};
+  contact.plane[0] = a.gap < b.gap ? a : b;
+  contact.plane[0].body_velocity = way;
+  return contact;
 }
 
 // How fast what begins to be clamped goes to the middle between both sides, beside their own way [m/s].
@@ -182,51 +196,42 @@ void ParticleContacts::clamp_between(const Bodies& bodies, const StepMotion& ste
       if (contact.comes_out && std::min(at_a.distance, at_b.distance) < step.radius_of(particle)) continue;
       const double gap_a = at_a.distance - offset(a), gap_b = at_b.distance - offset(b);
       const double least = std::min(touch(a), touch(b));
-      const bool no_room = !clamped && closes
-                               ? gap_a + gap_b < -closed
-                               : std::max(gap_a, gap_b) < (clamped ? -closed : -share_of_touch * least);
-      if (!no_room) continue;
-      contact = {
-          .particle = particle, .planes = 1, .known = 1, .plane = {}, .clamped = true, .leader = leader};
+      if (!no_room(clamped, closes, gap_a, gap_b, least)) continue;
       const ContactPlane of_a{a, at_a.normal, gap_a, bodies[a].velocity(x)};
       const ContactPlane of_b{b, at_b.normal, gap_b, bodies[b].velocity(x)};
-      contact.plane[0] = gap_a < gap_b ? of_a : of_b;
-      contact.plane[0].body_velocity = way;
+      contact = clamp(particle, of_a, of_b, way);
+      contact.leader = leader;
       if (!clamped) contact.plane[0].body_velocity += to_middle(of_a, of_b, step.h, recovery_speed_);
       return;
     }
   }
 }
 
-// Where the particle is in a fold of the body, such as an armpit, its plane is that of the nearer side alone. Makes
-// the contact a clamp where both sides close on the particle, or have closed on it: the plane would push it into the
-// other side, and be that one's in the next step. Else the plane of the other side is one that was let go, so that
-// it holds the particle where a solve takes it there.
+// In a fold of the body, such as an armpit, the plane `near` is that of the nearer side alone. Where both
+// sides close on the particle, or have closed on it, this makes the contact a clamp: the plane would push the
+// particle into the other side, and be the other side's in the next step. Else, in a fold that does not close,
+// the plane of the other side is kept as one that was let go, so that it holds the particle where a solve takes
+// it there.
 void ParticleContacts::look_into_fold(const MovingBody& body, const StepMotion& step,
-                                      const ContactPlane& near, const SurfacePoint& start,
+                                      const ContactPlane& near, const ContactPlane& far,
                                       const Contact* before, Contact& contact) const {
-  const int particle = contact.particle;
-  const double radius = step.radius_of(particle), offset = body.obstacle().margin + radius;
-  const bool clamped = before && before->clamped;
-  if (start.distance < radius && (!before || before->comes_out)) return;  // it comes out first
-  const auto far = body.opposite(step.place(particle), offset);
-  if (!far) return;
-  const Vec3 v_near = near.body_velocity, v_far = far->body_velocity, way = 0.5 * (v_near + v_far);
-  const bool closes = (v_near - v_far).dot(near.normal - far->normal) > still;
-  const bool holds = -near.normal.dot(far->normal) >= std::cos(widest_held);
+  const double margin = body.obstacle().margin;
+  if (near.gap < -margin && (!before || before->comes_out)) return;  // it comes out first
+  const Vec3 v_near = near.body_velocity, v_far = far.body_velocity, way = 0.5 * (v_near + v_far);
   const auto with_both = [&](const ContactPlane& plane) {  // its gap at a particle that goes that way
     ContactPlane passed = plane;
     passed.gap += step.h * (way - plane.body_velocity).dot(plane.normal);
     return passed;
   };
-  const ContactPlane a = with_both(near), b = with_both(*far);
-  if (clamped ? std::max(a.gap, b.gap) < -closed : closes && holds && a.gap + b.gap < -closed) {
-    contact = {.particle = particle, .planes = 1, .known = 1, .plane = {}, .clamped = true};
-    contact.plane[0] = a;
-    contact.plane[0].body_velocity = way;
+  const ContactPlane a = with_both(near), b = with_both(far);
+  const bool clamped = before && before->clamped && before->plane[0].obstacle == body.number();
+  const bool closes = (v_near - v_far).dot(near.normal - far.normal) > still;
+  const bool holds = -near.normal.dot(far.normal) >= std::cos(widest_held);  // both are of one skin
+  if ((holds || clamped) && no_room(clamped, closes, a.gap, b.gap, touching_range(margin))) {
+    contact = clamp(contact.particle, a, b, way);
     if (!clamped) contact.plane[0].body_velocity += to_middle(a, b, step.h, recovery_speed_);
-  } else if (step.foresight == Foresight::ahead && contact.known < 3) {
-    contact.plane[static_cast<std::size_t>(contact.known++)] = *far;
+  } else if (!closes && step.foresight == Foresight::ahead && contact.known < 3) {
+    contact.plane[static_cast<std::size_t>(contact.known++)] = far;
   }
 }
 
@@ -234,7 +239,10 @@ std::array<double, 3> ParticleContacts::presses(const Contact& contact, const Ve
   std::array<double, 3> lambda = multipliers(contact, r);
   if (const Nip* const nip = nip_of(contact.particle))
     for (int k = 0; k < contact.planes; ++k)
-      if (contact.plane[k].obstacle == nip->holder) lambda[k] += nip->impulse;
+      if (contact.plane[k].obstacle == nip->holder) {
+        lambda[k] += nip->impulse;
+        break;  // in a fold of the holder, at one of its sides
+      }
   return lambda;
 }
 

@@ -185,12 +185,17 @@ void ParticleContacts::look_at(const MovingBody& body, const StepMotion& step, b
     contact = clamped(particle, body, start, x, radius);
     return;
   }
-  const ContactPlane plane = body.plane(x, start, x + step.h * v, radius);
+  ContactPlane plane = body.plane(x, start, x + step.h * v, radius);
+  const auto far = body.opposite(x, start, offset);
+  if (far) {  // where a fold closes, the surface that is nearest at the end of the step may be the other side
+    const ContactPlane near = body.plane_at(x, start.normal, start.distance - offset);
+    if (plane.normal.dot(near.normal) < plane.normal.dot(far->normal)) plane = near;
+  }
   const double inside = step.foresight == Foresight::ahead ? at_margin : 0;
   if (touched ? plane.gap < touching_range(margin)
               : plane.gap < inside && plane.gap + body.approach(x, x_new, plane) < inside) {
     add_deepest(contact, plane);
-    look_into_fold(body, step, plane, start, before, contact);
+    if (far) look_into_fold(body, step, plane, *far, before, contact);
   } else if (plane.gap < travel) {
     if (const auto met = body.meeting(x, x_new, radius)) add_deepest(contact, *met);
   }

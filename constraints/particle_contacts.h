@@ -32,15 +32,16 @@ struct ContactFriction {
 
 struct ContactReport {
   int contacts = 0;
-  int guarded = 0;          // particles that were stopped at a surface after the solve, outside the equations
-  bool converged = true;    // the motion of bodies that react agrees with the impulses on them
-  double deepest = 0;       // how deep the deepest particle was inside a body when the step began [m]
-  int self_contacts = 0;    // pairs of cloth and cloth that push each other
-  int self_guarded = 0;     // particles that were pushed or stopped so that no cloth passes through cloth
-  int self_held = 0;        // of these, particles that were pushed, and not stopped
-  int stood_still = 0;      // particles of pieces that the guard left where they began
-  int tangled = 0;          // particles where cloth passes through cloth
-  int pinched = 0;          // particles that a body could not be kept off, or that bodies hold between them
+  int guarded = 0;        // particles that were stopped at a surface after the solve, outside the equations
+  bool converged = true;  // the motion of bodies that react agrees with the impulses on them
+  double deepest = 0;     // how deep the deepest particle was inside a body when the step began [m]
+  int self_contacts = 0;  // pairs of cloth and cloth that push each other
+  int self_guarded = 0;   // particles that were pushed or stopped so that no cloth passes through cloth
+  int self_held = 0;      // of these, particles that were pushed, and not stopped
+  int stood_still = 0;    // particles of pieces that the guard left where they began
+  int tangled = 0;        // particles where cloth passes through cloth
+  // Particles that a body could not be kept off, or that two bodies, or two sides of one, hold between them.
+  int pinched = 0;
   int body_contacts = 0;    // points at which bodies press on each other
   double body_overlap = 0;  // how deep bodies were inside each other when the step began [m]
 };
@@ -146,7 +147,7 @@ class ParticleContacts {
   void clamp_between(const Bodies& bodies, const StepMotion& step, const Contact* before,
                      Contact& contact) const;
   void look_into_fold(const MovingBody& body, const StepMotion& step, const ContactPlane& near,
-                      const SurfacePoint& start, const Contact* before, Contact& contact) const;
+                      const ContactPlane& far, const Contact* before, Contact& contact) const;
   void rub_in_nips(const Bodies& bodies, const StepMotion& step);
   // What presses the particle against each plane, with what the bodies press where it is in a nip; and the
   // sum of it [N s].

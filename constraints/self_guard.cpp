@@ -362,12 +362,12 @@ GuardReport SelfContacts::go_ahead(const StepMotion& step, bool first, VecX& x_n
   for (std::size_t i = 0; i < static_cast<std::size_t>(cloth_particles()); ++i) {
     const auto k = 3 * static_cast<Eigen::Index>(i);
     const Vec3 relief = way_[i] * relief_.segment<3>(k);
-    const bool stopped = way_[i] < 1 || still_[i] != 0;
-    if (stopped || !push_.segment<3>(k).isZero(0)) {
+    const bool loses_way = way_[i] < 1 || still_[i] != 0;
+    if (loses_way || !push_.segment<3>(k).isZero(0)) {
       const Vec3 kept = x_new.segment<3>(k) - (still_[i] != 0 ? 1 : 1 - way_[i]) * given_.segment<3>(k);
       v_new.segment<3>(k) -= (kept + relief - ahead_.segment<3>(k)) / step.h;
       ++report.guarded;
-      report.held += !stopped;
+      report.held += !loses_way;
       stopped_[i] = 1;
     }
     if (first) given_.segment<3>(k) = relief;

@@ -73,7 +73,7 @@ void add_reports_of_steps(py::module_& m) {
                     "particles where cloth passes through cloth, and is brought apart")
       .def_readonly("pinched", &StepReport::pinched,
                     "particles that a body may pass, because it could not be kept off them, or that two "
-                    "bodies hold between them")
+                    "bodies, or two sides of one, hold between them")
       .def_readonly("body_contacts", &StepReport::body_contacts, "points at which bodies press on each other")
       .def_readonly("body_overlap", &StepReport::body_overlap,
                     "m, how far bodies were inside each other at the start")

@@ -77,8 +77,8 @@ struct StepReport {
   // passing through cloth.
   int stood_still = 0;
   int tangled = 0;  // particles where cloth passes through cloth, and is brought apart
-  // Particles that a body may pass, because it could not be kept off them, or that two bodies hold between
-  // them.
+  // Particles that a body may pass, because it could not be kept off them, or that two bodies, or two sides of
+  // one, hold between them.
   int pinched = 0;
   int body_contacts = 0;        // points at which bodies press on each other at the end
   double body_overlap = 0;      // m: how far bodies were inside each other at the start

@@ -64,8 +64,8 @@ class Pcg final : public LinearSolver {
     if (!preconditioner_->prepare(A, filter, report)) report.reason = StopReason::indefinite;
   }
 
-  // Solves S (right - A x) = 0 in the free directions, starting from x, where r is the residual. Returns whether
-  // r is the residual of x in the end, too, computed anew.
+  // Solves S (right - A x) = 0 in the free directions, starting from x, where r is the residual. Returns
+  // whether r is the residual of x in the end, too, computed anew.
   bool iterate(const BlockMatrix& A, const VecX& right, const Filter& filter, const LinearOptions& options,
                double reference, VecX& x, LinearReport& report) {
     const int rows = A.rows(), limit = iteration_limit(options, rows);
