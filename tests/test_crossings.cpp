@@ -329,11 +329,11 @@ TEST_CASE("check tells the crossings of a mesh, of a scene and of a run", "[cros
   CHECK(after.out.find("crossings at the start: " + at_start + "\n") != std::string::npos);
   CHECK(after.out.find("crossings at the end: " + at_end + " pairs") != std::string::npos);
   const std::string steps = content(folder.path / "o/steps.csv");
-  CHECK(
-      steps.substr(0, steps.find('\n')).find(",crossings,tangled,pinched,body_contacts,body_overlap,torn") !=
-      std::string::npos);
+  CHECK(steps.substr(0, steps.find('\n'))
+            .find(",crossings,tangled,pinched,body_contacts,body_overlap,torn,self_held") !=
+        std::string::npos);
   CHECK(steps.substr(steps.find_last_of(',', steps.size() - 2)) == ",0\n");
-  CHECK(steps.find("," + at_end + ",0,0,0,0,0\n") != std::string::npos);
+  CHECK(steps.find("," + at_end + ",0,0,0,0,0,0\n") != std::string::npos);
   CHECK(crossings["max"] >= crossings["end"]);
 
   // What is marked is what crosses, and nothing else has changed.
