@@ -29,7 +29,7 @@ std::string hints(const RunRecord& record, const Output& output) {
             " and stopped on their way " + counted(record.self_guarded - record.self_held, "time") +
             ", so that no cloth passes through cloth: a smaller time step is smoother\n";
   if (record.pinched > 0)
-    text += "hint: a body passes through the cloth, or holds it against another body, near " +
+    text += "hint: a body passes through the cloth, or holds it against itself or another body, near " +
             counted(record.pinched, "vertex") +
             ": it started there, or could not be kept off without cloth passing through cloth or a body\n";
   if (record.max_penetration > 1e-4)
